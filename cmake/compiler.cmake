@@ -1,0 +1,21 @@
+# Flags shared by every target of the project, kept on one interface target.
+add_library(cloud2csg_compiler INTERFACE)
+target_compile_features(cloud2csg_compiler INTERFACE cxx_std_20)
+target_compile_options(
+  cloud2csg_compiler
+  INTERFACE -Wall -Wextra -Wshadow -Wconversion
+            # One formula gives the same bits in every instruction set: no silent fused multiply-add.
+            -ffp-contract=off)
+if(CLOUD2CSG_WARNINGS_AS_ERRORS)
+  target_compile_options(cloud2csg_compiler INTERFACE -Werror)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ 12 reports false positives inside Eigen and the standard library at -O3.
+  target_compile_options(cloud2csg_compiler INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds
+                                                      -Wno-stringop-overflow -Wno-stringop-overread)
+endif()
+if(CLOUD2CSG_SANITIZERS)
+  target_compile_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS}
+                                                      -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS})
+endif()

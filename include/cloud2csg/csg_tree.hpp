@@ -1,0 +1,134 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cloud2csg/primitive.hpp"
+
+/// The CSG tree: a formula of unions, intersections, differences and complements over primitives.
+namespace cloud2csg {
+
+enum class Operation : std::uint32_t {
+  primitive,     ///< leaf: a solid of the primitive set
+  empty,         ///< leaf: no point at all
+  full,          ///< leaf: all of space
+  complement,    ///< one child
+  union_of,      ///< two children
+  intersection,  ///< two children
+  difference,    ///< two children: the first less the second
+};
+
+[[nodiscard]] constexpr int arity(Operation operation) {
+  return operation < Operation::complement ? 0 : operation == Operation::complement ? 1 : 2;
+}
+
+/// Eight bytes: an operation and, for a leaf, the primitive's index; for an inner node, the number of nodes of
+/// its subtree, itself included.
+class CsgNode {
+ public:
+  [[nodiscard]] static CsgNode leaf(PrimitiveIndex primitive) { return {Operation::primitive, primitive}; }
+  [[nodiscard]] static CsgNode constant(Operation operation) { return {operation, 1}; }
+  [[nodiscard]] static CsgNode inner(Operation operation, std::uint32_t length) { return {operation, length}; }
+
+  [[nodiscard]] Operation operation() const { return operation_; }
+  [[nodiscard]] bool is_leaf() const { return arity(operation_) == 0; }
+  /// Precondition: operation() == Operation::primitive.
+  [[nodiscard]] PrimitiveIndex primitive() const { return value_; }
+  /// Nodes of the subtree that ends here.
+  [[nodiscard]] std::uint32_t length() const { return operation_ == Operation::primitive ? 1 : value_; }
+
+  friend bool operator==(const CsgNode&, const CsgNode&) = default;
+
+ private:
+  CsgNode(Operation operation, std::uint32_t value) : operation_(operation), value_(value) {}
+  Operation operation_;
+  std::uint32_t value_;
+};
+static_assert(sizeof(CsgNode) == 8);
+
+/// A binary CSG tree as a flat postfix array: children before their parent, first child before the second,
+/// the root last. A value: copying is a memcpy, a subtree is a contiguous range, crossover is a splice.
+/// Invariant: well-formed, at least one node; every inner node's length is right.
+class CsgTree {
+ public:
+  /// The empty solid: one node, Operation::empty.
+  CsgTree() : nodes_{CsgNode::constant(Operation::empty)} {}
+  /// A copy of a subtree's nodes (as subtree() gives them). Precondition: well-formed.
+  explicit CsgTree(std::span<const CsgNode> postfix) : nodes_(postfix.begin(), postfix.end()) {}
+
+  [[nodiscard]] static CsgTree leaf(PrimitiveIndex primitive);
+  [[nodiscard]] static CsgTree empty();
+  [[nodiscard]] static CsgTree full();
+
+  [[nodiscard]] std::span<const CsgNode> nodes() const { return nodes_; }
+  /// Number of nodes, as in the paper's objective. O(1).
+  [[nodiscard]] std::size_t size() const { return nodes_.size(); }
+  [[nodiscard]] std::size_t root() const { return nodes_.size() - 1; }
+
+  /// The nodes of the subtree rooted at node index `root`: a contiguous range that ends there.
+  [[nodiscard]] std::span<const CsgNode> subtree(std::size_t root) const {
+    return nodes().subspan(root + 1 - nodes_[root].length(), nodes_[root].length());
+  }
+  /// Node index of the last (for complement: the only) child, and of the first child of a binary node.
+  [[nodiscard]] std::size_t second_child(std::size_t node) const { return node - 1; }
+  [[nodiscard]] std::size_t first_child(std::size_t node) const { return node - 1 - nodes_[node - 1].length(); }
+
+  /// Replaces the subtree rooted at node index `root` by other nodes (not a range of this tree) and mends the
+  /// lengths of the ancestors. O(size).
+  void replace(std::size_t root, std::span<const CsgNode> replacement);
+
+  friend bool operator==(const CsgTree&, const CsgTree&) = default;  ///< the same nodes in the same order
+
+ private:
+  friend CsgTree make_node(Operation, std::span<const CsgNode>, std::span<const CsgNode>);
+  std::vector<CsgNode> nodes_;
+};
+
+[[nodiscard]] CsgTree unite(const CsgTree& a, const CsgTree& b);
+[[nodiscard]] CsgTree intersect(const CsgTree& a, const CsgTree& b);
+[[nodiscard]] CsgTree subtract(const CsgTree& a, const CsgTree& b);
+[[nodiscard]] CsgTree complement(const CsgTree& a);
+/// Of none: the empty solid.
+[[nodiscard]] CsgTree unite_all(std::span<const CsgTree> trees);
+
+/// Edges on the longest path from the root to a leaf: 0 for a leaf. O(size), no recursion.
+[[nodiscard]] std::size_t depth(const CsgTree& tree);
+/// Leaves that are primitives, each counted as often as it appears.
+[[nodiscard]] std::size_t leaf_count(const CsgTree& tree);
+/// The primitives that appear, ascending, each once.
+[[nodiscard]] std::vector<PrimitiveIndex> primitives_of(const CsgTree& tree);
+/// The same tree with primitive p renamed to new_index[p].
+[[nodiscard]] CsgTree renumber(const CsgTree& tree, std::span<const PrimitiveIndex> new_index);
+
+/// Equal for trees that differ only by commutation and association of unions and intersections (and, within a
+/// difference, by the order of what is subtracted: (a - b) - c and (a - c) - b). O(size log size).
+[[nodiscard]] std::uint64_t structural_hash(const CsgTree& tree);
+/// structural_hash of every subtree: one value per node index, in one pass. O(size log size).
+[[nodiscard]] std::vector<std::uint64_t> structural_hashes(const CsgTree& tree);
+/// Equality up to commutation and association. O(size log size).
+[[nodiscard]] bool structurally_equal(const CsgTree& a, const CsgTree& b);
+
+/// Text form, e.g. `(a | b) - c`: `|` union, `&` intersection, `-` difference, `~` complement, `empty`, `full`.
+/// `~` binds strongest, then `&`, then `|` and `-` alike, from the left. parse_tree(to_text(t)) is t up to association.
+[[nodiscard]] std::string to_text(const CsgTree& tree, const PrimitiveSet& primitives);
+/// @throws Error (where = "column N") for a syntax error or a name that is not the id of a primitive.
+[[nodiscard]] CsgTree parse_tree(std::string_view text, const PrimitiveSet& primitives);
+
+/// The tree's implicit value at points: union = min, intersection = max, complement = -f, difference = max(f, -g).
+/// Negative inside; a distance near the surface, a lower bound elsewhere. O(points x size).
+[[nodiscard]] std::vector<double> implicit_value(const CsgTree& tree, const PrimitiveSet& primitives, PointsView points);
+/// Its gradient: that of the one primitive (up to sign) whose value the tree takes at each point.
+/// Where several have the same |value|, the one with the smallest index.
+[[nodiscard]] Points implicit_gradient(const CsgTree& tree, const PrimitiveSet& primitives, PointsView points);
+/// Whether one point, given which primitives it is inside of (indexed by PrimitiveIndex), is in the solid.
+[[nodiscard]] bool contains(const CsgTree& tree, const std::vector<bool>& inside_primitive);
+
+/// Graphviz: one box a node, labelled with the operation or the primitive's id.
+[[nodiscard]] std::string to_graphviz(const CsgTree& tree, const PrimitiveSet& primitives);
+
+}  // namespace cloud2csg

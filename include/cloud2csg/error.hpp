@@ -1,0 +1,37 @@
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace cloud2csg {
+
+/// Bad input: one exception type, thrown where input enters the library (files, options, models).
+/// Programming errors are assertions instead.
+///
+/// `what()` is one line: `file: where: expected; remedy`, empty parts left out.
+class Error : public std::exception {
+ public:
+  struct Parts {
+    std::string file;      ///< the file at fault; empty when the input is not a file
+    std::string where;     ///< line, byte, or path of the field, e.g. "line 12", "/primitives/3/radius"
+    std::string expected;  ///< what was expected and what was found
+    std::string remedy;    ///< what to do about it; may be empty
+  };
+
+  explicit Error(Parts parts);
+
+  [[nodiscard]] const char* what() const noexcept override { return message_.c_str(); }
+  [[nodiscard]] const Parts& parts() const noexcept { return parts_; }
+
+ private:
+  Parts parts_;
+  std::string message_;
+};
+
+/// Thrown by stages that have no partial result when the caller's stop token is triggered.
+class Cancelled : public std::exception {
+ public:
+  [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
+};
+
+}  // namespace cloud2csg

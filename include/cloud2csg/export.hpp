@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/mesh.hpp"
+#include "cloud2csg/model.hpp"
+
+namespace cloud2csg {
+
+struct OpenScadOptions {
+  int facets = 64;           ///< $fn: how many facets a circle has
+  int mesh_resolution = 64;  ///< for displaced and expression solids, which become polyhedra
+  std::string comment = {};  ///< lines for the head of the file, e.g. the fit; without "//"
+};
+
+/// An OpenSCAD program: a named module a primitive, the tree with indentation, chains of the same operation as one
+/// block. Renders in OpenSCAD 2021.01 without warnings.
+[[nodiscard]] std::string to_openscad(const CsgTree& tree, const PrimitiveSet& primitives,
+                                      const OpenScadOptions& options = {});
+
+struct ExportOptions {
+  OpenScadOptions openscad = {};
+  MeshingOptions meshing = {};
+};
+
+/// Writes a model by the file's ending: .json, .scad, .dot, .stl, .off, .obj. All but .json need a tree.
+/// Nothing half-written. @throws Error
+void export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options = {},
+                  const RunContext& run = {});
+
+}  // namespace cloud2csg

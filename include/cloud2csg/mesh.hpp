@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/run_context.hpp"
+
+namespace cloud2csg {
+
+/// Triangles over shared vertices; counter-clockwise seen from outside.
+struct TriangleMesh {
+  Points vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+struct MeshingOptions {
+  int resolution = 128;  ///< cells along the longest side of the solid's bounds
+};
+
+/// The surface of a solid as a closed mesh, by dual contouring of its implicit value with the known gradients, so
+/// that sharp edges stay sharp. Every edge has exactly two triangles. Unbounded solids are cut at `bounds`.
+/// Empty when the solid is. O(resolution^3 + surface cells x size).
+/// @throws Cancelled
+[[nodiscard]] TriangleMesh mesh_surface(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& bounds,
+                                        const MeshingOptions& options = {}, const RunContext& run = {});
+
+/// Bounds of the solid: those of its bounded primitives where the formula allows, by the tree (the union of both
+/// for a union, the common part for an intersection, the first for a difference). May be infinite.
+[[nodiscard]] AlignedBox bounds_of(const CsgTree& tree, const PrimitiveSet& primitives);
+
+/// Whether every edge has exactly two triangles, in opposite directions.
+[[nodiscard]] bool is_watertight(const TriangleMesh& mesh);
+/// Volume enclosed by a closed mesh, positive when it is oriented outward.
+[[nodiscard]] double volume_of(const TriangleMesh& mesh);
+
+/// .stl (binary) .off .obj .ply as assimp reads them; vertices at the same place are joined. @throws Error
+[[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);
+/// .stl (binary) .off .obj by the file's ending. Nothing half-written. @throws Error
+void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
+
+}  // namespace cloud2csg

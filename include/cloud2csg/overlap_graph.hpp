@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cloud2csg/primitive.hpp"
+#include "cloud2csg/run_context.hpp"
+
+/// Overlap graph and partitions (section 4 of the paper: PO-graph, maximal cliques).
+namespace cloud2csg {
+
+struct OverlapOptions {
+  /// Solids nearer than this count as overlapping, so that touching faces do. In the cloud's units; the pipeline sets
+  /// it from the measured noise.
+  double tolerance = 1e-6;
+  /// For infinite primitives (half-spaces): the oriented bounds of the points they were fitted to, by primitive
+  /// index; an entry that is absent means the primitive itself. May be shorter than the primitive set.
+  std::vector<std::optional<OrientedBox>> extents = {};
+};
+
+/// Undirected, without loops: an edge for each pair of primitives whose solids share space.
+struct OverlapGraph {
+  std::vector<std::vector<PrimitiveIndex>> neighbours;  ///< by primitive, each list ascending
+
+  [[nodiscard]] std::size_t size() const { return neighbours.size(); }
+  [[nodiscard]] bool has_edge(PrimitiveIndex a, PrimitiveIndex b) const;
+  [[nodiscard]] std::size_t edge_count() const;
+};
+
+/// Broad phase by an R-tree over the bounds, O(n log n + pairs); narrow phase exact for convex pairs (GJK), by the
+/// distance fields for the rest. One solid inside another overlaps it.
+/// @throws Cancelled
+[[nodiscard]] OverlapGraph build_overlap_graph(const PrimitiveSet& primitives, const OverlapOptions& options = {},
+                                               const RunContext& run = {});
+
+/// Primitives that all overlap each other, ascending: the paper's partition.
+using Clique = std::vector<PrimitiveIndex>;
+
+/// All maximal cliques, in lexicographic order; a primitive without neighbours is a clique of one. Bron-Kerbosch with
+/// pivoting in degeneracy order: O(d n 3^(d/3)) for degeneracy d.
+[[nodiscard]] std::vector<Clique> maximal_cliques(const OverlapGraph& graph);
+
+/// How many cliques have 1, 2, 3... primitives, as in the paper's table of models.
+[[nodiscard]] std::vector<std::size_t> clique_histogram(std::span<const Clique> cliques);
+
+/// The connected components, each ascending, ordered by their first primitive.
+[[nodiscard]] std::vector<std::vector<PrimitiveIndex>> connected_components(const OverlapGraph& graph);
+
+}  // namespace cloud2csg

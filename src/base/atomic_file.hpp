@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+namespace cloud2csg {
+
+/// A file that appears under its name only when it is whole: writes go to a temporary beside it, commit() flushes
+/// and renames; without commit() the temporary is removed and an older file of that name stays.
+/// All functions throw Error naming the file, with the system's reason (disk full, no such folder...).
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  AtomicFile(AtomicFile&&) = delete;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+
+  void write(std::string_view bytes);
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* what) const;
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  std::FILE* file_ = nullptr;
+};
+
+/// The whole of `text` as a file, or none of it. @throws Error
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// The whole of a file. @throws Error when it is missing or cannot be read.
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& file);
+
+}  // namespace cloud2csg

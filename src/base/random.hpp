@@ -1,0 +1,61 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace cloud2csg {
+
+/// A stream of random numbers that is a pure function of (seed, stage, item, step), never of a thread or of the
+/// order in which streams are made. xoshiro256** (Blackman, Vigna 2018) seeded by splitmix64; distributions of its own,
+/// because those of the standard library differ between implementations.
+class RandomStream {
+ public:
+  explicit RandomStream(std::uint64_t seed, std::uint64_t stage = 0, std::uint64_t item = 0, std::uint64_t step = 0) {
+    std::uint64_t x = seed;
+    for (const std::uint64_t key : {stage, item, step}) x = mix(x + k_golden) ^ mix(key + k_golden);
+    for (std::uint64_t& word : state_) word = mix(x += k_golden);
+  }
+
+  std::uint64_t next() {
+    const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
+    const std::uint64_t t = state_[1] << 17U;
+    state_[2] ^= state_[0];
+    state_[3] ^= state_[1];
+    state_[1] ^= state_[2];
+    state_[0] ^= state_[3];
+    state_[2] ^= t;
+    state_[3] = std::rotl(state_[3], 45);
+    return result;
+  }
+
+  /// Uniform in [0, 1).
+  double uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  bool chance(double probability) { return uniform() < probability; }
+
+  /// Uniform in 0 .. count - 1. Precondition: 0 < count < 2^32. Multiply-shift; its bias of 2^-32 is far below what
+  /// any use here can see.
+  std::uint32_t below(std::size_t count) {
+    return static_cast<std::uint32_t>(((next() >> 32U) * static_cast<std::uint64_t>(count)) >> 32U);
+  }
+
+  /// Standard normal, by Box and Muller; one value a call.
+  double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+
+ private:
+  static constexpr std::uint64_t k_golden = 0x9e3779b97f4a7c15ULL;
+  static std::uint64_t mix(std::uint64_t x) {
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+    return x ^ (x >> 31U);
+  }
+
+  std::uint64_t state_[4];
+};
+
+}  // namespace cloud2csg

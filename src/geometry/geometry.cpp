@@ -1,0 +1,40 @@
+#include "cloud2csg/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cloud2csg {
+
+Pose compose(const Pose& outer, const Pose& inner) {
+  return {.position = outer.to_world(inner.position),
+          .orientation = (outer.orientation * inner.orientation).normalized()};
+}
+
+Pose pose_from_axis(const Eigen::Vector3d& position, const Eigen::Vector3d& axis) {
+  return {.position = position, .orientation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis)};
+}
+
+AlignedBox enclosing_box(const OrientedBox& box) {
+  const Eigen::Matrix3d rotation = box.pose.orientation.toRotationMatrix();
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      const double weight = std::abs(rotation(row, column));
+      // 0 * infinity must count as 0: an axis that the box does not extend along.
+      if (weight > std::numeric_limits<double>::epsilon()) half[row] += weight * box.half_size[column];
+    }
+  }
+  return {box.pose.position - half, box.pose.position + half};
+}
+
+AlignedBox bounds_of(PointsView points) {
+  AlignedBox box;
+  if (points.empty()) return box;
+  const auto [x_low, x_high] = std::ranges::minmax(points.x);
+  const auto [y_low, y_high] = std::ranges::minmax(points.y);
+  const auto [z_low, z_high] = std::ranges::minmax(points.z);
+  return {Eigen::Vector3d(x_low, y_low, z_low), Eigen::Vector3d(x_high, y_high, z_high)};
+}
+
+}  // namespace cloud2csg
