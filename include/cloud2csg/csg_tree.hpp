@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cloud2csg/primitive.hpp"
@@ -60,6 +61,8 @@ class CsgTree {
   CsgTree() : nodes_{CsgNode::constant(Operation::empty)} {}
   /// A copy of a subtree's nodes (as subtree() gives them). Precondition: well-formed.
   explicit CsgTree(std::span<const CsgNode> postfix) : nodes_(postfix.begin(), postfix.end()) {}
+  /// Takes over nodes that were built elsewhere. Precondition: well-formed.
+  explicit CsgTree(std::vector<CsgNode> postfix) : nodes_(std::move(postfix)) {}
 
   [[nodiscard]] static CsgTree leaf(PrimitiveIndex primitive);
   [[nodiscard]] static CsgTree empty();
@@ -85,7 +88,6 @@ class CsgTree {
   friend bool operator==(const CsgTree&, const CsgTree&) = default;  ///< the same nodes in the same order
 
  private:
-  friend CsgTree make_node(Operation, std::span<const CsgNode>, std::span<const CsgNode>);
   std::vector<CsgNode> nodes_;
 };
 
@@ -115,15 +117,25 @@ class CsgTree {
 
 /// Text form, e.g. `(a | b) - c`: `|` union, `&` intersection, `-` difference, `~` complement, `empty`, `full`.
 /// `~` binds strongest, then `&`, then `|` and `-` alike, from the left. parse_tree(to_text(t)) is t up to association.
+/// An id with other characters than letters, digits, `_`, `.` and `:` is written "in quotes", with \" and \\ inside.
 [[nodiscard]] std::string to_text(const CsgTree& tree, const PrimitiveSet& primitives);
-/// @throws Error (where = "column N") for a syntax error or a name that is not the id of a primitive.
+/// @throws Error (where = "column N", counted from 1 in characters) for a syntax error or a name that is not the id of
+/// a primitive.
 [[nodiscard]] CsgTree parse_tree(std::string_view text, const PrimitiveSet& primitives);
 
 /// The tree's implicit value at points: union = min, intersection = max, complement = -f, difference = max(f, -g).
-/// Negative inside; a distance near the surface, a lower bound elsewhere. O(points x size).
-[[nodiscard]] std::vector<double> implicit_value(const CsgTree& tree, const PrimitiveSet& primitives, PointsView points);
-/// Its gradient: that of the one primitive (up to sign) whose value the tree takes at each point.
-/// Where several have the same |value|, the one with the smallest index.
+/// Negative inside; a distance near the surface, a lower bound elsewhere; +infinity for the empty solid, -infinity for
+/// all of space. O(points x size).
+[[nodiscard]] std::vector<double> implicit_value(const CsgTree& tree, const PrimitiveSet& primitives,
+                                                 PointsView points);
+/// Its gradient: that of the one primitive (up to sign) whose value the tree takes at each point, not normalised;
+/// zero where the tree takes none (empty, full).
+///
+/// Which one, where several have the same |value|, does not depend on the tree's shape: min and max are taken in the
+/// order of the **signed ranks** of the values, not of the values alone. The signed rank of +f_p at a point is the rank
+/// of |f_p| among the primitives (from 1; equal ones by index, smaller index first) times the sign of f_p, where f_p ==
+/// 0 counts as positive; that of -f_p is its negative. So of two equal positive values the one of the smaller index is
+/// the smaller; of two equal negative ones, the one of the larger index.
 [[nodiscard]] Points implicit_gradient(const CsgTree& tree, const PrimitiveSet& primitives, PointsView points);
 /// Whether one point, given which primitives it is inside of (indexed by PrimitiveIndex), is in the solid.
 [[nodiscard]] bool contains(const CsgTree& tree, const std::vector<bool>& inside_primitive);

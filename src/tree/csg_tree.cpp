@@ -1,0 +1,167 @@
+#include "cloud2csg/csg_tree.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace cloud2csg {
+namespace {
+
+std::uint32_t length_of(std::size_t nodes) {
+  return static_cast<std::uint32_t>(nodes);
+}
+
+void append(std::vector<CsgNode>& nodes, std::span<const CsgNode> more) {
+  nodes.insert(nodes.end(), more.begin(), more.end());
+}
+
+CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
+  std::vector<CsgNode> nodes;
+  nodes.reserve(a.size() + b.size() + 1);
+  append(nodes, a.nodes());
+  append(nodes, b.nodes());
+  nodes.push_back(CsgNode::inner(operation, length_of(nodes.size() + 1)));
+  return CsgTree(std::move(nodes));
+}
+
+}  // namespace
+
+CsgTree CsgTree::leaf(PrimitiveIndex primitive) {
+  return CsgTree(std::vector{CsgNode::leaf(primitive)});
+}
+CsgTree CsgTree::empty() {
+  return CsgTree(std::vector{CsgNode::constant(Operation::empty)});
+}
+CsgTree CsgTree::full() {
+  return CsgTree(std::vector{CsgNode::constant(Operation::full)});
+}
+
+void CsgTree::replace(std::size_t root, std::span<const CsgNode> replacement) {
+  assert(!replacement.empty());
+  assert(replacement.data() + replacement.size() <= nodes_.data() ||
+         replacement.data() >= nodes_.data() + nodes_.size());
+  const std::size_t old_length = nodes_[root].length();
+  const std::size_t first = root + 1 - old_length;
+  for (std::size_t i = root + 1; i < nodes_.size(); ++i) {
+    const std::size_t length = nodes_[i].length();
+    const bool is_ancestor = i + 1 - length <= first;
+    if (is_ancestor) {
+      nodes_[i] = CsgNode::inner(nodes_[i].operation(), length_of(length - old_length + replacement.size()));
+    }
+  }
+  const auto at = nodes_.begin() + static_cast<std::ptrdiff_t>(first);
+  const std::size_t common = std::min(old_length, replacement.size());
+  std::copy_n(replacement.begin(), common, at);
+  const auto after = at + static_cast<std::ptrdiff_t>(common);
+  if (replacement.size() > common) {
+    nodes_.insert(after, replacement.begin() + static_cast<std::ptrdiff_t>(common), replacement.end());
+  } else {
+    nodes_.erase(after, at + static_cast<std::ptrdiff_t>(old_length));
+  }
+}
+
+CsgTree unite(const CsgTree& a, const CsgTree& b) {
+  return join(Operation::union_of, a, b);
+}
+CsgTree intersect(const CsgTree& a, const CsgTree& b) {
+  return join(Operation::intersection, a, b);
+}
+CsgTree subtract(const CsgTree& a, const CsgTree& b) {
+  return join(Operation::difference, a, b);
+}
+
+CsgTree complement(const CsgTree& a) {
+  std::vector<CsgNode> nodes;
+  nodes.reserve(a.size() + 1);
+  append(nodes, a.nodes());
+  nodes.push_back(CsgNode::inner(Operation::complement, length_of(nodes.size() + 1)));
+  return CsgTree(std::move(nodes));
+}
+
+CsgTree unite_all(std::span<const CsgTree> trees) {
+  if (trees.empty()) return CsgTree::empty();
+  std::vector<CsgNode> nodes;
+  for (const CsgTree& tree : trees) {
+    const bool is_first = nodes.empty();
+    append(nodes, tree.nodes());
+    if (!is_first) nodes.push_back(CsgNode::inner(Operation::union_of, length_of(nodes.size() + 1)));
+  }
+  return CsgTree(std::move(nodes));
+}
+
+std::size_t depth(const CsgTree& tree) {
+  std::vector<std::size_t> depths;
+  for (const CsgNode node : tree.nodes()) {
+    const int children = arity(node.operation());
+    std::size_t deepest = 0;
+    for (int child = 0; child < children; ++child) {
+      deepest = std::max(deepest, depths.back() + 1);
+      depths.pop_back();
+    }
+    depths.push_back(deepest);
+  }
+  return depths.back();
+}
+
+std::size_t leaf_count(const CsgTree& tree) {
+  return static_cast<std::size_t>(std::ranges::count(tree.nodes(), Operation::primitive, &CsgNode::operation));
+}
+
+std::vector<PrimitiveIndex> primitives_of(const CsgTree& tree) {
+  std::vector<PrimitiveIndex> primitives;
+  for (const CsgNode node : tree.nodes()) {
+    if (node.operation() == Operation::primitive) primitives.push_back(node.primitive());
+  }
+  std::ranges::sort(primitives);
+  primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+  return primitives;
+}
+
+CsgTree renumber(const CsgTree& tree, std::span<const PrimitiveIndex> new_index) {
+  std::vector<CsgNode> nodes(tree.nodes().begin(), tree.nodes().end());
+  for (CsgNode& node : nodes) {
+    if (node.operation() == Operation::primitive) node = CsgNode::leaf(new_index[node.primitive()]);
+  }
+  return CsgTree(std::move(nodes));
+}
+
+bool contains(const CsgTree& tree, const std::vector<bool>& inside_primitive) {
+  std::vector<bool> values;
+  const auto pop = [&values] {
+    const bool value = values.back();
+    values.pop_back();
+    return value;
+  };
+  for (const CsgNode node : tree.nodes()) {
+    bool value = false;
+    switch (node.operation()) {
+      case Operation::primitive:
+        value = inside_primitive[node.primitive()];
+        break;
+      case Operation::empty:
+        value = false;
+        break;
+      case Operation::full:
+        value = true;
+        break;
+      case Operation::complement:
+        value = !pop();
+        break;
+      // pop() on the left of a non-short-circuiting operator: both children must leave the stack.
+      case Operation::union_of:
+        value = pop() | pop();
+        break;
+      case Operation::intersection:
+        value = pop() & pop();
+        break;
+      case Operation::difference: {
+        const bool subtracted = pop();
+        value = pop() & !subtracted;
+        break;
+      }
+    }
+    values.push_back(value);
+  }
+  return values.back();
+}
+
+}  // namespace cloud2csg
