@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cloud2csg/primitive.hpp"
+
+namespace cloud2csg {
+
+/// How the overlap of a solid with another is decided.
+enum class BodyKind : std::uint8_t {
+  sphere,      ///< undisplaced: closed form with another sphere, else as convex
+  convex,      ///< bounded, convex, undisplaced: by its support function
+  half_space,  ///< undisplaced and without an extent: closed forms
+  field,       ///< the rest: by its distance field
+};
+
+/// A primitive made ready for many pair tests.
+struct OverlapBody {
+  Primitive solid;    ///< an unbounded primitive with an extent became the box of that extent
+  AlignedBox bounds;  ///< of the solid; infinite for half-spaces
+  BodyKind kind = BodyKind::field;
+  std::vector<Eigen::Vector3d> corners = {};         ///< of a polytope, in the world
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< a point inside, for convex kinds
+  /// |f(p) - f(q)| <= lipschitz |p - q|. Known for all shapes but expressions, for which it is an estimate.
+  double lipschitz = 1.0;
+
+  [[nodiscard]] bool is_bounded() const { return bounds.sizes().allFinite(); }
+};
+
+/// `extent` counts only for a primitive whose own bounds are infinite.
+[[nodiscard]] OverlapBody make_overlap_body(const Primitive& primitive, const std::optional<OrientedBox>& extent);
+
+/// The point of a convex body farthest in `direction`, as support(), but in O(corners) for polytopes.
+[[nodiscard]] Eigen::Vector3d support_point(const OverlapBody& body, const Eigen::Vector3d& direction);
+
+}  // namespace cloud2csg
