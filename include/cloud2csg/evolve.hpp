@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+
+#include "cloud2csg/overlap_graph.hpp"
+#include "cloud2csg/rank_classes.hpp"
+
+/// The search for the tree of one partition (section 4.3 of the paper).
+namespace cloud2csg {
+
+struct GaOptions {
+  int population = 150;        ///< trees a generation (paper)
+  int elites = 2;              ///< best trees that go to the next generation unchanged (paper)
+  int tournament = 2;          ///< a parent is the best of so many drawn at random (paper)
+  double crossover_rate = 0.3;  ///< chance that two parents swap random subtrees (paper)
+  double mutation_rate = 0.3;   ///< chance that a child is mutated (paper)
+  double new_tree_rate = 0.5;   ///< of the mutations: the whole tree is replaced by a new one, else a random subtree (paper)
+  /// Edges on the longest path of a tree. Absent: sqrt(pi / 2 * n (n - 1)) for n primitives (paper).
+  std::optional<int> height_limit = {};
+  /// Stop when the best score has not improved for so many generations. The paper's 10 finds the true solid of M0's
+  /// largest cliques in few runs; with seeds and polish, 40 found it in all that were tried (bench/recovery).
+  int idle_generations = 40;
+  int generation_limit = 10'000;  ///< stop here in any case
+
+  // Beyond the paper. What each is worth is measured in bench/recovery.
+
+  /// Partitions of up to so many primitives are solved by listing all trees that use each primitive at most once; the
+  /// paper lists up to 2. 4 cost some 0.1 ms, 5 some ms.
+  std::size_t listing_limit = 4;
+  /// A listed tree must reach this share of what no tree can exceed (RankClasses::geometry_bound), else the genetic
+  /// algorithm looks for a tree that uses a primitive more than once. 0: what was listed is taken as it is (paper).
+  double listing_trust = 0.9;
+  bool seeds = true;   ///< the first generation also has the results of local searches from simple trees
+  bool polish = true;  ///< a local search on the best tree at the end; when it finds a better one, the algorithm goes on
+
+  std::uint64_t seed = 1;
+};
+
+/// The parameters of the paper, nothing added.
+[[nodiscard]] GaOptions paper_ga_options();
+
+/// The tree found for one set of primitives, and what it took.
+struct Evolution {
+  CsgTree tree;         ///< over the table's local indices
+  double score = 0;     ///< E(t)
+  double geometry = 0;  ///< E(t) without the cost of size
+  std::size_t generations = 0;
+  std::size_t evaluations = 0;
+  bool complete = true;  ///< false when it was stopped early: the best tree so far
+};
+
+/// Height limit of the paper for n primitives; at least 1.
+[[nodiscard]] inline int default_height_limit(std::size_t primitives) {
+  const auto n = static_cast<double>(primitives);
+  return std::max(1, static_cast<int>(std::sqrt(std::numbers::pi / 2 * n * (n - 1))));
+}
+
+/// Searches for the tree with the highest E(t). `item` tells partitions apart: each has a random stream of its own.
+/// The result depends on the table, the options and `item` only, not on run.threads, over which the evaluation of the
+/// population is spread. Stops between generations when run.stop is triggered.
+/// Precondition: the table has at least one primitive.
+[[nodiscard]] Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::uint64_t item,
+                                    const RunContext& run = {});
+
+/// The same with a tree to start from (over local indices), e.g. one that is nearly right.
+[[nodiscard]] Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const GaOptions& options,
+                                         std::uint64_t item, const RunContext& run = {});
+
+/// The sentence of the paper in one call: the tree for one clique of primitives, over the whole set's indices, from the
+/// points that belong to them.
+[[nodiscard]] CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, const Clique& clique,
+                                  const GaOptions& options = {}, const RunContext& run = {});
+
+struct LocalSearchOptions {
+  /// Only moves that make the tree smaller: redundancy removal.
+  bool shrink_only = false;
+  std::size_t evaluation_limit = 100'000;
+};
+
+/// Climbs from `start` by the best of all small changes (a node replaced by its child, by a leaf, by another operation;
+/// a leaf put in anywhere) until none improves E(t). Deterministic.
+[[nodiscard]] Evolution local_search(const RankClasses& table, const CsgTree& start,
+                                     const LocalSearchOptions& options = {}, const RunContext& run = {});
+
+}  // namespace cloud2csg

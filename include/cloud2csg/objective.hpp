@@ -1,0 +1,44 @@
+#pragma once
+
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/point_cloud.hpp"
+
+/// The objective of the search (section 4.3 of the paper), to be maximised:
+///
+///   E(t) = sum over points { exp(-d^2) + exp(-theta^2) } - alpha * size(t),
+///   d = beta * f_t(s),  theta = gamma * angle between the gradient of f_t at s and the point's normal.
+namespace cloud2csg {
+
+struct ObjectiveOptions {
+  /// Cost of a node, in points. Absent: ln |S| as in the paper, S being the points that the tree is judged by.
+  std::optional<double> alpha = {};
+  /// Per unit of length. Absent: 1 / noise, so that a point one sigma off counts exp(-1). The paper: 100, which is
+  /// this for its models and noise.
+  std::optional<double> beta = {};
+  /// Per radian. The paper's 18 / pi: a normal that is 10 degrees off counts exp(-1).
+  double gamma = 18.0 / std::numbers::pi;
+};
+
+/// The objective's weights for one set of points: nothing left to be derived.
+struct Objective {
+  double alpha;
+  double beta;
+  double gamma;
+};
+[[nodiscard]] Objective resolve(const ObjectiveOptions& options, std::size_t points, double noise);
+
+/// What a point adds to E for a surface at signed distance `distance` with (unit) gradient at angle `angle` (radians).
+[[nodiscard]] double point_score(double distance, double angle, const Objective& objective);
+
+/// E(t), evaluated as it is written: for each point the tree is walked, in double precision, with the libm exp and
+/// acos. The reference that the fast evaluation is held against. O(points x size).
+/// `points` are indices into the cloud; the tree's leaves index `primitives`. Where several primitives have the same
+/// |value|, the gradient is that of the one with the smallest index (see implicit_gradient).
+[[nodiscard]] double reference_objective(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
+                                         std::span<const std::uint32_t> points, const Objective& objective);
+
+}  // namespace cloud2csg

@@ -1,0 +1,125 @@
+#include "cloud2csg/evolve.hpp"
+
+#include <numeric>
+#include <vector>
+
+#include "cloud2csg/simplify.hpp"
+#include "evolve/genetic_algorithm.hpp"
+#include "evolve/listing.hpp"
+
+namespace cloud2csg {
+namespace {
+
+void count_in(Evolution& total, const Evolution& part) {
+  total.generations += part.generations;
+  total.evaluations += part.evaluations;
+  total.complete = total.complete && part.complete;
+}
+
+/// Takes the tree of `part` when it is better, and counts its work in any case.
+void improve(Evolution& total, const Evolution& part) {
+  count_in(total, part);
+  if (part.score <= total.score) return;
+  total.tree = part.tree;
+  total.score = part.score;
+  total.geometry = part.geometry;
+}
+
+/// Where a local search may start without knowing anything: each primitive alone, and the union of all.
+std::vector<CsgTree> simple_trees(std::size_t primitives) {
+  std::vector<CsgTree> leaves;
+  for (PrimitiveIndex p = 0; p < primitives; ++p) leaves.push_back(CsgTree::leaf(p));
+  std::vector<CsgTree> trees{unite_all(leaves)};
+  trees.insert(trees.end(), leaves.begin(), leaves.end());
+  return trees;
+}
+
+constexpr std::size_t k_local_searches = 4;
+
+/// The best few simple trees, each improved by a local search.
+Evolution seed_by_local_search(const RankClasses& table, const RunContext& run, std::vector<CsgTree>& seeds) {
+  RankScratch scratch;
+  std::vector<CsgTree> starts = simple_trees(table.primitive_count());
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < starts.size(); ++i) order.emplace_back(-table.score(starts[i], scratch), i);
+  std::sort(order.begin() + 1, order.end());
+  Evolution best = local_search(table, starts.front(), {}, run);
+  seeds.push_back(best.tree);
+  for (std::size_t k = 1; k < std::min(order.size(), k_local_searches); ++k) {
+    const Evolution found = local_search(table, starts[order[k].second], {}, run);
+    seeds.push_back(found.tree);
+    improve(best, found);
+  }
+  return best;
+}
+
+/// The genetic algorithm, then a local search on its best; when that improves it, again from there.
+void search(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions& options, std::uint64_t item,
+            const RunContext& run, Evolution& best) {
+  constexpr int k_rounds = 4;
+  for (int round = 0; round < k_rounds; ++round) {
+    GaOptions round_options = options;
+    round_options.seed += static_cast<std::uint64_t>(round) << 32U;
+    improve(best, run_genetic_algorithm(table, seeds, round_options, item, run));
+    if (!options.polish || !best.complete) return;
+    const double before = best.score;
+    improve(best, local_search(table, best.tree, {}, run));
+    if (best.score <= before) return;
+    seeds.push_back(best.tree);
+  }
+}
+
+Evolution nothing_yet() {
+  Evolution evolution;
+  evolution.score = -std::numeric_limits<double>::infinity();
+  return evolution;
+}
+
+}  // namespace
+
+GaOptions paper_ga_options() {
+  GaOptions options;
+  options.idle_generations = 10;
+  options.listing_limit = 2;
+  options.listing_trust = 0;
+  options.seeds = false;
+  options.polish = false;
+  return options;
+}
+
+Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::uint64_t item, const RunContext& run) {
+  Evolution best = nothing_yet();
+  std::vector<CsgTree> seeds;
+  if (table.primitive_count() <= options.listing_limit) {
+    const Listing listing = list_trees(table);
+    RankScratch scratch;
+    best.tree = listing.best.tree;
+    best.score = listing.best.score;
+    best.geometry = table.geometry(best.tree, scratch);
+    best.evaluations = listing.evaluations;
+    if (best.geometry >= options.listing_trust * table.geometry_bound()) return best;
+    seeds.push_back(best.tree);
+  }
+  if (options.seeds) improve(best, seed_by_local_search(table, run, seeds));
+  search(table, std::move(seeds), options, item, run, best);
+  return best;
+}
+
+Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const GaOptions& options,
+                           std::uint64_t item, const RunContext& run) {
+  Evolution best = local_search(table, start, {}, run);
+  search(table, {start, best.tree}, options, item, run, best);
+  return best;
+}
+
+CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, const Clique& clique,
+                    const GaOptions& options, const RunContext& run) {
+  const double noise = estimate_noise(cloud, primitives);
+  const std::vector<RankClassesRequest> requests{{.primitives = clique}};
+  const PointPass pass =
+      build_rank_classes(cloud, primitives, requests, segmentation_tolerances({}, noise), {}, noise, run);
+  const RankClasses& table = pass.tables.front();
+  return simplify(renumber(evolve_tree(table, options, clique.front(), run).tree, table.primitives()));
+}
+
+}  // namespace cloud2csg

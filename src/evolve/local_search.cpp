@@ -1,0 +1,107 @@
+#include <array>
+
+#include "cloud2csg/evolve.hpp"
+#include "evolve/scored_tree.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::array k_binary{Operation::union_of, Operation::intersection, Operation::difference};
+
+CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
+  return operation == Operation::union_of       ? unite(a, b)
+         : operation == Operation::intersection ? intersect(a, b)
+                                                : subtract(a, b);
+}
+
+/// The best of the neighbours of one tree.
+class Neighbourhood {
+ public:
+  Neighbourhood(Evaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options)
+      : evaluator_(evaluator), centre_(centre), options_(options), best_(centre) {}
+
+  ScoredTree best() {
+    for (std::size_t node = 0; node < centre_.tree.size(); ++node) {
+      shrink(node);
+      if (options_.shrink_only) continue;
+      change_operation(node);
+      for (PrimitiveIndex p = 0; p < evaluator_.table().primitive_count(); ++p) {
+        insert(node, CsgTree::leaf(p));
+        if (!centre_.tree.nodes()[node].is_leaf() || centre_.tree.nodes()[node].primitive() != p) {
+          consider(node, CsgTree::leaf(p));
+        }
+      }
+    }
+    return best_;
+  }
+
+ private:
+  void consider(std::size_t node, const CsgTree& replacement) {
+    if (evaluator_.evaluations() >= options_.evaluation_limit) return;
+    ScoredTree neighbour{centre_.tree};
+    neighbour.tree.replace(node, replacement.nodes());
+    neighbour.score = evaluator_.score(neighbour.tree);
+    if (neighbour.score > best_.score) best_ = std::move(neighbour);
+  }
+
+  [[nodiscard]] CsgTree child(std::size_t root) const { return CsgTree(centre_.tree.subtree(root)); }
+
+  /// A node gives way to one of its children, as it is or complemented.
+  void shrink(std::size_t node) {
+    const CsgNode& here = centre_.tree.nodes()[node];
+    if (here.is_leaf()) return;
+    const CsgTree second = child(centre_.tree.second_child(node));
+    consider(node, second);
+    if (arity(here.operation()) < 2) return;
+    consider(node, complement(second));
+    consider(node, child(centre_.tree.first_child(node)));
+  }
+
+  void change_operation(std::size_t node) {
+    const Operation now = centre_.tree.nodes()[node].operation();
+    if (arity(now) < 2) return;
+    const CsgTree first = child(centre_.tree.first_child(node));
+    const CsgTree second = child(centre_.tree.second_child(node));
+    for (const Operation operation : k_binary) {
+      if (operation != now) consider(node, join(operation, first, second));
+    }
+    consider(node, subtract(second, first));
+  }
+
+  void insert(std::size_t node, const CsgTree& leaf) {
+    const CsgTree here = child(node);
+    for (const Operation operation : k_binary) consider(node, join(operation, here, leaf));
+    consider(node, subtract(leaf, here));
+  }
+
+  Evaluator& evaluator_;
+  const ScoredTree& centre_;
+  const LocalSearchOptions& options_;
+  ScoredTree best_;
+};
+
+}  // namespace
+
+Evolution local_search(const RankClasses& table, const CsgTree& start, const LocalSearchOptions& options,
+                       const RunContext& run) {
+  Evaluator evaluator(table);
+  ScoredTree current{start, evaluator.score(start)};
+  bool complete = true;
+  while (evaluator.evaluations() < options.evaluation_limit) {
+    if (run.stop.stop_requested()) {
+      complete = false;
+      break;
+    }
+    ScoredTree better = Neighbourhood(evaluator, current, options).best();
+    if (better.score <= current.score) break;
+    current = std::move(better);
+  }
+  return {.tree = current.tree,
+          .score = current.score,
+          .geometry = evaluator.geometry(current.tree),
+          .generations = 0,
+          .evaluations = evaluator.evaluations(),
+          .complete = complete};
+}
+
+}  // namespace cloud2csg

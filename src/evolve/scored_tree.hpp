@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+
+#include "cloud2csg/rank_classes.hpp"
+
+namespace cloud2csg {
+
+/// A tree with its E(t).
+struct ScoredTree {
+  CsgTree tree;
+  double score = 0;
+};
+
+/// Evaluates trees on a table and counts how many; one a thread.
+class Evaluator {
+ public:
+  explicit Evaluator(const RankClasses& table) : table_(table) {}
+
+  [[nodiscard]] double score(const CsgTree& tree) {
+    ++evaluations_;
+    return table_.score(tree, scratch_);
+  }
+  [[nodiscard]] double geometry(const CsgTree& tree) { return table_.geometry(tree, scratch_); }
+  [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
+  [[nodiscard]] const RankClasses& table() const { return table_; }
+
+ private:
+  const RankClasses& table_;
+  RankScratch scratch_;
+  std::size_t evaluations_ = 0;
+};
+
+}  // namespace cloud2csg

@@ -1,0 +1,51 @@
+#include "fitness/rank_classes_builder.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "fitness/select_kernels.hpp"
+
+namespace cloud2csg {
+
+template <class Rank>
+void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, const ClassTable& classes,
+                              const KeyLayout& layout) {
+  const std::size_t n = result.primitive_count();
+  const std::size_t row = 2 * n + 1;
+  ranks.assign(n * result.padded_count_, Rank{0});
+  const std::uint64_t mask = (std::uint64_t{1} << layout.bits) - 1;
+  for (std::size_t c = 0; c < classes.size(); ++c) {
+    const std::span<const std::uint64_t> key = classes.key(c);
+    const std::span<const double> sums = classes.sums(c);
+    float* const scores = &result.scores_[c * row];
+    for (std::size_t p = 0; p < n; ++p) {
+      const auto code = static_cast<std::size_t>(key[layout.word_of(p)] >> layout.shift_of(p) & mask);
+      const int rank = static_cast<int>(code) - static_cast<int>(n);
+      ranks[p * result.padded_count_ + c] = static_cast<Rank>(rank);
+      scores[code] = static_cast<float>(sums[2 * p]);
+      scores[2 * n - code] = static_cast<float>(sums[2 * p + 1]);
+      if (std::abs(rank) == 1) result.nearest_[c] = static_cast<std::uint16_t>(p);
+    }
+    result.geometry_bound_ += static_cast<double>(*std::max_element(scores, scores + row));
+  }
+}
+
+RankClasses RankClassesBuilder::build(std::span<const PrimitiveIndex> primitives, const ClassTable& classes,
+                                      const KeyLayout& layout, const Objective& objective) {
+  RankClasses result;
+  result.primitives_.assign(primitives.begin(), primitives.end());
+  result.point_count_ = classes.point_count();
+  result.class_count_ = classes.size();
+  result.padded_count_ = std::max<std::size_t>((classes.size() + k_class_padding - 1) / k_class_padding, 1) * k_class_padding;
+  result.objective_ = objective;
+  result.scores_.assign(result.padded_count_ * (2 * primitives.size() + 1), 0.0F);
+  result.nearest_.assign(classes.size(), 0);
+  if (primitives.size() <= RankClasses::k_byte_limit) {
+    fill(result, result.ranks_.emplace<AlignedVector<std::int8_t>>(), classes, layout);
+  } else {
+    fill(result, result.ranks_.emplace<AlignedVector<std::int16_t>>(), classes, layout);
+  }
+  return result;
+}
+
+}  // namespace cloud2csg
