@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cloud2csg/primitive.hpp"
+
+namespace cloud2csg {
+
+/// A parsed formula of x, y and z. It holds the variables that its parser reads, so it stays where it was made and
+/// serves one thread.
+class ExpressionEvaluator {
+ public:
+  /// @throws Error (where = "distance") when the formula does not parse.
+  explicit ExpressionEvaluator(const Expression& expression);
+  ~ExpressionEvaluator();
+  ExpressionEvaluator(const ExpressionEvaluator&) = delete;
+  ExpressionEvaluator& operator=(const ExpressionEvaluator&) = delete;
+  ExpressionEvaluator(ExpressionEvaluator&&) = delete;
+  ExpressionEvaluator& operator=(ExpressionEvaluator&&) = delete;
+
+  [[nodiscard]] double value(const Eigen::Vector3d& local);
+
+  /// Central differences; local z where they vanish or are not finite.
+  [[nodiscard]] Eigen::Vector3d gradient(const Eigen::Vector3d& local);
+
+ private:
+  struct Parser;
+  std::unique_ptr<Parser> parser_;
+  double step_;
+};
+
+/// @throws Error (where = "distance") when the formula does not parse, uses other names than x, y and z, assigns, or
+/// gives more than one value.
+void validate_formula(const std::string& formula);
+
+}  // namespace cloud2csg

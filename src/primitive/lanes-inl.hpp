@@ -1,0 +1,129 @@
+// Included once per instruction set (Highway's foreach_target), hence no ordinary include guard.
+#if defined(CLOUD2CSG_PRIMITIVE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLOUD2CSG_PRIMITIVE_LANES_INL
+#undef CLOUD2CSG_PRIMITIVE_LANES_INL
+#else
+#define CLOUD2CSG_PRIMITIVE_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cmath>
+
+/// The few operations in which the formulas are written, for one double (tag PlainTag) and for a Highway vector of
+/// doubles (tag hn::ScalableTag<double>). All are exact in the sense of IEEE 754 and choose alike between equal
+/// operands and between zeros of either sign, so that one formula gives the same bits in every instruction set.
+HWY_BEFORE_NAMESPACE();
+namespace cloud2csg::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One point at a time: the plain reference.
+struct PlainTag {};
+
+HWY_INLINE double broadcast(PlainTag /*tag*/, double value) {
+  return value;
+}
+HWY_INLINE double square_root(double a) {
+  return std::sqrt(a);
+}
+HWY_INLINE double absolute(double a) {
+  return std::abs(a);
+}
+HWY_INLINE double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+HWY_INLINE double larger(double a, double b) {
+  return a > b ? a : b;
+}
+HWY_INLINE double with_sign_of(double magnitude, double sign) {
+  return std::copysign(magnitude, sign);
+}
+HWY_INLINE double negated(double a) {
+  return -a;
+}
+HWY_INLINE double select(bool condition, double yes, double no) {
+  return condition ? yes : no;
+}
+HWY_INLINE bool both(bool a, bool b) {
+  return a && b;
+}
+HWY_INLINE bool either(bool a, bool b) {
+  return a || b;
+}
+
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> broadcast(Tag tag, double value) {
+  return hn::Set(tag, value);
+}
+template <class V>
+HWY_INLINE V square_root(V a) {
+  return hn::Sqrt(a);
+}
+template <class V>
+HWY_INLINE V absolute(V a) {
+  return hn::Abs(a);
+}
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+// x86's minpd and maxpd are just the comparison below: the second operand where both are equal.
+template <class V>
+HWY_INLINE V smaller(V a, V b) {
+  return hn::Min(a, b);
+}
+template <class V>
+HWY_INLINE V larger(V a, V b) {
+  return hn::Max(a, b);
+}
+#else
+template <class V>
+HWY_INLINE V smaller(V a, V b) {
+  return hn::IfThenElse(a < b, a, b);
+}
+template <class V>
+HWY_INLINE V larger(V a, V b) {
+  return hn::IfThenElse(a > b, a, b);
+}
+#endif
+template <class V>
+HWY_INLINE V with_sign_of(V magnitude, V sign) {
+  return hn::CopySign(magnitude, sign);
+}
+template <class V>
+HWY_INLINE V negated(V a) {
+  return hn::Neg(a);
+}
+template <class M, class V>
+HWY_INLINE V select(M condition, V yes, V no) {
+  return hn::IfThenElse(condition, yes, no);
+}
+template <class M>
+HWY_INLINE M both(M a, M b) {
+  return hn::And(a, b);
+}
+template <class M>
+HWY_INLINE M either(M a, M b) {
+  return hn::Or(a, b);
+}
+
+/// The number type of a tag: double, or a vector of doubles.
+template <class Tag>
+using Lanes = decltype(broadcast(Tag(), 0.0));
+
+template <class V>
+struct Vector {
+  V x, y, z;
+};
+
+/// Signed distance and its gradient, each in one value per lane.
+template <class V>
+struct Field {
+  V distance;
+  Vector<V> gradient;
+};
+
+/// Squares below this count as zero. Their roots still have room to be multiplied and inverted without overflow.
+inline constexpr double k_tiny_square = 1e-280;
+
+}  // namespace cloud2csg::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
