@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cloud2csg/evolve.hpp"
+#include "cloud2csg/objective.hpp"
+#include "cloud2csg/segmentation.hpp"
+
+/// The whole method: a cloud and fitted primitives in, one tree out.
+namespace cloud2csg {
+
+enum class Strategy {
+  automatic,  ///< whatever is best: partitions, checked and polished on the whole cloud
+  partition,  ///< the paper's: a tree per maximal clique, merged
+  baseline,   ///< the paper's baseline: all primitives in one genetic algorithm
+};
+
+/// What runs in parallel in the search. The result is the same for each.
+enum class Parallel {
+  none,        ///< one thread for everything
+  population,  ///< the trees of a generation
+  partitions,  ///< the partitions
+  both,
+};
+
+/// "auto", "partition", "baseline"; "none", "population", "partitions", "both".
+[[nodiscard]] std::string_view to_string(Strategy strategy);
+[[nodiscard]] std::string_view to_string(Parallel parallel);
+
+struct ExtractOptions {
+  Strategy strategy = Strategy::automatic;
+  Parallel parallel = Parallel::both;
+  SegmentationOptions segmentation = {};
+  ObjectiveOptions objective = {};
+  GaOptions search = {};  ///< its seed is not used: see below
+  /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
+  std::optional<double> overlap_tolerance = {};
+  /// Take nodes out of the merged tree as long as E over the whole cloud grows. The paper does not.
+  bool polish = true;
+  /// Stop the search after so many seconds, with the best tree so far. The one option that makes a result depend on the
+  /// machine's speed.
+  std::optional<double> time_limit_seconds = {};
+  std::uint64_t seed = 1;
+};
+
+/// As in the paper: its weights, its genetic algorithm, no polish; strategy partition.
+[[nodiscard]] ExtractOptions paper_options();
+
+/// @throws Error naming the field when an option is out of range.
+void validate(const ExtractOptions& options);
+
+/// Wall-clock seconds of each stage; those of the command line (reading, writing) are filled in by it.
+struct StageSeconds {
+  double read = 0, clean = 0, normals = 0, detect = 0;
+  double segment = 0, overlap = 0, partition = 0, classes = 0, search = 0, merge = 0, simplify = 0;
+  double write = 0;
+  double extraction = 0;  ///< from cloud and primitives in memory to the simplified tree
+  double total = 0;
+};
+
+struct PartitionStatistics {
+  std::vector<PrimitiveIndex> primitives;  ///< indices into the input's primitives
+  std::size_t points = 0, classes = 0;
+  std::size_t generations = 0, evaluations = 0;
+  double score = 0;           ///< E of the partition's tree over its own points
+  std::size_t tree_size = 0;  ///< after simplification
+};
+
+/// How a component's partition trees became one.
+enum class MergeWay {
+  single,                  ///< there was one partition
+  paper,                   ///< the paper's order went through and the result held
+  largest_common_subtree,  ///< the same by largest common subtrees first
+  joint,                   ///< partitions that did not merge were solved together
+  search,                  ///< a search over the whole component from the best of these
+};
+[[nodiscard]] std::string_view to_string(MergeWay way);
+
+struct MergeStatistics {
+  std::vector<MergeWay> ways;       ///< one a connected component
+  std::size_t merges = 0;           ///< pairs of trees put together
+  std::size_t blocked = 0;          ///< pairs that had a common subtree but no valid merge node
+  std::size_t failed_checks = 0;    ///< merged trees that fell short of what the partitions promised
+  std::size_t joint_solutions = 0;  ///< pairs of partitions solved together
+  double worst_shortfall = 0;       ///< of the result: share of a primitive's promised score that is missing, worst one
+};
+
+struct TreeStatistics {
+  std::size_t size = 0, leaves = 0, depth = 0;
+};
+
+struct FitStatistics {
+  double objective = 0;      ///< E of the result over all points
+  double rms_distance = 0;   ///< of the points to the surface of the result
+  double p95_distance = 0;   ///< 95 % of the points are nearer than this
+  double rms_angle_deg = 0;  ///< between normals and the surface's
+};
+
+struct ExtractStatistics {
+  Strategy strategy = Strategy::automatic;
+  Parallel parallel = Parallel::both;
+  int threads = 1;
+  std::uint64_t seed = 1;
+  bool complete = true;
+  std::size_t points = 0, unassigned_points = 0;
+  std::size_t primitives = 0;
+  double noise = 0;
+  std::vector<std::size_t> clique_histogram;
+  std::size_t components = 0;
+  std::vector<PartitionStatistics> partitions;
+  MergeStatistics merge;
+  TreeStatistics before_simplification, tree;
+  FitStatistics fit;
+  StageSeconds seconds;
+  std::vector<std::string> warnings;
+};
+
+struct Extraction {
+  CsgTree tree;  ///< over the primitives that were given
+  ExtractStatistics statistics;
+};
+
+/// Section 4 of the paper from cloud to tree, with a merge that is checked against the cloud and cannot fail.
+/// The same seed gives the same tree for any number of threads.
+/// A triggered stop token ends the search with the best tree so far (statistics.complete is false).
+/// @throws Error when the cloud has no normals or no points, there are no primitives, or no point is near any of them;
+/// Cancelled when stopped before the search began.
+[[nodiscard]] Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                     const ExtractOptions& options = {}, const RunContext& run = {});
+
+/// The statistics as the JSON of the command line's --stats.
+[[nodiscard]] std::string to_json(const ExtractStatistics& statistics);
+
+}  // namespace cloud2csg
