@@ -18,20 +18,24 @@ struct PointCloud {
   [[nodiscard]] bool has_normals() const { return !normals.empty(); }
 };
 
-/// Reads .ply (ascii, binary little and big endian), .pcd (ascii, binary, binary_compressed), .xyz .xyzn .txt .pts (text); the format
-/// follows the file's ending. Coordinates may be float or double; extra properties are skipped. Normals are brought to unit length.
+/// Reads .ply (ascii, binary little and big endian), .pcd (ascii, binary, binary_compressed), and as text .xyz and .txt
+/// (3 columns, or 6 with normals), .xyzn (6) and .pts (count, then 3, 4 or 7); the format follows the file's ending.
+/// Coordinates may be of any numeric type; other properties, lists and elements are skipped, in text so are
+/// lines that start with # or //. Normals are brought to unit length; those that have it keep their bits.
 /// O(n); 10 million points take seconds.
 /// @throws Error naming the file and line or byte: missing or unreadable file, unknown ending, wrong or truncated
-/// header or data, no points, a coordinate that is not finite, a normal of length zero.
+/// header or data, no points, a coordinate that is not finite, a normal of length zero. Cancelled.
 [[nodiscard]] PointCloud read_point_cloud(const std::filesystem::path& file, const RunContext& run = {});
 
 struct CloudWriteOptions {
   bool binary = true;            ///< .ply and .pcd; the others are text always
-  bool double_precision = true;  ///< keeps the coordinates to the last bit in binary files
+  bool double_precision = true;  ///< keeps every bit, in text too; false: float, a file of half the size
 };
 
-/// Writes by the file's ending, as read_point_cloud reads. Nothing half-written: a temporary file, then a rename.
-/// @throws Error when the file cannot be written, the disk is full, or the ending is unknown.
-void write_point_cloud(const std::filesystem::path& file, const PointCloud& cloud, const CloudWriteOptions& options = {});
+/// Writes by the file's ending, as read_point_cloud reads; .pts has no place for normals and leaves them out, .xyzn
+/// needs them. Nothing half-written: a temporary file, then a rename. O(n)
+/// @throws Error when the file cannot be written, the disk is full, the ending is unknown, or a number is not finite.
+void write_point_cloud(const std::filesystem::path& file, const PointCloud& cloud,
+                       const CloudWriteOptions& options = {});
 
 }  // namespace cloud2csg

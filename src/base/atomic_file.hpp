@@ -7,7 +7,8 @@
 namespace cloud2csg {
 
 /// A file that appears under its name only when it is whole: writes go to a temporary beside it, commit() flushes
-/// and renames; without commit() the temporary is removed and an older file of that name stays.
+/// and renames; without commit() the temporary is removed and an older file of that name stays. A symbolic link is
+/// followed; what is no regular file (a pipe, /dev/stdout) is written directly.
 /// All functions throw Error naming the file, with the system's reason (disk full, no such folder...).
 class AtomicFile {
  public:
@@ -22,10 +23,12 @@ class AtomicFile {
   void commit();
 
  private:
+  void open_temporary();
   [[noreturn]] void fail(const char* what) const;
 
-  std::filesystem::path target_;
-  std::filesystem::path temporary_;
+  std::filesystem::path target_;       ///< as the caller names it, for messages
+  std::filesystem::path destination_;  ///< the same with links followed
+  std::filesystem::path temporary_;    ///< empty when the target is written directly
   std::FILE* file_ = nullptr;
 };
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "cloud2csg/run_context.hpp"
+
+namespace cloud2csg {
+
+/// A place in a file, for messages: a line of text, counted from 1, or a byte, counted from 0.
+struct FilePosition {
+  enum class Unit { line, byte };
+  Unit unit;
+  std::size_t number;
+};
+
+/// The bytes of a file, with the name to use in messages.
+class FileContent {
+ public:
+  /// Reads the file, or its first `limit` bytes. O(n).
+  /// @throws Error when it is missing, unreadable or a directory; Cancelled.
+  explicit FileContent(const std::filesystem::path& file, const RunContext& run = {},
+                       std::size_t limit = std::numeric_limits<std::size_t>::max());
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::string_view bytes() const { return {bytes_.get(), size_}; }
+
+  /// @throws Error with this file's name.
+  [[noreturn]] void fail(FilePosition where, std::string expected, std::string remedy = {}) const;
+  [[noreturn]] void fail(std::string expected, std::string remedy = {}) const;
+
+ private:
+  void grow(std::size_t capacity);
+
+  std::string name_;
+  std::unique_ptr<char[]> bytes_;  // NOLINT(modernize-avoid-c-arrays): a vector would write every byte first
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace cloud2csg

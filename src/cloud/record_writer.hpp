@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "base/atomic_file.hpp"
+#include "cloud2csg/point_cloud.hpp"
+
+namespace cloud2csg {
+
+/// Which numbers each point becomes, and how they are written.
+struct RecordFormat {
+  bool binary;            ///< little endian, else text: a row a point, the shortest that reads back to the same number
+  bool double_precision;  ///< else float
+  bool normals;           ///< after the coordinates
+};
+
+/// Writes all points in large blocks. @throws Error when a number is not finite or out of a float's range.
+void write_records(AtomicFile& out, const PointCloud& cloud, const RecordFormat& format);
+
+}  // namespace cloud2csg
