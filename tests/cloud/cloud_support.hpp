@@ -41,6 +41,7 @@ inline void expect_equal(const PointCloud& a, const PointCloud& b) {
 
 /// Writes a file without waiting for the disk, as the library's own writer does: there are thousands of them.
 inline void put_file(const std::filesystem::path& file, std::string_view bytes) {
+  std::filesystem::remove(file);  // ext4 waits for the disk when a file is cut to nothing and written again
   std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
