@@ -44,6 +44,12 @@ HWY_INLINE double negated(double a) {
 HWY_INLINE double select(bool condition, double yes, double no) {
   return condition ? yes : no;
 }
+HWY_INLINE double select_or_zero(bool condition, double yes) {
+  return condition ? yes : 0.0;
+}
+HWY_INLINE double zero_or_select(bool condition, double no) {
+  return condition ? 0.0 : no;
+}
 HWY_INLINE bool both(bool a, bool b) {
   return a && b;
 }
@@ -94,6 +100,14 @@ HWY_INLINE V negated(V a) {
 template <class M, class V>
 HWY_INLINE V select(M condition, V yes, V no) {
   return hn::IfThenElse(condition, yes, no);
+}
+template <class M, class V>
+HWY_INLINE V select_or_zero(M condition, V yes) {
+  return hn::IfThenElseZero(condition, yes);
+}
+template <class M, class V>
+HWY_INLINE V zero_or_select(M condition, V no) {
+  return hn::IfThenZeroElse(condition, no);
 }
 template <class M>
 HWY_INLINE M both(M a, M b) {

@@ -45,8 +45,8 @@ class CylinderProfile {
     const auto is_outside = squared > tiny_;
     const auto side_is_nearest = excess_r >= excess_z;
     const V length = select(is_outside, square_root(squared), one_);
-    const V direction_r = select(is_outside, beyond_r, select(side_is_nearest, one_, zero_));
-    const V direction_z = select(is_outside, beyond_z, select(side_is_nearest, zero_, one_));
+    const V direction_r = select(is_outside, beyond_r, select_or_zero(side_is_nearest, one_));
+    const V direction_z = select(is_outside, beyond_z, zero_or_select(side_is_nearest, one_));
     return {select(is_outside, length, larger(excess_r, excess_z)), direction_r, with_sign_of(direction_z, z), length};
   }
 
@@ -82,15 +82,15 @@ class ConeProfile {
     const auto is_regular = squared > tiny_;
     const V length = select(is_regular, square_root(squared), one_);
     const V outward = select(is_inside, minus_one_, one_);
-    const V distance = select(is_regular, length, zero_);
+    const V distance = select_or_zero(is_regular, length);
 
     // From the nearest point of the edge to the point, turned outward; on the edge, the edge's normal.
     const V across_or_unit = select(is_regular, across * outward, one_);
-    const V beyond_outward = select(is_regular, beyond * outward, zero_);
+    const V beyond_outward = select_or_zero(is_regular, beyond * outward);
     const V slant_r = beyond_outward * tangent_r_ + across_or_unit * tangent_z_;
     const V slant_z = beyond_outward * tangent_z_ - across_or_unit * tangent_r_;
     const V up = select(is_regular, cap_z * outward, one_);
-    const V cap_direction_r = select(is_regular, cap_r * outward, zero_);
+    const V cap_direction_r = select_or_zero(is_regular, cap_r * outward);
     return {distance * outward, select(cap_is_nearest, cap_direction_r, slant_r),
             select(cap_is_nearest, select(z < zero_, negated(up), up), slant_z), length};
   }

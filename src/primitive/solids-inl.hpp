@@ -116,9 +116,9 @@ class BoxFormula {
 
     const auto x_is_nearest = both(excess.x >= excess.y, excess.x >= excess.z);
     const auto y_is_nearest = excess.y >= excess.z;
-    const V inner_x = select(x_is_nearest, one_, zero_);
-    const V inner_y = select(x_is_nearest, zero_, select(y_is_nearest, one_, zero_));
-    const V inner_z = select(x_is_nearest, zero_, select(y_is_nearest, zero_, one_));
+    const V inner_x = select_or_zero(x_is_nearest, one_);
+    const V inner_y = zero_or_select(x_is_nearest, select_or_zero(y_is_nearest, one_));
+    const V inner_z = zero_or_select(x_is_nearest, zero_or_select(y_is_nearest, one_));
     const V inner_distance = larger(larger(excess.x, excess.y), excess.z);
 
     return {select(is_outside, length, inner_distance),
