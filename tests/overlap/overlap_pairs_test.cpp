@@ -146,11 +146,11 @@ TEST(OverlapPairs, TorusTouchesFromOutside) {
   const Primitive torus = make(Torus{.major_radius = 1, .minor_radius = 0.25});
   for (const double gap : {0.0, 0.9e-6}) {
     EXPECT_TRUE(overlap(torus, make(Sphere{.radius = 0.5}, {1.75 + gap, 0, 0})));
-    EXPECT_TRUE(overlap(torus, make(Box{.size = {1, 1, 1}}, {0.2, 0.1, 0.75 + gap})));
+    EXPECT_TRUE(overlap(torus, make(Box{.size = {1, 1, 1}}, {1.2, 0.1, 0.75 + gap})));
   }
   EXPECT_FALSE(overlap(torus, make(Sphere{.radius = 0.5}, {1.77, 0, 0})));
   EXPECT_TRUE(overlap(torus, make(Sphere{.radius = 0.5}, {1.77, 0, 0}), 0.021));
-  EXPECT_FALSE(overlap(torus, make(Box{.size = {1, 1, 1}}, {0.2, 0.1, 0.77})));
+  EXPECT_FALSE(overlap(torus, make(Box{.size = {1, 1, 1}}, {1.2, 0.1, 0.77})));
 }
 
 TEST(OverlapPairs, DisplacementMovesTheSurface) {
