@@ -108,11 +108,13 @@ class CsgTree {
 [[nodiscard]] CsgTree renumber(const CsgTree& tree, std::span<const PrimitiveIndex> new_index);
 
 /// Equal for trees that differ only by commutation and association of unions and intersections (and, within a
-/// difference, by the order of what is subtracted: (a - b) - c and (a - c) - b). O(size log size).
+/// difference, by the order of what is subtracted: (a - b) - c and (a - c) - b). Others differ but for an accident of
+/// 1 in 2^64. O(size).
 [[nodiscard]] std::uint64_t structural_hash(const CsgTree& tree);
-/// structural_hash of every subtree: one value per node index, in one pass. O(size log size).
+/// structural_hash of every subtree: one value per node index, in one pass. A part of a chain has the hash of
+/// the part as it is stored: b | c within a | (b | c), but not within (a | b) | c. O(size).
 [[nodiscard]] std::vector<std::uint64_t> structural_hashes(const CsgTree& tree);
-/// Equality up to commutation and association. O(size log size).
+/// Equality up to commutation and association, exactly (no hashes are trusted). O(size log size).
 [[nodiscard]] bool structurally_equal(const CsgTree& a, const CsgTree& b);
 
 /// Text form, e.g. `(a | b) - c`: `|` union, `&` intersection, `-` difference, `~` complement, `empty`, `full`.

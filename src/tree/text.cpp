@@ -29,12 +29,10 @@ std::string written_id(std::string_view id) {
   return quoted + '"';
 }
 
-/// Parentheses wherever an operand is a union or difference under another operator, even where `|` and `-` binding
-/// alike would do without: people misread `a | b - c`. Chains of one operator are written flat.
+/// Parentheses wherever operations meet, even where precedence would do without: people misread `a | b - c & d`.
+/// Chains of one operation are written flat.
 bool needs_parentheses(Operation parent, bool is_second, Operation child) {
   if (arity(child) < 2) return false;
-  if (parent == Operation::complement) return true;
-  if (child == Operation::intersection) return false;
   return child != parent || (child == Operation::difference && is_second);
 }
 
