@@ -44,6 +44,8 @@ class RankClasses {
 
   /// The sum over the points of E(t): all of it but the cost of size. O(classes x size / SIMD lanes + classes).
   [[nodiscard]] double geometry(const CsgTree& tree, RankScratch& scratch) const;
+  /// The same, one class after the other: what geometry() is held against.
+  [[nodiscard]] double reference_geometry(const CsgTree& tree) const;
   /// E(t).
   [[nodiscard]] double score(const CsgTree& tree, RankScratch& scratch) const {
     return geometry(tree, scratch) - objective_.alpha * static_cast<double>(tree.size());
@@ -53,7 +55,7 @@ class RankClasses {
   [[nodiscard]] double geometry_bound() const { return geometry_bound_; }
 
   /// Scores by class, for judging where a tree is good: one value a class, what its points add to E(t).
-  [[nodiscard]] std::vector<float> class_scores(const CsgTree& tree) const;
+  [[nodiscard]] std::vector<float> class_scores(const CsgTree& tree, RankScratch& scratch) const;
   /// The local index of the primitive nearest to a class's points.
   [[nodiscard]] std::span<const std::uint16_t> nearest_primitive() const { return nearest_; }
 

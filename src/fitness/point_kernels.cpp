@@ -86,8 +86,8 @@ void compute_exponents(const BlockField& field, const BlockNormals& normals, con
     const auto gy = hn::Load(d, &field.gradient_y[i]);
     const auto gz = hn::Load(d, &field.gradient_z[i]);
     const auto dot = gx * hn::Load(d, &normals.x[i]) + gy * hn::Load(d, &normals.y[i]) + gz * hn::Load(d, &normals.z[i]);
-    const auto length = hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
-    const auto cosine = dot / length;
+    const auto cosine =
+        parameters.unit_gradient ? dot : dot / hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
     const auto scaled = f * beta;
     const auto chord = hn::Max(one - hn::Abs(cosine), hn::Zero(d));
     // Squares beyond the range of floats count as 87 in exp_negative, long before they overflow.
@@ -124,8 +124,8 @@ void contributions_of_block(const BlockField& field, const BlockNormals& normals
     const auto near_score = quantised(at_distance + near_side);
     const auto far_score = quantised(at_distance + far_side);
     const auto faces_away = hn::Load(d, &exponents.cosine[i]) < hn::Zero(d);
-    hn::Store(hn::IfThenElse(faces_away, far_score, near_score), d, &out.plain[i]);
-    hn::Store(hn::IfThenElse(faces_away, near_score, far_score), d, &out.complement[i]);
+    hn::StoreInterleaved2(hn::IfThenElse(faces_away, far_score, near_score),
+                          hn::IfThenElse(faces_away, near_score, far_score), d, &out.pairs[2 * i]);
   }
 }
 

@@ -30,15 +30,16 @@ struct BlockField {
 
 /// What a primitive contributes to E(t) at the points of a block, were it the selected one.
 struct BlockContributions {
-  alignas(64) std::array<float, k_block_points> plain{};       ///< as it is
-  alignas(64) std::array<float, k_block_points> complement{};  ///< its complement, with the opposite gradient
-  BlockMask member{};                                          ///< points that belong to the primitive
+  /// In turn for each point: as it is, and as its complement, with the opposite gradient.
+  alignas(64) std::array<float, 2 * k_block_points> pairs{};
+  BlockMask member{};  ///< points that belong to the primitive
 };
 
 struct ContributionParameters {
   double beta;
   double gamma;
   SegmentationTolerances tolerances;
+  bool unit_gradient;  ///< gradients have length one: no need to measure it
 };
 
 /// Contributions are rounded to multiples of 2^-22, so that their sums in double precision are exact, whatever the

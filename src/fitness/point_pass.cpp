@@ -18,13 +18,18 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// Whether the gradient has length one wherever it is defined: all but what a user's formula or a displacement bends.
+bool has_unit_gradient(const Primitive& primitive) {
+  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
+}
+
 /// What every worker reads.
 struct PassInput {
   const PointCloud& cloud;
   const PrimitiveSet& primitives;
   std::span<const RankClassesRequest> requests;
-  ContributionParameters parameters;
-  std::vector<KeyLayout> layouts;
+  std::vector<ContributionParameters> parameters;  // by primitive
+  std::vector<KeyLayout> layouts;                  // by request
 };
 
 /// What a worker gathers from its share of the points; shares are added up at the end.
@@ -46,11 +51,16 @@ struct Share {
 
 BlockMask first_bits(std::size_t count) {
   BlockMask mask{};
-  for (std::size_t i = 0; i < count; ++i) mask[i / 64] |= std::uint64_t{1} << (i % 64);
+  for (std::size_t w = 0; w < mask.size(); ++w) {
+    const std::size_t bits = count > 64 * w ? std::min<std::size_t>(count - 64 * w, 64) : 0;
+    mask[w] = bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  }
   return mask;
 }
 
+/// Of the points begin .. begin + count - 1, those whose index is a multiple of the stride.
 BlockMask every_kth(std::size_t begin, std::size_t count, std::size_t stride) {
+  if (stride == 1) return first_bits(count);
   BlockMask mask{};
   for (std::size_t i = (stride - begin % stride) % stride; i < count; i += stride) {
     mask[i / 64] |= std::uint64_t{1} << (i % 64);
@@ -62,15 +72,6 @@ std::size_t count_bits(const BlockMask& mask) {
   std::size_t count = 0;
   for (const std::uint64_t word : mask) count += static_cast<std::size_t>(std::popcount(word));
   return count;
-}
-
-template <class Visit>
-void for_each_bit(const BlockMask& mask, const Visit& visit) {
-  for (std::size_t w = 0; w < mask.size(); ++w) {
-    for (std::uint64_t word = mask[w]; word != 0; word &= word - 1) {
-      visit(w * 64 + static_cast<std::size_t>(std::countr_zero(word)));
-    }
-  }
 }
 
 /// One worker: takes blocks of points through distances, membership, contributions, ranks and classes.
@@ -114,7 +115,7 @@ class Worker {
                       .gradient_x = std::span(field.gradient_x).first(count),
                       .gradient_y = std::span(field.gradient_y).first(count),
                       .gradient_z = std::span(field.gradient_z).first(count)});
-      compute_contributions(field, normals_, input_.parameters, contributions_[p]);
+      compute_contributions(field, normals_, input_.parameters[p], contributions_[p]);
       BlockMask& member = contributions_[p].member;
       for (std::size_t w = 0; w < member.size(); ++w) {
         member[w] &= in_block[w];
@@ -136,11 +137,21 @@ class Worker {
     return chosen;
   }
 
+  /// The places of the bits that are set.
+  [[nodiscard]] std::span<const std::uint16_t> places_of(const BlockMask& mask) {
+    std::size_t found = 0;
+    for (std::size_t w = 0; w < mask.size(); ++w) {
+      for (std::uint64_t word = mask[w]; word != 0; word &= word - 1) {
+        places_[found++] = static_cast<std::uint16_t>(w * 64 + static_cast<std::size_t>(std::countr_zero(word)));
+      }
+    }
+    return std::span(places_).first(found);
+  }
+
   void group(std::size_t k, std::size_t begin, std::size_t count) {
     const RankClassesRequest& request = input_.requests[k];
-    const BlockMask chosen = points_of(request, begin, count);
-    const std::size_t points = count_bits(chosen);
-    if (points == 0) return;
+    const std::span<const std::uint16_t> chosen = places_of(points_of(request, begin, count));
+    if (chosen.empty()) return;
     columns_.clear();
     for (const PrimitiveIndex p : request.primitives) columns_.push_back(fields_[p].distance.data());
     if (request.primitives.size() <= RankClasses::k_byte_limit) {
@@ -149,15 +160,21 @@ class Worker {
       sort_rank_keys(columns_, input_.layouts[k], keys_.data());
     }
     ClassTable& table = share_.tables[k];
-    table.count_points(points);
-    for_each_bit(chosen, [&](std::size_t i) {
-      const std::uint32_t class_index = table.find_or_insert(&keys_[i], k_block_points);
-      double* sum = table.sums(class_index).data();
-      for (const PrimitiveIndex p : request.primitives) {
-        *sum++ += static_cast<double>(contributions_[p].plain[i]);
-        *sum++ += static_cast<double>(contributions_[p].complement[i]);
-      }
-    });
+    table.count_points(chosen.size());
+    const std::span<std::uint32_t> classes = std::span(classes_).first(chosen.size());
+    table.find_or_insert(keys_.data(), chosen, classes);
+    pairs_.clear();
+    for (const PrimitiveIndex p : request.primitives) pairs_.push_back(contributions_[p].pairs.data());
+    for (std::size_t i = 0; i < chosen.size(); ++i) add_contributions(chosen[i], table.sums(classes[i]));
+  }
+
+  void add_contributions(std::size_t point, std::span<double> sums) const {
+    double* sum = sums.data();
+    for (const float* pairs : pairs_) {
+      sum[0] += static_cast<double>(pairs[2 * point]);
+      sum[1] += static_cast<double>(pairs[2 * point + 1]);
+      sum += 2;
+    }
   }
 
   const PassInput& input_;
@@ -165,6 +182,9 @@ class Worker {
   std::vector<BlockField> fields_;
   std::vector<BlockContributions> contributions_;
   std::vector<const double*> columns_;
+  std::vector<const float*> pairs_;
+  std::array<std::uint16_t, k_block_points> places_{};
+  std::array<std::uint32_t, k_block_points> classes_{};
   std::vector<std::uint64_t, boost::alignment::aligned_allocator<std::uint64_t, 64>> keys_;
   Share share_;
 };
@@ -205,7 +225,10 @@ PointPass build_rank_classes(const PointCloud& cloud, const PrimitiveSet& primit
                              const ObjectiveOptions& objective, double noise, const RunContext& run) {
   assert(cloud.has_normals());
   const Objective scale = resolve(objective, cloud.size(), noise);
-  PassInput input{cloud, primitives, requests, {scale.beta, scale.gamma, tolerances}, {}};
+  PassInput input{cloud, primitives, requests, {}, {}};
+  for (const Primitive& primitive : primitives) {
+    input.parameters.push_back({scale.beta, scale.gamma, tolerances, has_unit_gradient(primitive)});
+  }
   for (const RankClassesRequest& request : requests) input.layouts.emplace_back(request.primitives.size());
   Share share = process_all(input, run);
   PointPass pass;

@@ -23,19 +23,29 @@ double RankClasses::geometry(const CsgTree& tree, RankScratch& scratch) const {
       ranks_);
 }
 
-std::vector<float> RankClasses::class_scores(const CsgTree& tree) const {
+std::vector<float> RankClasses::class_scores(const CsgTree& tree, RankScratch& scratch) const {
   std::vector<float> scores(class_count_);
+  std::visit(
+      [&](const auto& ranks) {
+        tree_class_scores(table_of(ranks, scores_, primitive_count(), padded_count_), tree.nodes(), scratch, scores);
+      },
+      ranks_);
+  return scores;
+}
+
+double RankClasses::reference_geometry(const CsgTree& tree) const {
+  double sum = 0;
   const std::size_t row = 2 * primitive_count() + 1;
   std::visit(
       [&](const auto& ranks) {
         const auto table = table_of(ranks, scores_, primitive_count(), padded_count_);
         for (std::size_t c = 0; c < class_count_; ++c) {
           const int rank = select_rank(table, tree.nodes(), c);
-          scores[c] = scores_[c * row + static_cast<std::size_t>(static_cast<int>(primitive_count()) + rank)];
+          sum += static_cast<double>(scores_[c * row + static_cast<std::size_t>(static_cast<int>(primitive_count()) + rank)]);
         }
       },
       ranks_);
-  return scores;
+  return sum;
 }
 
 std::span<const std::int8_t> RankClasses::column(PrimitiveIndex local) const {

@@ -90,19 +90,49 @@ HWY_INLINE double look_up(const RankTable<Rank>& table, const Rank* column, std:
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-template <class Rank>
-HWY_INLINE double geometry(const RankTable<Rank>& table, std::span<const CsgNode> nodes, RankScratch& scratch) {
+/// Gives the tree's column to `use`, a chunk at a time.
+template <class Rank, class Use>
+HWY_INLINE void for_each_chunk(const RankTable<Rank>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                               const Use& use) {
   AlignedVector<Rank>& stack = stack_memory(scratch, Rank{});
   const std::size_t most_operands = nodes.size() / 2 + 1;
   if (stack.size() < most_operands * k_chunk) stack.resize(most_operands * k_chunk);
   if (scratch.operands.size() < most_operands) scratch.operands.resize(most_operands);
-  double sum = 0;
   for (std::size_t begin = 0; begin < table.padded; begin += k_chunk) {
     const std::size_t count = std::min(k_chunk, table.padded - begin);
-    const Rank* column = select_chunk(table, nodes, begin, count, stack.data(), scratch.operands.data());
-    sum += look_up(table, column, begin, count);
+    use(select_chunk(table, nodes, begin, count, stack.data(), scratch.operands.data()), begin, count);
   }
+}
+
+template <class Rank>
+HWY_INLINE double geometry(const RankTable<Rank>& table, std::span<const CsgNode> nodes, RankScratch& scratch) {
+  double sum = 0;
+  for_each_chunk(table, nodes, scratch, [&](const Rank* column, std::size_t begin, std::size_t count) {
+    sum += look_up(table, column, begin, count);
+  });
   return sum;
+}
+
+template <class Rank>
+HWY_INLINE void scores_by_class(const RankTable<Rank>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                                std::span<float> scores) {
+  const std::size_t row = 2 * table.primitives + 1;
+  for_each_chunk(table, nodes, scratch, [&](const Rank* column, std::size_t begin, std::size_t count) {
+    const std::size_t end = std::min(begin + count, scores.size());
+    for (std::size_t c = begin; c < end; ++c) {
+      scores[c] = table.scores[c * row + table.primitives + static_cast<std::size_t>(column[c - begin])];
+    }
+  });
+}
+
+void scores_of_bytes(const RankTable<std::int8_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                     std::span<float> scores) {
+  scores_by_class(table, nodes, scratch, scores);
+}
+
+void scores_of_words(const RankTable<std::int16_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                     std::span<float> scores) {
+  scores_by_class(table, nodes, scratch, scores);
 }
 
 double geometry_of_bytes(const RankTable<std::int8_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch) {
@@ -140,6 +170,8 @@ namespace cloud2csg {
 
 HWY_EXPORT(geometry_of_bytes);
 HWY_EXPORT(geometry_of_words);
+HWY_EXPORT(scores_of_bytes);
+HWY_EXPORT(scores_of_words);
 HWY_EXPORT(geometry_of_column);
 HWY_EXPORT(combine_bytes);
 
@@ -149,6 +181,16 @@ double tree_geometry(const RankTable<std::int8_t>& table, std::span<const CsgNod
 
 double tree_geometry(const RankTable<std::int16_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch) {
   return HWY_DYNAMIC_DISPATCH(geometry_of_words)(table, nodes, scratch);
+}
+
+void tree_class_scores(const RankTable<std::int8_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                       std::span<float> scores) {
+  HWY_DYNAMIC_DISPATCH(scores_of_bytes)(table, nodes, scratch, scores);
+}
+
+void tree_class_scores(const RankTable<std::int16_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                       std::span<float> scores) {
+  HWY_DYNAMIC_DISPATCH(scores_of_words)(table, nodes, scratch, scores);
 }
 
 RankClasses::ColumnGeometry column_geometry(const RankTable<std::int8_t>& table, std::span<const std::int8_t> column) {

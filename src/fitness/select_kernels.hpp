@@ -25,11 +25,17 @@ inline constexpr std::size_t k_class_padding = 64;
 [[nodiscard]] double tree_geometry(const RankTable<std::int16_t>& table, std::span<const CsgNode> nodes,
                                    RankScratch& scratch);
 
+/// The score that the tree selects in each class; `scores` has one entry a class.
+void tree_class_scores(const RankTable<std::int8_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                       std::span<float> scores);
+void tree_class_scores(const RankTable<std::int16_t>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
+                       std::span<float> scores);
+
 /// Sums of the scores that a column of ranks, and its negation, look up.
 [[nodiscard]] RankClasses::ColumnGeometry column_geometry(const RankTable<std::int8_t>& table,
                                                           std::span<const std::int8_t> column);
 
-/// The plain reference: one class at a time, a stack of numbers. Also gives the score of a single class.
+/// The plain reference: one class at a time, a stack of numbers.
 template <class Rank>
 [[nodiscard]] int select_rank(const RankTable<Rank>& table, std::span<const CsgNode> nodes, std::size_t class_index);
 
