@@ -21,8 +21,10 @@ AlignedBox enclosing_box(const OrientedBox& box) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       const double weight = std::abs(rotation(row, column));
-      // 0 * infinity must count as 0: an axis that the box does not extend along.
-      if (weight > std::numeric_limits<double>::epsilon()) half[row] += weight * box.half_size[column];
+      // An infinite axis counts only where it is not across the row: 0 * infinity is no extent, and neither is the
+      // rounding error of a zero times infinity.
+      const bool is_across = weight <= std::numeric_limits<double>::epsilon();
+      if (!(is_across && std::isinf(box.half_size[column]))) half[row] += weight * box.half_size[column];
     }
   }
   return {box.pose.position - half, box.pose.position + half};

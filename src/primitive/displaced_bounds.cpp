@@ -2,76 +2,118 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <queue>
 #include <variant>
 #include <vector>
 
 namespace cloud2csg {
 namespace {
 
-/// Levels of halving, and the number of cells at which the subdivision ends earlier.
-constexpr int k_levels = 7;
-constexpr std::size_t k_cell_budget = 8192;
+/// Halvings of a side of the start box down to the smallest cells: 1/256.
+constexpr int k_levels = 8;
+/// Cells to divide per side of the bounds before the search settles for what it has.
+constexpr int k_cell_budget = 256;
 
-/// The cells of one level, which all have the same size.
-struct Cells {
-  Points centres;
-  Eigen::Vector3d half_size;
-
-  [[nodiscard]] AlignedBox box(std::size_t i) const { return {centres[i] - half_size, centres[i] + half_size}; }
+struct Interval {
+  double low, high;
 };
 
-Cells subdivided(const Cells& cells) {
-  Cells children{.centres = {}, .half_size = 0.5 * cells.half_size};
-  children.centres.reserve(8 * cells.centres.size());
-  for (std::size_t i = 0; i < cells.centres.size(); ++i) {
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      const Eigen::Vector3d sign((octant & 1U) != 0 ? 1 : -1, (octant & 2U) != 0 ? 1 : -1, (octant & 4U) != 0 ? 1 : -1);
-      children.centres.push_back(cells.centres[i] + sign.cwiseProduct(children.half_size));
-    }
-  }
-  return children;
+Interval product(const Interval& a, const Interval& b) {
+  const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+  return {low, high};
 }
 
-/// Subdivides with what is known to be in the bounds in hand: cells within it need no further look.
+/// All values of the sine between two angles.
+Interval sine_range(double from, double to) {
+  const auto has_turn_at = [&](double angle) {
+    const double turns = std::ceil((from - angle) / (2 * std::numbers::pi));
+    return angle + 2 * std::numbers::pi * turns <= to;
+  };
+  const auto [low, high] = std::minmax({std::sin(from), std::sin(to)});
+  return {has_turn_at(-0.5 * std::numbers::pi) ? -1 : low, has_turn_at(0.5 * std::numbers::pi) ? 1 : high};
+}
+
+/// A part of the start box, as far as `level` halvings led; `reach` is how far it extends in the search's direction.
+struct Cell {
+  Eigen::Vector3d centre;
+  int level;
+  double reach;
+  double least_distance;  ///< of the displaced solid in the cell, or below
+
+  /// The farther first; among equals the one that is most likely to hold a point of the solid.
+  friend bool operator<(const Cell& a, const Cell& b) {
+    return a.reach != b.reach ? a.reach < b.reach : a.least_distance > b.least_distance;
+  }
+};
+
 class BoundsSearch {
  public:
-  explicit BoundsSearch(const Primitive& primitive) : displaced_(primitive), undisplaced_(primitive) {
+  BoundsSearch(const Primitive& primitive, const AlignedBox& start)
+      : undisplaced_(primitive),
+        frequency_(primitive.displacement->frequency),
+        spread_(primitive.pose.orientation.conjugate().toRotationMatrix().cwiseAbs()),
+        start_(start) {
     undisplaced_.displacement.reset();
   }
 
-  AlignedBox run(const AlignedBox& start) {
-    Cells cells{.centres = {}, .half_size = 0.5 * start.sizes()};
-    cells.centres.push_back(start.center());
-    for (int level = 0; level < k_levels && 8 * cells.centres.size() <= k_cell_budget; ++level) {
-      cells = undecided(subdivided(cells));
+  /// The largest coordinate of the solid along sign * axis, times the sign; -infinity when the solid is empty.
+  [[nodiscard]] double farthest(int axis, double sign) const {
+    std::priority_queue<Cell> cells;
+    cells.push({start_.center(), 0, reach(start_.center(), 0, axis, sign), -1});
+    for (int divided = 0; !cells.empty(); ++divided) {
+      const Cell cell = cells.top();
+      // Whatever else is left reaches less far.
+      if (cell.level == k_levels || divided == k_cell_budget) return cell.reach;
+      cells.pop();
+      for (const Cell& child : children(cell, axis, sign)) {
+        if (child.least_distance <= 0) cells.push(child);
+      }
     }
-    AlignedBox result = known_;
-    for (std::size_t i = 0; i < cells.centres.size(); ++i) result.extend(cells.box(i));
-    return result;
+    return -std::numeric_limits<double>::infinity();
   }
 
  private:
-  /// The cells that may hold points of the solid beyond those known. Both terms of the distance are Lipschitz: the
-  /// shape's with 1, the product of sines with its frequency.
-  Cells undecided(const Cells& cells) {
-    const std::vector<double> total = signed_distance(displaced_, cells.centres);
-    const std::vector<double> base = signed_distance(undisplaced_, cells.centres);
-    for (std::size_t i = 0; i < total.size(); ++i) {
-      if (total[i] <= 0) known_.extend(cells.centres[i]);
-    }
-    const double radius = cells.half_size.norm();
-    const double sine_change = displaced_.displacement->frequency * radius;
-    Cells rest{.centres = {}, .half_size = cells.half_size};
-    for (std::size_t i = 0; i < total.size(); ++i) {
-      const double least_sine = std::max(total[i] - base[i] - sine_change, -1.0);
-      if (base[i] - radius + least_sine <= 0 && !known_.contains(cells.box(i)))
-        rest.centres.push_back(cells.centres[i]);
-    }
-    return rest;
+  [[nodiscard]] Eigen::Vector3d half_size(int level) const { return std::ldexp(0.5, -level) * start_.sizes(); }
+
+  [[nodiscard]] double reach(const Eigen::Vector3d& centre, int level, int axis, double sign) const {
+    return sign * centre[axis] + half_size(level)[axis];
   }
 
-  Primitive displaced_, undisplaced_;
-  AlignedBox known_;
+  [[nodiscard]] std::vector<Cell> children(const Cell& cell, int axis, double sign) const {
+    const int level = cell.level + 1;
+    const Eigen::Vector3d half = half_size(level);
+    Points centres(8);
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      const Eigen::Vector3d side((octant & 1U) != 0 ? 1 : -1, (octant & 2U) != 0 ? 1 : -1, (octant & 4U) != 0 ? 1 : -1);
+      centres.set(octant, cell.centre + side.cwiseProduct(half));
+    }
+    const std::vector<double> distances = signed_distance(undisplaced_, centres);
+    std::vector<Cell> result;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const double least = distances[i] - half.norm() + least_displacement(centres[i], half);
+      result.push_back({centres[i], level, reach(centres[i], level, axis, sign), least});
+    }
+    return result;
+  }
+
+  /// The least value of the product of sines in the solid's own box around a cell of the world.
+  [[nodiscard]] double least_displacement(const Eigen::Vector3d& centre, const Eigen::Vector3d& half) const {
+    const Eigen::Vector3d angle = frequency_ * undisplaced_.pose.to_local(centre);
+    const Eigen::Vector3d change = frequency_ * (spread_ * half);
+    Interval range{1, 1};
+    for (int axis = 0; axis < 3; ++axis) {
+      range = product(range, sine_range(angle[axis] - change[axis], angle[axis] + change[axis]));
+    }
+    return range.low;
+  }
+
+  Primitive undisplaced_;
+  double frequency_;
+  Eigen::Matrix3d spread_;  ///< from half sizes in the world to half sizes in the solid's frame
+  AlignedBox start_;
 };
 
 }  // namespace
@@ -80,7 +122,13 @@ AlignedBox displaced_bounds(const Primitive& primitive, const AlignedBox& start)
   assert(primitive.displacement);
   // A formula that is only known as text may change arbitrarily fast.
   if (std::holds_alternative<Expression>(primitive.shape)) return start;
-  return BoundsSearch(primitive).run(start);
+  const BoundsSearch search(primitive, start);
+  AlignedBox result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.max()[axis] = search.farthest(axis, 1);
+    result.min()[axis] = -search.farthest(axis, -1);
+  }
+  return result;
 }
 
 }  // namespace cloud2csg

@@ -4,8 +4,8 @@
 
 namespace cloud2csg {
 
-/// Bounds of a displaced solid that lies within `start`, by subdividing `start` and dropping the cells in which the
-/// distance cannot be negative. Encloses for sure; tight to about a hundredth of `start`. About a millisecond.
+/// Bounds of a displaced solid that lies within `start`, by branch and bound over `start` for each of the six sides.
+/// Encloses for sure; each side is tight to a two-hundredth of `start`, or looser where the search would take too long.
 [[nodiscard]] AlignedBox displaced_bounds(const Primitive& primitive, const AlignedBox& start);
 
 }  // namespace cloud2csg

@@ -1,0 +1,199 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "cloud2csg/primitive.hpp"
+#include "primitive/random_primitives.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using testing::any_analytic_shape;
+using testing::any_exact_primitive;
+using testing::any_pose;
+using testing::any_primitive;
+using testing::distance_at;
+using testing::gradient_at;
+using testing::points_near;
+using testing::vector_within;
+
+/// Membership straight from each solid's definition, in its own frame.
+struct Contains {
+  Eigen::Vector3d p;
+
+  bool operator()(const Box& box) const { return (2 * p.cwiseAbs().array() < box.size.array()).all(); }
+  bool operator()(const Sphere& sphere) const { return p.norm() < sphere.radius; }
+  bool operator()(const Cylinder& cylinder) const {
+    return std::hypot(p.x(), p.y()) < cylinder.radius && 2 * std::abs(p.z()) < cylinder.height;
+  }
+  bool operator()(const Cone& cone) const {
+    const double t = p.z() / cone.height + 0.5;
+    return t > 0 && t < 1 && std::hypot(p.x(), p.y()) < cone.radius_bottom + t * (cone.radius_top - cone.radius_bottom);
+  }
+  bool operator()(const Torus& torus) const {
+    return std::hypot(std::hypot(p.x(), p.y()) - torus.major_radius, p.z()) < torus.minor_radius;
+  }
+  bool operator()(const HalfSpace& /*half_space*/) const { return p.z() < 0; }
+  bool operator()(const Polytope& polytope) const {
+    return std::ranges::all_of(polytope.planes, [&](const Plane& plane) { return plane.normal.dot(p) < plane.offset; });
+  }
+  bool operator()(const Expression& /*expression*/) const {
+    return Eigen::Vector3d(p.x(), p.y() / 1.5, 2 * p.z()).norm() < 1;  // any_expression()
+  }
+};
+
+RC_GTEST_PROP(SignedDistance, IsNegativeInsideOnly, ()) {
+  Primitive primitive = any_primitive();
+  primitive.displacement.reset();
+  const Points points = points_near(primitive, 32);
+  const std::vector<double> distance = signed_distance(primitive, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::abs(distance[i]) < 1e-12) continue;
+    const bool inside = std::visit(Contains{primitive.pose.to_local(points[i])}, primitive.shape);
+    RC_ASSERT((distance[i] < 0) == inside);
+  }
+}
+
+RC_GTEST_PROP(SignedDistance, AddsTheProductOfSinesInTheSolidsFrame, ()) {
+  Primitive displaced = any_primitive();
+  Primitive base = displaced;
+  base.displacement.reset();
+  displaced.displacement = Displacement{.frequency = testing::real(0.1, 20)};
+  const double k = displaced.displacement->frequency;
+  const Points points = points_near(displaced, 16);
+  const std::vector<double> with = signed_distance(displaced, points);
+  const std::vector<double> without = signed_distance(base, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p = k * displaced.pose.to_local(points[i]);
+    const double expected = without[i] + std::sin(p.x()) * std::sin(p.y()) * std::sin(p.z());
+    RC_ASSERT(std::abs(with[i] - expected) < 1e-12);
+  }
+}
+
+RC_GTEST_PROP(SignedDistance, NeverChangesFasterThanThePoint, ()) {
+  const Primitive primitive{.id = "p", .shape = any_analytic_shape(), .pose = any_pose()};
+  const Points a = points_near(primitive, 16);
+  const Points b = points_near(primitive, 16);
+  const std::vector<double> fa = signed_distance(primitive, a);
+  const std::vector<double> fb = signed_distance(primitive, b);
+  for (std::size_t i = 0; i < a.size(); ++i) RC_ASSERT(std::abs(fa[i] - fb[i]) <= (a[i] - b[i]).norm() + 1e-13);
+}
+
+RC_GTEST_PROP(SignedDistance, LeadsToTheSurfaceAlongTheGradient, ()) {
+  const Primitive primitive = any_exact_primitive();
+  RC_ASSERT(has_exact_distance(primitive));
+  const Points points = points_near(primitive, 16);
+  const std::vector<double> distance = signed_distance(primitive, points);
+  const Points slope = gradient(primitive, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    RC_ASSERT(std::abs(slope[i].norm() - 1) < 1e-12);
+    RC_ASSERT(std::abs(distance_at(primitive, points[i] - distance[i] * slope[i])) < 1e-11);
+  }
+}
+
+RC_GTEST_PROP(SignedDistance, OfAPolytopeIsExactInsideAndALowerBoundOutside, ()) {
+  const Primitive primitive{.id = "q", .shape = testing::any_polytope(), .pose = any_pose()};
+  const Points points = points_near(primitive, 16);
+  const std::vector<double> distance = signed_distance(primitive, points);
+  const Points slope = gradient(primitive, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double reached = distance_at(primitive, points[i] - distance[i] * slope[i]);
+    // The foot on the nearest plane is on the solid when the point is inside; else it is on the plane, not before it.
+    const bool holds = distance[i] < 0 ? std::abs(reached) < 1e-12 : reached > -1e-12;
+    RC_ASSERT(holds);
+  }
+}
+
+RC_GTEST_PROP(SignedDistance, MovesWithTheSolid, ()) {
+  const Primitive primitive = any_primitive();
+  const Pose motion = any_pose();
+  Primitive moved = primitive;
+  moved.pose = compose(motion, primitive.pose);
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d point = primitive.pose.position + vector_within(3);
+    const Eigen::Vector3d there = motion.to_world(point);
+    RC_ASSERT(std::abs(distance_at(moved, there) - distance_at(primitive, point)) < 1e-12);
+    const Eigen::Vector3d turned = motion.orientation * gradient_at(primitive, point);
+    // On a ridge the two may take different sides; then the distance itself bends there.
+    const Eigen::Vector3d beside = motion.orientation * gradient_at(primitive, point + Eigen::Vector3d::Constant(1e-9));
+    if ((beside - turned).norm() < 1e-6) RC_ASSERT((gradient_at(moved, there) - turned).norm() < 1e-6);
+  }
+}
+
+RC_GTEST_PROP(Gradient, IsTheSlopeOfTheDistance, ()) {
+  const Primitive primitive = any_primitive();
+  constexpr double k_step = 1e-6;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d point = primitive.pose.position + vector_within(3);
+    const Eigen::Vector3d slope = gradient_at(primitive, point);
+    Eigen::Vector3d expected;
+    bool is_smooth = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d step = k_step * Eigen::Vector3d::Unit(axis);
+      expected[axis] = (distance_at(primitive, point + step) - distance_at(primitive, point - step)) / (2 * k_step);
+      is_smooth = is_smooth && (gradient_at(primitive, point + step) - slope).norm() < 1e-3 &&
+                  (gradient_at(primitive, point - step) - slope).norm() < 1e-3;
+    }
+    if (is_smooth) RC_ASSERT((slope - expected).norm() < 1e-6);
+  }
+}
+
+/// Solids and points of their own frame where the distance has no gradient.
+class Degenerate : public ::testing::TestWithParam<std::tuple<Shape, Eigen::Vector3d, double>> {};
+
+TEST_P(Degenerate, HasAUnitGradientAndTheRightDistance) {
+  const auto& [shape, local, distance] = GetParam();
+  // Unrotated, so that the point stays exactly where it is degenerate; a second time in a random position.
+  for (const Pose& pose : {Pose{}, Pose{.position = {1, 2, 3}, .orientation = {0.5, 0.5, -0.5, 0.5}}}) {
+    const Primitive primitive{.id = "p", .shape = shape, .pose = pose};
+    const Eigen::Vector3d point = pose.to_world(local);
+    EXPECT_NEAR(gradient_at(primitive, point).norm(), 1, 1e-12);
+    EXPECT_NEAR(distance_at(primitive, point), distance, 1e-15);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Loci, Degenerate,
+    ::testing::Values(std::tuple(Shape(Sphere{1}), Eigen::Vector3d(0, 0, 0), -1.0),           // centre
+                      std::tuple(Shape(Sphere{1}), Eigen::Vector3d(0, 1e-200, 0), -1.0),      // its square underflows
+                      std::tuple(Shape(Box{{2, 2, 2}}), Eigen::Vector3d(0, 0, 0), -1.0),      // all faces equally near
+                      std::tuple(Shape(Box{{2, 2, 2}}), Eigen::Vector3d(0.5, 0.5, 0), -0.5),  // before an edge
+                      std::tuple(Shape(Box{{2, 2, 2}}), Eigen::Vector3d(1, 1, 1), 0.0),       // corner
+                      std::tuple(Shape(Cylinder{1, 4}), Eigen::Vector3d(0, 0, 0), -1.0),      // axis
+                      std::tuple(Shape(Cylinder{1, 4}), Eigen::Vector3d(0, 0, 3), 1.0),       // axis, above
+                      std::tuple(Shape(Cylinder{1, 4}), Eigen::Vector3d(1, 0, 2), 0.0),       // rim
+                      std::tuple(Shape(Cone{3, 0, 4}), Eigen::Vector3d(0, 0, 0), -1.2),       // axis, slant nearest
+                      std::tuple(Shape(Cone{3, 0, 4}), Eigen::Vector3d(0, 0, 2), 0.0),        // apex
+                      std::tuple(Shape(Cone{3, 0, 4}), Eigen::Vector3d(0, 0, 5), 3.0),        // above the apex
+                      std::tuple(Shape(Cone{3, 0, 4}), Eigen::Vector3d(3, 0, -2), 0.0),       // rim
+                      std::tuple(Shape(Cone{0, 3, 4}), Eigen::Vector3d(0, 0, -2), 0.0),       // apex below
+                      std::tuple(Shape(Torus{2, 1}), Eigen::Vector3d(0, 0, 0), 1.0),          // axis
+                      std::tuple(Shape(Torus{2, 1}), Eigen::Vector3d(2, 0, 0), -1.0),         // core circle
+                      std::tuple(Shape(Expression{"sqrt(x^2+y^2+z^2)-1",
+                                                  AlignedBox(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1))}),
+                                 Eigen::Vector3d(0, 0, 0), -1.0)));
+
+TEST(TypeName, IsThatOfModelFiles) {
+  EXPECT_EQ(type_name(Box{{1, 1, 1}}), "box");
+  EXPECT_EQ(type_name(Sphere{}), "sphere");
+  EXPECT_EQ(type_name(Cylinder{}), "cylinder");
+  EXPECT_EQ(type_name(Cone{}), "cone");
+  EXPECT_EQ(type_name(Torus{}), "torus");
+  EXPECT_EQ(type_name(HalfSpace{}), "half_space");
+  EXPECT_EQ(type_name(Polytope{}), "polytope");
+  EXPECT_EQ(type_name(Expression{}), "expression");
+}
+
+TEST(HasExactDistance, IsFalseForWhatIsOnlyABound) {
+  EXPECT_TRUE(has_exact_distance({.id = "c", .shape = Cone{1, 2, 3}}));
+  EXPECT_TRUE(has_exact_distance({.id = "h", .shape = HalfSpace{}}));
+  EXPECT_FALSE(has_exact_distance({.id = "q", .shape = Polytope{}}));
+  EXPECT_FALSE(has_exact_distance({.id = "e", .shape = Expression{}}));
+  EXPECT_FALSE(has_exact_distance({.id = "b", .shape = Box{{1, 1, 1}}, .displacement = Displacement{2}}));
+}
+
+}  // namespace
+}  // namespace cloud2csg

@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/primitive.hpp"
+#include "primitive/random_primitives.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The field that validate() refuses, or "" when it takes the solid.
+std::string refused_field(const Primitive& primitive) {
+  try {
+    validate(primitive);
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.parts().expected.empty());
+    return error.parts().where;
+  }
+  return "";
+}
+
+std::string refused_field(const Shape& shape) {
+  return refused_field(Primitive{.id = "p", .shape = shape});
+}
+
+Expression formula(const std::string& text) {
+  return {.distance = text, .bounds = AlignedBox(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1))};
+}
+
+Polytope cube() {
+  Polytope polytope;
+  for (int axis = 0; axis < 3; ++axis) {
+    polytope.planes.push_back({Eigen::Vector3d::Unit(axis), 1});
+    polytope.planes.push_back({-Eigen::Vector3d::Unit(axis), 1});
+  }
+  return polytope;
+}
+
+RC_GTEST_PROP(Validate, TakesEveryGoodSolid, ()) {
+  RC_ASSERT(refused_field(testing::any_primitive()).empty());
+}
+
+TEST(Validate, RefusesLengthsThatAreNotPositive) {
+  for (const double bad : {0.0, -1.0, k_infinity, k_nan}) {
+    EXPECT_EQ(refused_field(Box{{1, bad, 1}}), "size");
+    EXPECT_EQ(refused_field(Sphere{bad}), "radius");
+    EXPECT_EQ(refused_field(Cylinder{bad, 1}), "radius");
+    EXPECT_EQ(refused_field(Cylinder{1, bad}), "height");
+    EXPECT_EQ(refused_field(Cone{1, 1, bad}), "height");
+    EXPECT_EQ(refused_field(Torus{bad, 1}), "major_radius");
+    EXPECT_EQ(refused_field(Torus{1, bad}), "minor_radius");
+    const Primitive displaced{.id = "p", .shape = Sphere{1}, .displacement = Displacement{bad}};
+    EXPECT_EQ(refused_field(displaced), "displacement/frequency");
+  }
+}
+
+TEST(Validate, TakesAConeWithATipButNotWithTwo) {
+  EXPECT_EQ(refused_field(Cone{1, 0, 1}), "");
+  EXPECT_EQ(refused_field(Cone{0, 1, 1}), "");
+  EXPECT_EQ(refused_field(Cone{0, 0, 1}), "radius_bottom");
+  EXPECT_EQ(refused_field(Cone{-1, 1, 1}), "radius_bottom");
+  EXPECT_EQ(refused_field(Cone{1, k_nan, 1}), "radius_top");
+}
+
+TEST(Validate, RefusesATorusThatCrossesItself) {
+  EXPECT_EQ(refused_field(Torus{1, 1}), "");
+  EXPECT_EQ(refused_field(Torus{1, 1.001}), "minor_radius");
+}
+
+TEST(Validate, RefusesPolytopesWithoutVolumeOrEnd) {
+  EXPECT_EQ(refused_field(cube()), "");
+
+  Polytope open = cube();
+  open.planes.pop_back();
+  EXPECT_EQ(refused_field(open), "planes");
+  EXPECT_EQ(refused_field(Polytope{}), "planes");
+
+  Polytope slab = cube();  // open along z, though every normal has its opposite
+  slab.planes.resize(4);
+  EXPECT_EQ(refused_field(slab), "planes");
+
+  Polytope empty = cube();
+  empty.planes[0].offset = -2;
+  EXPECT_EQ(refused_field(empty), "planes");
+
+  Polytope flat = cube();
+  flat.planes[0].offset = -1;
+  EXPECT_EQ(refused_field(flat), "planes");
+}
+
+TEST(Validate, RefusesPlanesThatAreNotNormalised) {
+  Polytope scaled = cube();
+  scaled.planes[3].normal *= 2;
+  EXPECT_EQ(refused_field(scaled), "planes/3");
+  Polytope infinite = cube();
+  infinite.planes[5].offset = k_infinity;
+  EXPECT_EQ(refused_field(infinite), "planes/5");
+}
+
+TEST(Validate, TakesAPolytopeFarFromItsOrigin) {
+  Polytope far = cube();
+  for (Plane& plane : far.planes) plane.offset += plane.normal.dot(Eigen::Vector3d(1000, -2000, 500));
+  EXPECT_EQ(refused_field(far), "");
+  EXPECT_EQ(corners(far).size(), 8U);
+}
+
+TEST(Validate, RefusesFormulasThatAreNotOfXYZ) {
+  EXPECT_EQ(refused_field(formula("x^2 + y^2 + z^2 - 1")), "");
+  EXPECT_EQ(refused_field(formula("(x <= 0.5) ? x : 2 * x - 0.5")), "");
+  for (const char* bad : {"", "x +", "x + w", "f(x)", "x = 2", "x, y", "\"text\"", "((x)"}) {
+    EXPECT_EQ(refused_field(formula(bad)), "distance") << bad;
+  }
+  EXPECT_EQ(refused_field(formula("sqrt(x)")), "distance") << "no value where x is negative";
+}
+
+TEST(Validate, RefusesBoundsThatEncloseNothing) {
+  Expression expression = formula("x");
+  expression.bounds.max().y() = k_infinity;
+  EXPECT_EQ(refused_field(expression), "bounds");
+  expression.bounds.max().y() = -1;
+  EXPECT_EQ(refused_field(expression), "bounds");
+  expression.bounds = AlignedBox();
+  EXPECT_EQ(refused_field(expression), "bounds");
+}
+
+TEST(Validate, RefusesPosesThatAreNotRigid) {
+  Primitive primitive{.id = "p", .shape = Sphere{1}};
+  primitive.pose.position.z() = k_nan;
+  EXPECT_EQ(refused_field(primitive), "pose/position");
+  primitive.pose = {.position = {1, 2, 3}, .orientation = {1, 0.01, 0, 0}};
+  EXPECT_EQ(refused_field(primitive), "pose/quaternion");
+  primitive.pose.orientation = {k_nan, 0, 0, 0};
+  EXPECT_EQ(refused_field(primitive), "pose/quaternion");
+  primitive.pose.orientation = {1 + 5e-7, 0, 0, 0};
+  EXPECT_EQ(refused_field(primitive), "");
+}
+
+}  // namespace
+}  // namespace cloud2csg
