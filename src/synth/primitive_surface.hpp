@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "base/random.hpp"
+#include "cloud2csg/mesh.hpp"
+#include "cloud2csg/primitive.hpp"
+
+namespace cloud2csg {
+
+/// A point of a primitive's own surface and the outward normal of that primitive there, in the world.
+struct SurfacePoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;
+};
+
+/// The surface of one primitive, to draw points from, uniformly by area.
+struct PrimitiveSurface {
+  double area = 0.0;  ///< 0 when no part of it lies in the region
+  /// Absent where a drawn candidate turned out to be no point of the surface: draw again, the area is an upper bound.
+  std::function<std::optional<SurfacePoint>(RandomStream&)> draw = {};
+};
+
+/// Closed forms for every plain shape; a half-space gives the part of its plane around `region` (finite). Expressions
+/// and displaced solids are meshed finely, drawn by the mesh's area and moved onto f = 0 along the gradient: uniform
+/// as far as the mesh has the area of the surface.
+/// @throws Cancelled
+[[nodiscard]] PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region,
+                                            const RunContext& run);
+
+}  // namespace cloud2csg
