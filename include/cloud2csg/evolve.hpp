@@ -12,12 +12,13 @@
 namespace cloud2csg {
 
 struct GaOptions {
-  int population = 150;        ///< trees a generation (paper)
-  int elites = 2;              ///< best trees that go to the next generation unchanged (paper)
-  int tournament = 2;          ///< a parent is the best of so many drawn at random (paper)
+  int population = 150;         ///< trees a generation (paper)
+  int elites = 2;               ///< best trees that go to the next generation unchanged (paper)
+  int tournament = 2;           ///< a parent is the best of so many drawn at random (paper)
   double crossover_rate = 0.3;  ///< chance that two parents swap random subtrees (paper)
   double mutation_rate = 0.3;   ///< chance that a child is mutated (paper)
-  double new_tree_rate = 0.5;   ///< of the mutations: the whole tree is replaced by a new one, else a random subtree (paper)
+  double new_tree_rate =
+      0.5;  ///< of the mutations: the whole tree is replaced by a new one, else a random subtree (paper)
   /// Edges on the longest path of a tree. Absent: sqrt(pi / 2 * n (n - 1)) for n primitives (paper).
   std::optional<int> height_limit = {};
   /// Stop when the best score has not improved for so many generations. The paper's 10 finds the true solid of M0's
@@ -33,8 +34,9 @@ struct GaOptions {
   /// A listed tree must reach this share of what no tree can exceed (RankClasses::geometry_bound), else the genetic
   /// algorithm looks for a tree that uses a primitive more than once. 0: what was listed is taken as it is (paper).
   double listing_trust = 0.9;
-  bool seeds = true;   ///< the first generation also has the results of local searches from simple trees
-  bool polish = true;  ///< a local search on the best tree at the end; when it finds a better one, the algorithm goes on
+  bool seeds = true;  ///< the first generation also has the results of local searches from simple trees
+  bool polish =
+      true;  ///< a local search on the best tree at the end; when it finds a better one, the algorithm goes on
 
   std::uint64_t seed = 1;
 };

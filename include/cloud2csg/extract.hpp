@@ -64,7 +64,7 @@ struct StageSeconds {
 };
 
 struct PartitionStatistics {
-  std::vector<PrimitiveIndex> primitives;  ///< indices into the input's primitives
+  std::vector<PrimitiveIndex> primitives = {};  ///< indices into the input's primitives
   std::size_t points = 0, classes = 0;
   std::size_t generations = 0, evaluations = 0;
   double score = 0;           ///< E of the partition's tree over its own points
@@ -82,12 +82,13 @@ enum class MergeWay {
 [[nodiscard]] std::string_view to_string(MergeWay way);
 
 struct MergeStatistics {
-  std::vector<MergeWay> ways;       ///< one a connected component
-  std::size_t merges = 0;           ///< pairs of trees put together
-  std::size_t blocked = 0;          ///< pairs that had a common subtree but no valid merge node
-  std::size_t failed_checks = 0;    ///< merged trees that fell short of what the partitions promised
-  std::size_t joint_solutions = 0;  ///< pairs of partitions solved together
-  double worst_shortfall = 0;       ///< of the result: share of a primitive's promised score that is missing, worst one
+  std::vector<MergeWay> ways;                    ///< one a connected component
+  std::size_t merges = 0;                        ///< pairs of trees put together
+  std::size_t blocked = 0;                       ///< pairs that had a common subtree but no valid merge node
+  std::size_t failed_checks = 0;                 ///< merged trees that fell short of what the partitions promised
+  std::size_t joint_solutions = 0;               ///< pairs of partitions solved together
+  std::size_t generations = 0, evaluations = 0;  ///< of searches over whole components and their polish
+  double worst_shortfall = 0;  ///< of the result: share of a primitive's promised score that is missing, worst one
 };
 
 struct TreeStatistics {

@@ -13,10 +13,10 @@
 ///
 /// At a point, a tree over primitives p takes the value +f_p or -f_p of exactly one of them, and its gradient is that
 /// primitive's up to sign. Which one depends only on the order of the values +-f_p there. So each point has a vector of
-/// signed ranks: the rank (1 = smallest, ties by index) of |f_p| among the primitives, times the sign of f_p (0 counts as
-/// positive); min, max and negation act on them exactly as on distances. Points with the same vector form a class: every
-/// tree selects the same signed primitive at all of them, so their scores can be summed beforehand, once for each of the
-/// 2 n signed ranks.
+/// signed ranks: the rank (1 = smallest, ties by index) of |f_p| among the primitives, times the sign of f_p (0 counts
+/// as positive); min, max and negation act on them exactly as on distances. Points with the same vector form a class:
+/// every tree selects the same signed primitive at all of them, so their scores can be summed beforehand, once for each
+/// of the 2 n signed ranks.
 namespace cloud2csg {
 
 template <class T>
@@ -99,11 +99,11 @@ struct RankClassesRequest {
 };
 
 struct PointPass {
-  std::vector<RankClasses> tables;              ///< one a request
+  std::vector<RankClasses> tables;               ///< one a request
   std::vector<std::size_t> points_of_primitive;  ///< how many points belong to each primitive
-  std::size_t unassigned = 0;                   ///< points that belong to no primitive
-  double segment_seconds = 0;                   ///< of all threads: distances, gradients, membership
-  double classes_seconds = 0;                   ///< of all threads: contributions, ranks, classes
+  std::size_t unassigned = 0;                    ///< points that belong to no primitive
+  double segment_seconds = 0;                    ///< of all threads: distances, gradients, membership
+  double classes_seconds = 0;                    ///< of all threads: contributions, ranks, classes
 };
 
 /// The one pass over the points: signed distances and normals, segmentation, contributions, ranks and classes for

@@ -105,8 +105,8 @@ Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::u
   return best;
 }
 
-Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const GaOptions& options,
-                           std::uint64_t item, const RunContext& run) {
+Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const GaOptions& options, std::uint64_t item,
+                           const RunContext& run) {
   Evolution best = local_search(table, start, {}, run);
   search(table, {start, best.tree}, options, item, run, best);
   return best;

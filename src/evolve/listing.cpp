@@ -15,7 +15,7 @@ using Column = AlignedVector<std::int8_t>;
 /// How a candidate was made, and what it selects in each class.
 struct Candidate {
   Operation operation = Operation::primitive;
-  std::uint32_t first = 0;   // into the candidates; for a leaf, the primitive
+  std::uint32_t first = 0;  // into the candidates; for a leaf, the primitive
   std::uint32_t second = 0;
   std::uint32_t size = 1;
   Column column = {};
@@ -25,8 +25,9 @@ struct Combination {
   Operation operation;
   bool swapped;
 };
-constexpr std::array k_combinations{Combination{Operation::union_of, false}, Combination{Operation::intersection, false},
-                                    Combination{Operation::difference, false}, Combination{Operation::difference, true}};
+constexpr std::array k_combinations{
+    Combination{Operation::union_of, false}, Combination{Operation::intersection, false},
+    Combination{Operation::difference, false}, Combination{Operation::difference, true}};
 
 std::uint64_t hash_of(const Column& column) {
   std::uint64_t hash = 0;
@@ -135,6 +136,8 @@ class Lister {
 
 }  // namespace
 
-Listing list_trees(const RankClasses& table) { return Lister(table).run(); }
+Listing list_trees(const RankClasses& table) {
+  return Lister(table).run();
+}
 
 }  // namespace cloud2csg

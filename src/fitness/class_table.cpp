@@ -31,7 +31,8 @@ ClassTable::ClassTable(std::size_t primitives, const KeyLayout& layout)
 std::size_t ClassTable::slot_of(const std::uint64_t* key, std::size_t stride, std::uint64_t hash) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t slot = hash & mask;
-  while (slots_[slot] != 0 && !equal(&keys_[(slots_[slot] - 1) * words_], key, stride, words_)) slot = (slot + 1) & mask;
+  while (slots_[slot] != 0 && !equal(&keys_[(slots_[slot] - 1) * words_], key, stride, words_))
+    slot = (slot + 1) & mask;
   return slot;
 }
 

@@ -15,8 +15,8 @@ class ClassTable {
  public:
   ClassTable(std::size_t primitives, const KeyLayout& layout);
 
-  /// The classes of points of a block, made when they are new. `keys` is as compute_rank_keys() gives them, `points` are
-  /// places in the block; `classes` receives one a point.
+  /// The classes of points of a block, made when they are new. `keys` is as compute_rank_keys() gives them, `points`
+  /// are places in the block; `classes` receives one a point.
   void find_or_insert(const std::uint64_t* keys, std::span<const std::uint16_t> points,
                       std::span<std::uint32_t> classes);
 
@@ -46,7 +46,7 @@ class ClassTable {
   std::size_t words_;
   std::size_t row_;
   std::size_t point_count_ = 0;
-  std::vector<std::uint32_t> slots_;   // class index + 1; 0 is free. A power of two of them
+  std::vector<std::uint32_t> slots_;  // class index + 1; 0 is free. A power of two of them
   std::vector<std::uint64_t> keys_;
   std::vector<double> sums_;
 };

@@ -21,9 +21,15 @@ bool ranks_below(const Selected& a, const Selected& b) {
   return a.value < 0 ? a.primitive > b.primitive : a.primitive < b.primitive;
 }
 
-Selected negated(Selected s) { return {-s.value, s.primitive, !s.complemented}; }
-Selected lower(const Selected& a, const Selected& b) { return ranks_below(b, a) ? b : a; }
-Selected upper(const Selected& a, const Selected& b) { return ranks_below(a, b) ? b : a; }
+Selected negated(Selected s) {
+  return {-s.value, s.primitive, !s.complemented};
+}
+Selected lower(const Selected& a, const Selected& b) {
+  return ranks_below(b, a) ? b : a;
+}
+Selected upper(const Selected& a, const Selected& b) {
+  return ranks_below(a, b) ? b : a;
+}
 
 /// What each primitive is at a block of points: made once a block, so that the walk below only reads.
 struct BlockFields {

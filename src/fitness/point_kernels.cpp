@@ -85,9 +85,9 @@ void compute_exponents(const BlockField& field, const BlockNormals& normals, con
     const auto gx = hn::Load(d, &field.gradient_x[i]);
     const auto gy = hn::Load(d, &field.gradient_y[i]);
     const auto gz = hn::Load(d, &field.gradient_z[i]);
-    const auto dot = gx * hn::Load(d, &normals.x[i]) + gy * hn::Load(d, &normals.y[i]) + gz * hn::Load(d, &normals.z[i]);
-    const auto cosine =
-        parameters.unit_gradient ? dot : dot / hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
+    const auto dot =
+        gx * hn::Load(d, &normals.x[i]) + gy * hn::Load(d, &normals.y[i]) + gz * hn::Load(d, &normals.z[i]);
+    const auto cosine = parameters.unit_gradient ? dot : dot / hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
     const auto scaled = f * beta;
     const auto chord = hn::Max(one - hn::Abs(cosine), hn::Zero(d));
     // Squares beyond the range of floats count as 87 in exp_negative, long before they overflow.

@@ -8,8 +8,8 @@
 #include "cloud2csg/rank_classes.hpp"
 
 /// The vectorised inner loops of the pass over the points: what one primitive contributes at each point of a block, and
-/// the order of several primitives there. Only operations that IEEE 754 defines to the bit are used, in one order, so that
-/// every instruction set gives the same result.
+/// the order of several primitives there. Only operations that IEEE 754 defines to the bit are used, in one order, so
+/// that every instruction set gives the same result.
 namespace cloud2csg {
 
 /// Points a block. A multiple of 64; its columns for some 20 primitives stay in the second-level cache.
@@ -62,8 +62,8 @@ struct KeyLayout {
   }
 };
 
-/// Signed ranks of the primitives at each point of a block as packed keys: word w of point i at keys[w * k_block_points + i].
-/// `distances` has one column of k_block_points a primitive. Compares all pairs: for up to some 127 primitives.
+/// Signed ranks of the primitives at each point of a block as packed keys: word w of point i at keys[w * k_block_points
+/// + i]. `distances` has one column of k_block_points a primitive. Compares all pairs: for up to some 127 primitives.
 void compute_rank_keys(std::span<const double* const> distances, const KeyLayout& layout, std::uint64_t* keys);
 
 /// The same by sorting at each point: for many primitives, and the reference of the one above.

@@ -41,7 +41,8 @@ double RankClasses::reference_geometry(const CsgTree& tree) const {
         const auto table = table_of(ranks, scores_, primitive_count(), padded_count_);
         for (std::size_t c = 0; c < class_count_; ++c) {
           const int rank = select_rank(table, tree.nodes(), c);
-          sum += static_cast<double>(scores_[c * row + static_cast<std::size_t>(static_cast<int>(primitive_count()) + rank)]);
+          sum += static_cast<double>(
+              scores_[c * row + static_cast<std::size_t>(static_cast<int>(primitive_count()) + rank)]);
         }
       },
       ranks_);
@@ -54,9 +55,8 @@ std::span<const std::int8_t> RankClasses::column(PrimitiveIndex local) const {
 }
 
 RankClasses::ColumnGeometry RankClasses::column_geometry(std::span<const std::int8_t> column) const {
-  return cloud2csg::column_geometry(table_of(std::get<AlignedVector<std::int8_t>>(ranks_), scores_, primitive_count(),
-                                             padded_count_),
-                                    column);
+  return cloud2csg::column_geometry(
+      table_of(std::get<AlignedVector<std::int8_t>>(ranks_), scores_, primitive_count(), padded_count_), column);
 }
 
 void RankClasses::combine(Operation operation, std::span<const std::int8_t> a, std::span<const std::int8_t> b,

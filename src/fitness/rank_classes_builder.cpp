@@ -36,7 +36,8 @@ RankClasses RankClassesBuilder::build(std::span<const PrimitiveIndex> primitives
   result.primitives_.assign(primitives.begin(), primitives.end());
   result.point_count_ = classes.point_count();
   result.class_count_ = classes.size();
-  result.padded_count_ = std::max<std::size_t>((classes.size() + k_class_padding - 1) / k_class_padding, 1) * k_class_padding;
+  result.padded_count_ =
+      std::max<std::size_t>((classes.size() + k_class_padding - 1) / k_class_padding, 1) * k_class_padding;
   result.objective_ = objective;
   result.scores_.assign(result.padded_count_ * (2 * primitives.size() + 1), 0.0F);
   result.nearest_.assign(classes.size(), 0);

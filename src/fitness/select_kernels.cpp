@@ -17,8 +17,12 @@ namespace {
 /// Classes that are carried through the whole tree at once: the stack of columns stays in the first-level cache.
 constexpr std::size_t k_chunk = 1024;
 
-AlignedVector<std::int8_t>& stack_memory(RankScratch& scratch, std::int8_t /*tag*/) { return scratch.bytes; }
-AlignedVector<std::int16_t>& stack_memory(RankScratch& scratch, std::int16_t /*tag*/) { return scratch.words; }
+AlignedVector<std::int8_t>& stack_memory(RankScratch& scratch, std::int8_t /*tag*/) {
+  return scratch.bytes;
+}
+AlignedVector<std::int16_t>& stack_memory(RankScratch& scratch, std::int16_t /*tag*/) {
+  return scratch.words;
+}
 
 template <class Rank>
 HWY_INLINE void combine(Operation operation, const Rank* a, const Rank* b, Rank* out, std::size_t count) {
@@ -26,10 +30,12 @@ HWY_INLINE void combine(Operation operation, const Rank* a, const Rank* b, Rank*
   const std::size_t lanes = hn::Lanes(d);
   switch (operation) {
     case Operation::union_of:
-      for (std::size_t i = 0; i < count; i += lanes) hn::Store(hn::Min(hn::Load(d, a + i), hn::Load(d, b + i)), d, out + i);
+      for (std::size_t i = 0; i < count; i += lanes)
+        hn::Store(hn::Min(hn::Load(d, a + i), hn::Load(d, b + i)), d, out + i);
       break;
     case Operation::intersection:
-      for (std::size_t i = 0; i < count; i += lanes) hn::Store(hn::Max(hn::Load(d, a + i), hn::Load(d, b + i)), d, out + i);
+      for (std::size_t i = 0; i < count; i += lanes)
+        hn::Store(hn::Max(hn::Load(d, a + i), hn::Load(d, b + i)), d, out + i);
       break;
     default:
       for (std::size_t i = 0; i < count; i += lanes) {

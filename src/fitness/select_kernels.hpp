@@ -12,10 +12,10 @@ namespace cloud2csg {
 /// Columns of signed ranks and the scores they look up; see RankClasses for the layout.
 template <class Rank>
 struct RankTable {
-  const Rank* ranks;       ///< by primitive, then by class
-  const float* scores;     ///< by class, then by signed rank + primitives
+  const Rank* ranks;    ///< by primitive, then by class
+  const float* scores;  ///< by class, then by signed rank + primitives
   std::size_t primitives;
-  std::size_t padded;      ///< classes, rounded up to a multiple of k_class_padding; the rest has rank and score 0
+  std::size_t padded;  ///< classes, rounded up to a multiple of k_class_padding; the rest has rank and score 0
 };
 inline constexpr std::size_t k_class_padding = 64;
 

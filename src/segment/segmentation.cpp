@@ -12,7 +12,9 @@ constexpr std::size_t k_noise_sample = 4096;
 constexpr double k_noise_floor = 1e-5;  // of the diagonal
 constexpr double k_sigmas = 3.0;
 
-double cosine_of_deg(double degrees) { return std::cos(degrees * std::numbers::pi / 180.0); }
+double cosine_of_deg(double degrees) {
+  return std::cos(degrees * std::numbers::pi / 180.0);
+}
 
 /// |cosine| of the angle between each point's normal and the primitive's gradient there.
 std::vector<double> normal_agreement(const Primitive& primitive, PointsView positions, PointsView normals) {

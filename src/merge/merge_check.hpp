@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cloud2csg/overlap_graph.hpp"
+#include "cloud2csg/rank_classes.hpp"
+
+namespace cloud2csg {
+
+/// What partition trees promise on the points of a whole component, and how far a merged tree falls short of it.
+///
+/// Every partition tree that knows a point's nearest primitive may explain the point; the best of them is the promise
+/// for the point. It is kept by nearest primitive, so that a small feature that was lost is seen although it weighs
+/// little in the whole.
+class MergeCheck {
+ public:
+  /// `cliques` and `trees` belong together; both index the table's primitives locally. O(trees x classes).
+  MergeCheck(const RankClasses& table, std::span<const Clique> cliques, std::span<const CsgTree> trees);
+
+  /// The largest share of a primitive's promise that `merged` does not reach; 0 when it reaches all.
+  [[nodiscard]] double worst_shortfall(const CsgTree& merged) const;
+
+ private:
+  const RankClasses& table_;
+  std::vector<double> promised_;  // by primitive
+};
+
+}  // namespace cloud2csg

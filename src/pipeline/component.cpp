@@ -1,0 +1,144 @@
+#include "pipeline/component.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#include "cloud2csg/merge.hpp"
+#include "cloud2csg/simplify.hpp"
+#include "merge/merge_check.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// A merged tree passes when no primitive's surface loses more than this share of what its partitions reached. Trees
+/// that agree differ by a few per mille, near edges where one partition does not see the other's primitives.
+constexpr double k_tolerated_shortfall = 0.05;
+
+Clique common(const Clique& a, const Clique& b) {
+  Clique both;
+  std::ranges::set_intersection(a, b, std::back_inserter(both));
+  return both;
+}
+
+class ComponentMerger {
+ public:
+  ComponentMerger(const Component& component, const SolveJointly& solve_jointly, const ComponentOptions& options,
+                  const RunContext& run)
+      : component_(component),
+        solve_jointly_(solve_jointly),
+        options_(options),
+        run_(run),
+        check_(component.table, component.cliques, component.trees) {}
+
+  MergedComponent run() {
+    const bool merged = component_.trees.size() == 1
+                            ? consider(MergeWay::single, component_.trees.front(), true)
+                            : merge(MergeWay::paper, component_.trees) ||
+                                  merge(MergeWay::largest_common_subtree, component_.trees) || merge_jointly();
+    if (!merged) search();
+    if (options_.polish) polish();
+    result_.tree = simplify(result_.tree);
+    result_.statistics.worst_shortfall = check_.worst_shortfall(result_.tree);
+    return std::move(result_);
+  }
+
+ private:
+  /// Keeps the tree when it is the best so far. Whether it is whole and keeps what the partitions promised.
+  bool consider(MergeWay way, const CsgTree& tree, bool whole) {
+    const double score = component_.table.score(tree, scratch_);
+    if (score > best_score_) {
+      best_score_ = score;
+      result_.tree = tree;
+      result_.statistics.ways = {way};
+    }
+    if (!whole) return false;
+    const bool holds = check_.worst_shortfall(tree) <= k_tolerated_shortfall;
+    if (!holds) ++result_.statistics.failed_checks;
+    // A tree that holds but scores below an earlier one would not be taken: go on looking.
+    return holds && score >= best_score_;
+  }
+
+  bool merge(MergeWay way, std::span<const CsgTree> trees) {
+    const MergeOrder order = way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree;
+    const MergeResult merged = merge_trees(trees, order);
+    result_.statistics.merges += merged.merges;
+    result_.statistics.blocked += merged.blocked;
+    remaining_ = merged.trees;
+    return consider(way, unite_all(merged.trees), merged.trees.size() == 1);
+  }
+
+  /// As long as trees that share primitives are left over, two of them are replaced by one tree for the primitives of
+  /// both, found from the points of both.
+  bool merge_jointly() {
+    std::vector<CsgTree> trees = remaining_;
+    while (trees.size() > 1 && !run_.stop.stop_requested()) {
+      const auto [first, second] = most_entangled(trees);
+      Clique both;
+      std::ranges::set_union(primitives_of(trees[first]), primitives_of(trees[second]), std::back_inserter(both));
+      trees[first] = solve_jointly_(both);
+      trees.erase(trees.begin() + static_cast<std::ptrdiff_t>(second));
+      ++result_.statistics.joint_solutions;
+      if (merge(MergeWay::joint, trees)) return true;
+      trees = remaining_;
+    }
+    return false;
+  }
+
+  /// The pair with the fewest primitives in all among those that share the most: the cheapest to solve together.
+  static std::pair<std::size_t, std::size_t> most_entangled(std::span<const CsgTree> trees) {
+    std::pair<std::size_t, std::size_t> best{0, 1};
+    std::pair<std::size_t, std::size_t> best_rank{0, std::numeric_limits<std::size_t>::max()};
+    for (std::size_t a = 0; a < trees.size(); ++a) {
+      for (std::size_t b = a + 1; b < trees.size(); ++b) {
+        const Clique of_a = primitives_of(trees[a]);
+        const Clique of_b = primitives_of(trees[b]);
+        const std::size_t shared = common(of_a, of_b).size();
+        const std::pair rank{shared, of_a.size() + of_b.size() - shared};
+        if (rank.first > best_rank.first || (rank.first == best_rank.first && rank.second < best_rank.second)) {
+          best = {a, b};
+          best_rank = rank;
+        }
+      }
+    }
+    return best;
+  }
+
+  void search() {
+    const Evolution found = evolve_tree_from(component_.table, result_.tree, options_.search, options_.item, run_);
+    count(found);
+    consider(MergeWay::search, found.tree, true);
+  }
+
+  /// Redundancy removal on the whole component: nodes go as long as E grows.
+  void polish() {
+    const Evolution polished = local_search(component_.table, result_.tree, {.shrink_only = true}, run_);
+    count(polished);
+    result_.tree = polished.tree;
+  }
+
+  void count(const Evolution& evolution) {
+    result_.statistics.generations += evolution.generations;
+    result_.statistics.evaluations += evolution.evaluations;
+    result_.complete = result_.complete && evolution.complete;
+  }
+
+  const Component& component_;
+  const SolveJointly& solve_jointly_;
+  const ComponentOptions& options_;
+  const RunContext& run_;
+  MergeCheck check_;
+  RankScratch scratch_;
+  MergedComponent result_;
+  std::vector<CsgTree> remaining_;
+  double best_score_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+MergedComponent merge_component(const Component& component, const SolveJointly& solve_jointly,
+                                const ComponentOptions& options, const RunContext& run) {
+  return ComponentMerger(component, solve_jointly, options, run).run();
+}
+
+}  // namespace cloud2csg

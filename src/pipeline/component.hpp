@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "cloud2csg/extract.hpp"
+#include "cloud2csg/overlap_graph.hpp"
+
+namespace cloud2csg {
+
+/// A connected component of the overlap graph with the trees of its partitions; all indices are local to `table`.
+struct Component {
+  const RankClasses& table;  ///< over all of the component's primitives
+  std::vector<Clique> cliques;
+  std::vector<CsgTree> trees;  ///< one a clique
+};
+
+/// Finds the tree of a set of primitives from the points that belong to them; local indices in and out.
+using SolveJointly = std::function<CsgTree(const Clique&)>;
+
+struct ComponentOptions {
+  const GaOptions& search;
+  bool polish;
+  std::uint64_t item;  ///< tells the component's random streams apart from the partitions'
+};
+
+/// One tree for the component: the paper's merge, held against what the partitions promised; where it does not go
+/// through or does not hold, by largest common subtrees, by solving partitions that block each other together, by a
+/// search over the whole component. The best tree that was met, so an answer always comes. Fills in `statistics`' way.
+struct MergedComponent {
+  CsgTree tree;
+  MergeStatistics statistics;  ///< with one entry in ways
+  bool complete = true;
+};
+[[nodiscard]] MergedComponent merge_component(const Component& component, const SolveJointly& solve_jointly,
+                                              const ComponentOptions& options, const RunContext& run);
+
+}  // namespace cloud2csg

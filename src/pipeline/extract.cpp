@@ -1,0 +1,237 @@
+#include "cloud2csg/extract.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <mutex>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/simplify.hpp"
+#include "pipeline/component.hpp"
+#include "pipeline/fit.hpp"
+#include "pipeline/preparation.hpp"
+#include "pipeline/stopwatch.hpp"
+#include "pipeline/time_limit.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// Random streams of searches over components start here; those of partitions count from 0.
+constexpr std::uint64_t k_component_items = std::uint64_t{1} << 40U;
+constexpr std::uint64_t k_joint_items = std::uint64_t{1} << 41U;
+
+void check_input(const PointCloud& cloud, const PrimitiveSet& primitives) {
+  const auto refuse = [](const char* expected, const char* remedy) {
+    throw Error({.file = {}, .where = {}, .expected = expected, .remedy = remedy});
+  };
+  if (cloud.size() == 0) refuse("the cloud has no points", "");
+  if (!cloud.has_normals()) {
+    refuse(
+        "the cloud has no normals, which tell inside from outside",
+        "add them, e.g. in MeshLab (Filters > Point Set > Compute normals), CloudCompare or Open3D, and save as .ply");
+  }
+  if (primitives.empty()) refuse("there are no primitives", "give a model file with the fitted primitives");
+  if (cloud.size() > std::numeric_limits<std::uint32_t>::max()) refuse("more than 4 294 967 295 points", "down-sample");
+  for (const Primitive& primitive : primitives) validate(primitive);
+}
+
+TreeStatistics measure(const CsgTree& tree) {
+  return {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree)};
+}
+
+/// Local indices of the primitives of a table, by index in the prepared set.
+std::vector<PrimitiveIndex> local_indices(std::span<const PrimitiveIndex> members, std::size_t primitives) {
+  std::vector<PrimitiveIndex> local(primitives, 0);
+  for (std::size_t i = 0; i < members.size(); ++i) local[members[i]] = static_cast<PrimitiveIndex>(i);
+  return local;
+}
+
+class Extractor {
+ public:
+  /// `run` holds for all; the search, which always has a tree to give, also stops on `search_stop`.
+  Extractor(const PointCloud& cloud, const PrimitiveSet& input, const ExtractOptions& options, const RunContext& run,
+            std::stop_token search_stop)
+      : cloud_(cloud), input_(input), options_(options), run_(run), search_stop_(std::move(search_stop)) {
+    options_.search.seed = options.seed;
+  }
+
+  Extraction extract() {
+    Stopwatch total;
+    statistics_.strategy = options_.strategy;
+    statistics_.parallel = options_.parallel;
+    statistics_.threads = run_.threads;
+    statistics_.seed = options_.seed;
+    statistics_.points = cloud_.size();
+    statistics_.primitives = input_.size();
+    const RunContext pass_run = with_threads(options_.parallel == Parallel::none ? 1 : run_.threads);
+    prepared_ = prepare(cloud_, input_, options_, pass_run, statistics_);
+    solve_partitions();
+    const CsgTree tree = simplified(merge_components());
+    statistics_.seconds.extraction = total.lap();
+    finish(tree, pass_run);
+    statistics_.seconds.total = statistics_.seconds.extraction + total.lap();
+    return {.tree = tree, .statistics = std::move(statistics_)};
+  }
+
+ private:
+  [[nodiscard]] RunContext with_threads(int threads) const {
+    RunContext run = run_;
+    run.threads = threads;
+    return run;
+  }
+
+  /// How a single search runs: its population in parallel, or not.
+  [[nodiscard]] RunContext search_run() const {
+    const bool over_population = options_.parallel == Parallel::population || options_.parallel == Parallel::both;
+    RunContext run = with_threads(over_population ? run_.threads : 1);
+    run.on_progress = {};
+    run.stop = search_stop_;
+    return run;
+  }
+
+  void solve_partitions() {
+    Stopwatch watch;
+    const std::size_t count = prepared_.partitions.size();
+    evolutions_.resize(count);
+    std::atomic<std::size_t> done = 0;
+    std::mutex reporting;
+    const auto solve = [&](std::size_t k) {
+      evolutions_[k] = evolve_tree(prepared_.pass.tables[k], options_.search, k, search_run());
+      const std::lock_guard lock(reporting);
+      run_.report("search", ++done, count);
+    };
+    const bool over_partitions = options_.parallel == Parallel::partitions || options_.parallel == Parallel::both;
+    if (over_partitions && run_.threads != 1) {
+      oneapi::tbb::parallel_for(std::size_t{0}, count, solve);
+    } else {
+      for (std::size_t k = 0; k < count; ++k) solve(k);
+    }
+    for (std::size_t k = 0; k < count; ++k) note_partition(k);
+    statistics_.seconds.search += watch.lap();
+  }
+
+  void note_partition(std::size_t k) {
+    const RankClasses& table = prepared_.pass.tables[k];
+    const Evolution& evolution = evolutions_[k];
+    PartitionStatistics partition{.points = table.point_count(),
+                                  .classes = table.class_count(),
+                                  .generations = evolution.generations,
+                                  .evaluations = evolution.evaluations,
+                                  .score = evolution.score,
+                                  .tree_size = simplify(evolution.tree).size()};
+    for (const PrimitiveIndex p : table.primitives()) partition.primitives.push_back(prepared_.original[p]);
+    statistics_.partitions.push_back(std::move(partition));
+    statistics_.complete = statistics_.complete && evolution.complete;
+  }
+
+  /// The tree over the prepared primitives: a tree a component, united.
+  CsgTree merge_components() {
+    Stopwatch watch;
+    std::vector<CsgTree> trees;
+    for (std::size_t c = 0; c < prepared_.components.size(); ++c) {
+      trees.push_back(merge_one(c));
+      run_.report("merge", c + 1, prepared_.components.size());
+    }
+    statistics_.seconds.merge += watch.lap();
+    return unite_all(trees);
+  }
+
+  CsgTree merge_one(std::size_t c) {
+    const RankClasses& table = prepared_.pass.tables[prepared_.component_table[c]];
+    const std::vector<PrimitiveIndex> local = local_indices(table.primitives(), prepared_.primitives.size());
+    Component component{.table = table, .cliques = {}, .trees = {}};
+    for (std::size_t k = 0; k < prepared_.partitions.size(); ++k) {
+      if (prepared_.component_of[k] != c) continue;
+      const RankClasses& partition = prepared_.pass.tables[k];
+      Clique& clique = component.cliques.emplace_back();
+      for (const PrimitiveIndex p : partition.primitives()) clique.push_back(local[p]);
+      component.trees.push_back(renumber(evolutions_[k].tree, clique));
+    }
+    const SolveJointly solve_jointly = [&](const Clique& both) { return solve_set(both, table.primitives()); };
+    const MergedComponent merged = merge_component(
+        component, solve_jointly, {.search = options_.search, .polish = options_.polish, .item = k_component_items + c},
+        search_run());
+    take_merge_statistics(merged);
+    return renumber(merged.tree, table.primitives());
+  }
+
+  /// A tree for some primitives of a component, from a pass over the points for just them; component's indices.
+  CsgTree solve_set(const Clique& set, std::span<const PrimitiveIndex> component) {
+    Clique prepared;
+    for (const PrimitiveIndex p : set) prepared.push_back(component[p]);
+    const std::vector<RankClassesRequest> requests{{.primitives = prepared}};
+    RunContext run = search_run();
+    run.stop = {};  // a pass is short, and the search after it sees the stop
+    const PointPass pass = build_rank_classes(cloud_, prepared_.primitives, requests, prepared_.tolerances,
+                                              options_.objective, prepared_.noise, run);
+    const Evolution evolution =
+        evolve_tree(pass.tables.front(), options_.search, k_joint_items + joint_solutions_++, search_run());
+    statistics_.complete = statistics_.complete && evolution.complete;
+    return renumber(evolution.tree, set);
+  }
+
+  void take_merge_statistics(const MergedComponent& merged) {
+    MergeStatistics& sum = statistics_.merge;
+    const MergeStatistics& part = merged.statistics;
+    sum.ways.insert(sum.ways.end(), part.ways.begin(), part.ways.end());
+    sum.merges += part.merges;
+    sum.blocked += part.blocked;
+    sum.failed_checks += part.failed_checks;
+    sum.joint_solutions += part.joint_solutions;
+    sum.generations += part.generations;
+    sum.evaluations += part.evaluations;
+    sum.worst_shortfall = std::max(sum.worst_shortfall, part.worst_shortfall);
+    statistics_.complete = statistics_.complete && merged.complete;
+  }
+
+  CsgTree simplified(const CsgTree& tree) {
+    Stopwatch watch;
+    statistics_.before_simplification = measure(tree);
+    CsgTree result = renumber(simplify(tree), prepared_.original);
+    statistics_.tree = measure(result);
+    statistics_.seconds.simplify += watch.lap();
+    return result;
+  }
+
+  void finish(const CsgTree& tree, const RunContext& run) {
+    if (primitives_of(tree).empty()) {
+      statistics_.warnings.emplace_back("the result is empty: no formula over the primitives explains the points");
+      return;
+    }
+    const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
+    statistics_.fit = measure_fit(tree, input_, cloud_, objective, run);
+    if (10 * statistics_.unassigned_points > statistics_.points) {
+      statistics_.warnings.emplace_back(
+          "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
+    }
+    if (!statistics_.complete) statistics_.warnings.emplace_back("stopped early: this is the best tree so far");
+  }
+
+  const PointCloud& cloud_;
+  const PrimitiveSet& input_;
+  ExtractOptions options_;
+  const RunContext& run_;
+  std::stop_token search_stop_;
+  ExtractStatistics statistics_;
+  Preparation prepared_;
+  std::vector<Evolution> evolutions_;
+  std::uint64_t joint_solutions_ = 0;
+};
+
+}  // namespace
+
+Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+                       const RunContext& run) {
+  validate(options);
+  check_input(cloud, primitives);
+  const TimeLimit limit(run.stop, options.time_limit_seconds);
+  RunContext inner = run;
+  inner.threads = run.threads > 0 ? run.threads : oneapi::tbb::this_task_arena::max_concurrency();
+  oneapi::tbb::task_arena arena(inner.threads);
+  return arena.execute([&] { return Extractor(cloud, primitives, options, inner, limit.token()).extract(); });
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,161 @@
+#include "pipeline/preparation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "cloud2csg/error.hpp"
+#include "pipeline/stopwatch.hpp"
+
+namespace cloud2csg {
+namespace {
+
+void take_all(const PrimitiveSet& primitives, Preparation& preparation) {
+  preparation.primitives = primitives;
+  preparation.original.resize(primitives.size());
+  std::iota(preparation.original.begin(), preparation.original.end(), PrimitiveIndex{0});
+}
+
+/// The oriented bounds of the points on each unbounded primitive, in its own frame: what of it matters for overlap.
+std::vector<std::optional<OrientedBox>> extents_of_unbounded(const PointCloud& cloud, const Preparation& preparation,
+                                                             const RunContext& run) {
+  std::vector<std::optional<OrientedBox>> extents(preparation.primitives.size());
+  for (std::size_t p = 0; p < extents.size(); ++p) {
+    const Primitive& primitive = preparation.primitives[p];
+    if (!std::holds_alternative<HalfSpace>(primitive.shape)) continue;
+    const Segmentation segmentation = segment_points(cloud, {primitive}, preparation.tolerances, run);
+    AlignedBox local;
+    for (const std::uint32_t point : segmentation.points_of.front()) {
+      local.extend(primitive.pose.to_local(cloud.positions[point]));
+    }
+    if (local.isEmpty()) continue;
+    extents[p] =
+        OrientedBox{.pose = compose(primitive.pose, {.position = local.center()}), .half_size = local.sizes() / 2};
+  }
+  return extents;
+}
+
+void build_partitions(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,
+                      Preparation& preparation, StageSeconds& seconds) {
+  Stopwatch watch;
+  preparation.graph = build_overlap_graph(preparation.primitives,
+                                          {.tolerance = options.overlap_tolerance.value_or(preparation.noise),
+                                           .extents = extents_of_unbounded(cloud, preparation, run)},
+                                          run);
+  seconds.overlap += watch.lap();
+  preparation.cliques = maximal_cliques(preparation.graph);
+  preparation.components = connected_components(preparation.graph);
+  preparation.partitions.clear();
+  preparation.component_of.clear();
+  if (options.strategy == Strategy::baseline) {
+    std::vector<PrimitiveIndex> all(preparation.primitives.size());
+    std::iota(all.begin(), all.end(), PrimitiveIndex{0});
+    preparation.components = {all};
+    preparation.partitions = {all};
+    preparation.component_of = {0};
+    seconds.partition += watch.lap();
+    return;
+  }
+  std::vector<std::size_t> component_of_primitive(preparation.primitives.size());
+  for (std::size_t c = 0; c < preparation.components.size(); ++c) {
+    for (const PrimitiveIndex p : preparation.components[c]) component_of_primitive[p] = c;
+  }
+  const auto solved_whole = [&](std::size_t component) {
+    return options.strategy == Strategy::automatic &&
+           preparation.components[component].size() <= options.search.listing_limit;
+  };
+  for (std::size_t c = 0; c < preparation.components.size(); ++c) {
+    if (!solved_whole(c)) continue;
+    preparation.partitions.push_back(preparation.components[c]);
+    preparation.component_of.push_back(c);
+  }
+  for (const Clique& clique : preparation.cliques) {
+    const std::size_t component = component_of_primitive[clique.front()];
+    if (solved_whole(component)) continue;
+    preparation.partitions.push_back(clique);
+    preparation.component_of.push_back(component);
+  }
+  seconds.partition += watch.lap();
+}
+
+/// One table a partition, and one for each component of several partitions.
+std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparation& preparation) {
+  std::vector<RankClassesRequest> requests;
+  std::vector<std::size_t> partitions_in(preparation.components.size(), 0);
+  preparation.component_table.assign(preparation.components.size(), 0);
+  for (std::size_t k = 0; k < preparation.partitions.size(); ++k) {
+    ++partitions_in[preparation.component_of[k]];
+    preparation.component_table[preparation.component_of[k]] = k;
+    requests.push_back({.primitives = preparation.partitions[k]});
+  }
+  for (std::size_t c = 0; c < preparation.components.size(); ++c) {
+    if (partitions_in[c] < 2) continue;
+    const std::size_t row_bytes = 2 * sizeof(double) * preparation.components[c].size();
+    const std::size_t stride = std::max<std::size_t>(1, cloud.size() * row_bytes / k_component_table_bytes);
+    preparation.component_table[c] = requests.size();
+    requests.push_back({.primitives = preparation.components[c], .stride = stride});
+  }
+  return requests;
+}
+
+void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,
+                      Preparation& preparation, StageSeconds& seconds) {
+  Stopwatch watch;
+  preparation.pass = build_rank_classes(cloud, preparation.primitives, requests_for(cloud, preparation),
+                                        preparation.tolerances, options.objective, preparation.noise, run);
+  const PointPass& pass = preparation.pass;
+  const double wall = watch.lap();
+  const double share = pass.segment_seconds / (pass.segment_seconds + pass.classes_seconds);
+  seconds.segment += wall * share;
+  seconds.classes += wall * (1 - share);
+}
+
+/// Takes out the primitives without points. Whether there were any.
+bool drop_unsupported(Preparation& preparation, ExtractStatistics& statistics) {
+  const std::vector<std::size_t>& points = preparation.pass.points_of_primitive;
+  PrimitiveSet kept;
+  std::vector<PrimitiveIndex> original;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (points[p] == 0) {
+      statistics.warnings.push_back(
+          fmt::format("no point supports primitive '{}': it is left out", preparation.primitives[p].id));
+      continue;
+    }
+    kept.push_back(preparation.primitives[p]);
+    original.push_back(preparation.original[p]);
+  }
+  if (kept.size() == points.size()) return false;
+  preparation.primitives = std::move(kept);
+  preparation.original = std::move(original);
+  return true;
+}
+
+}  // namespace
+
+Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+                    const RunContext& run, ExtractStatistics& statistics) {
+  Preparation preparation;
+  take_all(primitives, preparation);
+  Stopwatch watch;
+  preparation.noise = estimate_noise(cloud, primitives, options.segmentation.angle_tolerance_deg);
+  preparation.tolerances = segmentation_tolerances(options.segmentation, preparation.noise);
+  statistics.seconds.segment += watch.lap();
+  do {
+    if (preparation.primitives.empty()) {
+      throw Error({.file = {},
+                   .where = {},
+                   .expected = "no point of the cloud is near any primitive",
+                   .remedy = "check that cloud and primitives are in the same frame and units"});
+    }
+    build_partitions(cloud, options, run, preparation, statistics.seconds);
+    pass_over_points(cloud, options, run, preparation, statistics.seconds);
+  } while (drop_unsupported(preparation, statistics));
+  statistics.noise = preparation.noise;
+  statistics.unassigned_points = preparation.pass.unassigned;
+  statistics.clique_histogram = clique_histogram(preparation.cliques);
+  statistics.components = preparation.components.size();
+  return preparation;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "cloud2csg/extract.hpp"
+#include "cloud2csg/overlap_graph.hpp"
+
+namespace cloud2csg {
+
+/// Everything the search needs, over the primitives that points support.
+struct Preparation {
+  PrimitiveSet primitives;
+  std::vector<PrimitiveIndex> original;  ///< index in the input of each of them
+  double noise = 0;
+  SegmentationTolerances tolerances{};
+  OverlapGraph graph;
+  std::vector<Clique> cliques;  ///< of the whole graph
+  std::vector<std::vector<PrimitiveIndex>> components;
+  std::vector<Clique> partitions;            ///< what is searched for trees: cliques, or whole components
+  std::vector<std::size_t> component_of;     ///< by partition
+  PointPass pass;                            ///< a table a partition, then one for each component that has several
+  std::vector<std::size_t> component_table;  ///< index into pass.tables by component
+};
+
+/// Noise, overlap graph, partitions and the pass over the points. Primitives without a single point are dropped, with a
+/// warning in `statistics`, and the rest is prepared anew. Fills in the statistics of its stages.
+/// @throws Error when no point is near any primitive; Cancelled.
+[[nodiscard]] Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                  const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics);
+
+/// How many bytes a table over a whole component may take while it is made; larger ones use every k-th point.
+inline constexpr std::size_t k_component_table_bytes = std::size_t{64} << 20U;
+
+}  // namespace cloud2csg
