@@ -2,7 +2,9 @@
 #define HWY_TARGET_INCLUDE "primitive/field_fast.cpp"
 #include <hwy/foreach_target.h>  // includes this file once per instruction set
 
+#include <array>
 #include <cstddef>
+#include <span>
 
 #include "cloud2csg/primitive.hpp"
 #include "primitive/formulas-inl.hpp"
@@ -35,9 +37,9 @@ HWY_INLINE void store_field(FastTag tag, const Field<FastLanes>& field, const Fi
 class Padded {
  public:
   Padded(PointsView points, const FieldSpans& fields, std::size_t offset) : count_(points.size() - offset) {
-    const std::span<const double> sources[] = {points.x,          points.y,          points.z,         fields.distance,
-                                               fields.gradient_x, fields.gradient_y, fields.gradient_z};
-    for (std::size_t row = 0; row < 7; ++row) {
+    const std::array<std::span<const double>, k_rows> sources = {
+        points.x, points.y, points.z, fields.distance, fields.gradient_x, fields.gradient_y, fields.gradient_z};
+    for (std::size_t row = 0; row < k_rows; ++row) {
       for (std::size_t i = 0; i < count_; ++i) rows_[row][i] = sources[row][offset + i];
     }
   }
@@ -47,18 +49,21 @@ class Padded {
     return {.distance = rows_[3], .gradient_x = rows_[4], .gradient_y = rows_[5], .gradient_z = rows_[6]};
   }
   void copy_fields_to(const FieldSpans& out, std::size_t offset) const {
-    const std::span<double> targets[] = {out.distance, out.gradient_x, out.gradient_y, out.gradient_z};
-    for (std::size_t row = 0; row < 4; ++row) {
+    const std::array<std::span<double>, 4> targets = {out.distance, out.gradient_x, out.gradient_y, out.gradient_z};
+    for (std::size_t row = 0; row < targets.size(); ++row) {
       for (std::size_t i = 0; i < count_; ++i) targets[row][offset + i] = rows_[3 + row][i];
     }
   }
 
  private:
+  static constexpr std::size_t k_rows = 7;
+  static constexpr std::size_t k_most_lanes = HWY_MAX_BYTES / sizeof(double);
+
   std::size_t count_;
-  double rows_[7][HWY_MAX_BYTES / sizeof(double)] = {};
+  std::array<std::array<double, k_most_lanes>, k_rows> rows_ = {};
 };
 
-/// Applies `kernel(i, points, fields)` to whole vectors, the last and partial one by way of a padded copy.
+/// Applies `kernel` to whole vectors of points, the last and partial one by way of a padded copy.
 template <class Kernel>
 HWY_INLINE void for_each_vector(FastTag tag, PointsView points, const FieldSpans& out, const Kernel& kernel) {
   const std::size_t lanes = hn::Lanes(tag);

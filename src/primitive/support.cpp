@@ -35,7 +35,6 @@ Eigen::Vector3d polytope_support(const Polytope& polytope, const Eigen::Vector3d
 Eigen::Vector3d support(const Primitive& primitive, const Eigen::Vector3d& direction) {
   assert(is_convex(primitive) && !std::holds_alternative<HalfSpace>(primitive.shape));
   const Eigen::Vector3d local = primitive.pose.orientation.conjugate() * direction;
-  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   return primitive.pose.to_world(std::visit(
       Overloaded{[&](const Box& box) -> Eigen::Vector3d {
                    return 0.5 * box.size.array() * (local.array() < 0).select(-Eigen::Array3d::Ones(), 1.0);
@@ -44,10 +43,11 @@ Eigen::Vector3d support(const Primitive& primitive, const Eigen::Vector3d& direc
                  [&](const Cylinder& cylinder) {
                    return cone_support({cylinder.radius, cylinder.radius, cylinder.height}, local);
                  },
-                 [&](const Cone& cone) { return cone_support(cone, local); }, [&](const Torus&) { return zero; },
-                 [&](const HalfSpace&) { return zero; },
+                 [&](const Cone& cone) { return cone_support(cone, local); },
+                 [&](const Torus&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); },
+                 [&](const HalfSpace&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); },
                  [&](const Polytope& polytope) { return polytope_support(polytope, local); },
-                 [&](const Expression&) { return zero; }},
+                 [&](const Expression&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); }},
       primitive.shape));
 }
 

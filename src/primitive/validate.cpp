@@ -40,6 +40,12 @@ void validate_torus(const Torus& torus) {
   }
 }
 
+void require_value_at(ExpressionEvaluator& evaluator, const Eigen::Vector3d& point) {
+  if (std::isfinite(evaluator.value(point))) return;
+  refuse("distance", fmt::format("a finite value within the bounds; there is none at ({}, {}, {})", point.x(),
+                                 point.y(), point.z()));
+}
+
 void validate_expression(const Expression& expression) {
   const AlignedBox& box = expression.bounds;
   if (!box.min().allFinite() || !box.max().allFinite() || (box.sizes().array() <= 0).any()) {
@@ -48,13 +54,10 @@ void validate_expression(const Expression& expression) {
   validate_formula(expression.distance);
   ExpressionEvaluator evaluator(expression);
   // A formula that has no value somewhere inside its own bounds is better refused now than found in a result.
-  constexpr int k_steps = 4;
-  for (int i = 0; i < (k_steps + 1) * (k_steps + 1) * (k_steps + 1); ++i) {
-    const Eigen::Array3d step(i % (k_steps + 1), i / (k_steps + 1) % (k_steps + 1), i / (k_steps + 1) / (k_steps + 1));
-    const Eigen::Vector3d point = box.min().array() + box.sizes().array() * step / k_steps;
-    if (!std::isfinite(evaluator.value(point))) {
-      refuse("distance", fmt::format("a finite value within the bounds; there is none at ({}, {}, {})", point.x(),
-                                     point.y(), point.z()));
+  const Eigen::Vector3d step = 0.25 * box.sizes();
+  for (int x = 0; x <= 4; ++x) {
+    for (int y = 0; y <= 4; ++y) {
+      for (int z = 0; z <= 4; ++z) require_value_at(evaluator, box.min() + step.cwiseProduct(Eigen::Vector3d(x, y, z)));
     }
   }
 }

@@ -74,9 +74,10 @@ TEST(Bounds, OfADisplacedBoxAreNearThoseSeen) {
   AlignedBox seen;
   Points grid;
   constexpr int k_steps = 80;
-  for (int i = 0; i < k_steps * k_steps * k_steps; ++i) {
-    const Eigen::Array3d step(i % k_steps, i / k_steps % k_steps, i / k_steps / k_steps);
-    grid.push_back(-1.3 + 2.6 * step / (k_steps - 1));
+  for (int x = 0; x < k_steps; ++x) {
+    for (int y = 0; y < k_steps; ++y) {
+      for (int z = 0; z < k_steps; ++z) grid.push_back(-1.3 + 2.6 * Eigen::Array3d(x, y, z) / (k_steps - 1));
+    }
   }
   const std::vector<double> distance = signed_distance(primitive, grid);
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -96,9 +97,10 @@ TEST(Bounds, OfADisplacedWedgeHoldItsTip) {
   const Primitive primitive{.id = "w", .shape = wedge, .displacement = Displacement{6}};
   const AlignedBox box = bounds(primitive);
   Points grid;
-  for (int i = 0; i < 60 * 20 * 10; ++i) {
-    const Eigen::Array3d step(i % 60, i / 60 % 20, i / 1200);
-    grid.push_back(Eigen::Array3d(4, -1, -1) + step * Eigen::Array3d(0.15, 0.1, 0.2));
+  for (int x = 0; x < 60; ++x) {
+    for (int y = 0; y < 20; ++y) {
+      for (int z = 0; z < 10; ++z) grid.push_back({4 + 0.15 * x, -1 + 0.1 * y, -1 + 0.2 * z});
+    }
   }
   const std::vector<double> distance = signed_distance(primitive, grid);
   int beyond = 0;

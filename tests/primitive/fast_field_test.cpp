@@ -2,6 +2,7 @@
 #include <hwy/targets.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -69,9 +70,9 @@ bool same_bits(const Evaluated& a, const Evaluated& b) {
 Points varied_points(const Primitive& primitive, std::size_t count) {
   Points points = points_near(primitive, count);
   for (std::size_t i = 0; i < count; i += 3) {
-    const double coordinates[] = {0.0, -0.0, 0.5, -0.5, 1.0, 1e-200};
+    constexpr std::array<double, 6> k_coordinates = {0.0, -0.0, 0.5, -0.5, 1.0, 1e-200};
     Eigen::Vector3d special;
-    for (double& x : special) x = coordinates[testing::integer(0, 6)];
+    for (double& x : special) x = k_coordinates[static_cast<std::size_t>(testing::integer(0, 6))];
     points.set(i, primitive.pose.to_world(special));
   }
   return points;
@@ -101,7 +102,7 @@ TEST(EvaluateField, HandlesEveryLengthAndWritesNothingBeyond) {
   for (std::size_t count = 0; count <= 70; ++count) {
     Points points(count);
     for (std::size_t i = 0; i < count; ++i) {
-      const double t = static_cast<double>(i);
+      const auto t = static_cast<double>(i);
       points.set(i, {std::sin(t), std::cos(2 * t), std::sin(3 * t)});
     }
     std::vector<double> memory(4 * (count + 1), 42.0);
@@ -124,6 +125,7 @@ TEST(EvaluateField, MayRunInSeveralThreads) {
   const Evaluated expected = fast_field(primitive, points);
   std::vector<Evaluated> results(4);
   std::vector<std::thread> threads;
+  threads.reserve(results.size());
   for (Evaluated& result : results) threads.emplace_back([&] { result = fast_field(primitive, points); });
   for (std::thread& thread : threads) thread.join();
   for (const Evaluated& result : results) EXPECT_TRUE(same_bits(result, expected));
