@@ -53,7 +53,8 @@ struct Plane {
 struct Polytope {
   std::vector<Plane> planes;
 };
-/// A formula in x, y, z (muParser syntax), negative inside; `bounds` encloses the solid, in its own frame.
+/// A formula in x, y, z (muParser syntax), negative inside; `bounds` encloses the solid, with its displacement if it
+/// has one, in its own frame.
 struct Expression {
   std::string distance;
   AlignedBox bounds;

@@ -76,7 +76,9 @@ AlignedBox reach_of_displacement(const Shape& shape, const Pose& pose) {
 }  // namespace
 
 AlignedBox bounds(const Primitive& primitive) {
-  if (!primitive.displacement || std::holds_alternative<HalfSpace>(primitive.shape)) {
+  // The bounds of an expression are its author's word on the displaced solid.
+  if (!primitive.displacement || std::holds_alternative<HalfSpace>(primitive.shape) ||
+      std::holds_alternative<Expression>(primitive.shape)) {
     return shape_bounds(primitive.shape, primitive.pose);
   }
   return displaced_bounds(primitive, reach_of_displacement(primitive.shape, primitive.pose));

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 #include <queue>
-#include <variant>
 #include <vector>
 
 namespace cloud2csg {
@@ -120,8 +119,6 @@ class BoundsSearch {
 
 AlignedBox displaced_bounds(const Primitive& primitive, const AlignedBox& start) {
   assert(primitive.displacement);
-  // A formula that is only known as text may change arbitrarily fast.
-  if (std::holds_alternative<Expression>(primitive.shape)) return start;
   const BoundsSearch search(primitive, start);
   AlignedBox result;
   for (int axis = 0; axis < 3; ++axis) {

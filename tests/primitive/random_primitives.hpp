@@ -84,10 +84,10 @@ inline Shape any_analytic_shape() {
   return any_exact_shape();
 }
 
-/// An ellipsoid; its value is no distance.
+/// An ellipsoid; its value is no distance. The bounds leave room for a displacement.
 inline Expression any_expression() {
   return {.distance = "sqrt(x^2 + (y / 1.5)^2 + (2 * z)^2) - 1",
-          .bounds = AlignedBox(Eigen::Vector3d(-1, -1.5, -0.5), Eigen::Vector3d(1, 1.5, 0.5))};
+          .bounds = AlignedBox(Eigen::Vector3d(-2, -3, -1), Eigen::Vector3d(2, 3, 1))};
 }
 
 inline Primitive any_exact_primitive() {
