@@ -1,0 +1,43 @@
+# A thin door: CMake presets do the work (cmake --list-presets).
+PREFIX ?= /usr/local
+
+.PHONY: help demo test bench format lint install clean dependencies configure
+.DEFAULT_GOAL := help
+
+help: ## What there is to make
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):[^#]*## */  make \1|/' | column -t -s '|'
+
+demo: configure ## Build, and run the main job on a shipped cloud
+	@cmake --build --preset release --target cloud2csg
+	@scripts/demo.sh
+
+test: configure ## Build everything and run all tests
+	@cmake --build --preset release
+	@ctest --preset release
+
+bench: configure ## Print the figures of speed and recovery (docs/performance.md explains them)
+	@cmake --build --preset release
+	@scripts/bench.sh
+
+format: ## Format all sources in place
+	@scripts/install_dependencies.sh lint
+	@git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
+
+lint: configure ## clang-format and clang-tidy; any finding is an error
+	@scripts/install_dependencies.sh lint
+	@scripts/lint.sh
+
+install: configure ## Install program, library and headers under PREFIX
+	@cmake --build --preset release --target all
+	@cmake --install build/release --prefix $(PREFIX)
+
+clean: ## Remove what was built
+	@rm -rf build out
+
+dependencies:
+	@scripts/install_dependencies.sh
+
+configure: dependencies
+	@test -f build/release/build.ninja || cmake --preset release >build-configure.log 2>&1 || \
+	  { cat build-configure.log; rm -f build-configure.log; exit 1; }
+	@rm -f build-configure.log

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cloud2csg/model.hpp"
+#include "cloud2csg/sample.hpp"
+
+namespace cloud2csg::bench {
+
+/// The shipped model of that name: "m0", "m1", "m2", "m3".
+inline Model shipped_model(const std::string& name) {
+  return read_model(std::string(CLOUD2CSG_DATA_DIR "/models/") + name + ".json");
+}
+
+/// A cloud as the paper makes them: noise of sigma 0.01 on a model of about unit size.
+inline PointCloud paper_cloud(const Model& model, std::size_t points, std::uint64_t seed) {
+  RunContext all_cores;
+  all_cores.threads = 0;
+  return sample_surface(*model.tree, model.primitives, {.count = points, .noise = 0.01, .seed = seed}, all_cores);
+}
+
+/// Seconds of several runs of the same thing. The machine is shared: the median is quoted, the least says what the
+/// machine can do.
+struct Timing {
+  double least = 0, median = 0, most = 0;
+};
+
+template <class Work>
+Timing time_runs(std::size_t runs, const Work& work) {
+  std::vector<double> seconds;
+  for (std::size_t run = 0; run < runs; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::ranges::sort(seconds);
+  return {seconds.front(), seconds[seconds.size() / 2], seconds.back()};
+}
+
+}  // namespace cloud2csg::bench

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that building and testing need, those that are missing only. Uses sudo when not root.
+set -euo pipefail
+
+packages=(
+  g++ make cmake ninja-build pkg-config ccache
+  libeigen3-dev libtbb-dev libhwy-dev libboost-dev libboost-graph-dev libccd-dev libmuparser-dev libassimp-dev
+  libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libfmt-dev
+  libgtest-dev librapidcheck-dev openscad
+)
+[ "${1:-}" = lint ] && packages+=(clang clang-format clang-tidy)
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+if ! command -v apt-get >/dev/null; then
+  echo "cloud2csg: these packages are missing, and there is no apt-get to install them: ${missing[*]}" >&2
+  exit 1
+fi
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "cloud2csg: install as root: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "installing ${#missing[@]} packages: ${missing[*]}" >&2
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+export DEBIAN_FRONTEND=noninteractive
+if ! { "${as_root[@]}" apt-get update &&
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+         apt-get install --yes --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+  cat "$log" >&2
+  exit 1
+fi
