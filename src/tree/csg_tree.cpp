@@ -126,40 +126,34 @@ CsgTree renumber(const CsgTree& tree, std::span<const PrimitiveIndex> new_index)
 
 bool contains(const CsgTree& tree, const std::vector<bool>& inside_primitive) {
   std::vector<bool> values;
-  const auto pop = [&values] {
-    const bool value = values.back();
-    values.pop_back();
-    return value;
-  };
   for (const CsgNode node : tree.nodes()) {
-    bool value = false;
+    const int children = arity(node.operation());
+    const bool last = children > 0 && values.back();
+    const bool first = children > 1 && values[values.size() - 2];
+    values.resize(values.size() - static_cast<std::size_t>(children));
     switch (node.operation()) {
       case Operation::primitive:
-        value = inside_primitive[node.primitive()];
+        values.push_back(inside_primitive[node.primitive()]);
         break;
       case Operation::empty:
-        value = false;
+        values.push_back(false);
         break;
       case Operation::full:
-        value = true;
+        values.push_back(true);
         break;
       case Operation::complement:
-        value = !pop();
+        values.push_back(!last);
         break;
-      // pop() on the left of a non-short-circuiting operator: both children must leave the stack.
       case Operation::union_of:
-        value = pop() | pop();
+        values.push_back(first || last);
         break;
       case Operation::intersection:
-        value = pop() & pop();
+        values.push_back(first && last);
         break;
-      case Operation::difference: {
-        const bool subtracted = pop();
-        value = pop() & !subtracted;
+      case Operation::difference:
+        values.push_back(first && !last);
         break;
-      }
     }
-    values.push_back(value);
   }
   return values.back();
 }

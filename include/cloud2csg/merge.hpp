@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "cloud2csg/csg_tree.hpp"
+
+/// Merging the trees of the partitions into one (section 4 of the paper).
+namespace cloud2csg {
+
+enum class MergeOrder {
+  paper,                   ///< the head of the list with the next ones; the merged tree is the new head
+  largest_common_subtree,  ///< always the two trees with the largest valid common subtree
+};
+
+struct MergeResult {
+  std::vector<CsgTree> trees;  ///< one when the merge went through; else by the first input that went into each
+  std::size_t merges = 0;      ///< how often two trees became one
+  std::size_t blocked = 0;     ///< pairs of `trees` that share a primitive and yet have no valid merge node
+};
+
+/// Merges trees that share subtrees, as in the paper. All are simplified first, and so is what comes of each merge.
+///
+/// Two trees merge at their largest common subtree that has a **valid merge node** in the larger tree (of equal ones:
+/// in the first): an appearance reached from the root through unions, by any child, and differences, by the first
+/// child. The smaller tree takes the place of that node. Where the words of the paper leave a choice:
+/// - Common means equal up to the order of operands. Of a union, any of its operands together count as a subtree,
+///   however the chain is stored: a | b | c and (c | b) - d have b | c in common.
+/// - Only the larger tree needs a valid node, since the smaller one is put in whole. Where both have one, the larger
+///   tree's is taken; where only the smaller has one, the two do not merge.
+/// - Of several common subtrees of the same size, and of several valid nodes, the one nearest to the root is taken.
+/// - A head that merges with none is passed over, and the next one becomes the head; passed-over trees are tried again
+///   when others have merged. It ends when no two trees of the list merge.
+/// - A tree that is simplified to the empty solid is left out, unless all are.
+///
+/// Only formulas are looked at: that the trees agree where they overlap is for the caller to verify, and trees that
+/// stay apart (over disjoint primitives, or blocked by an intersection on the way to all they share) are for the
+/// caller to join. Deterministic. O(merges x (trees + size of the result x log size)), for each blocked pair O(size)
+/// more.
+[[nodiscard]] MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order = MergeOrder::paper);
+
+}  // namespace cloud2csg
