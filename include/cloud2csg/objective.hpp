@@ -37,7 +37,7 @@ struct Objective {
 /// E(t), evaluated as it is written: for each point the tree is walked, in double precision, with the libm exp and
 /// acos. The reference that the fast evaluation is held against. O(points x size).
 /// `points` are indices into the cloud; the tree's leaves index `primitives`. Where several primitives have the same
-/// |value|, the gradient is that of the one with the smallest index (see implicit_gradient).
+/// |value|, the one whose gradient counts is chosen by signed ranks (see implicit_gradient).
 [[nodiscard]] double reference_objective(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
                                          std::span<const std::uint32_t> points, const Objective& objective);
 

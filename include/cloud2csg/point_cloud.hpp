@@ -11,8 +11,8 @@ namespace cloud2csg {
 /// Points with outward unit normals, as structure of arrays.
 /// Invariant: `normals` is empty or has as many entries as `positions`.
 struct PointCloud {
-  Points positions;
-  Points normals;
+  Points positions = {};
+  Points normals = {};
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }
   [[nodiscard]] bool has_normals() const { return !normals.empty(); }

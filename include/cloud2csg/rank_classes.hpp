@@ -30,7 +30,8 @@ struct RankScratch {
 };
 
 /// The table of one set of primitives and the points that judge trees over them. Trees given to it index the
-/// primitives by their place in `primitives()`: local indices 0 .. n - 1.
+/// primitives by their place in `primitives()`: local indices 0 .. n - 1. They are as simplify() leaves them: the empty
+/// solid or all of space, which score nothing, or without any of the two within.
 class RankClasses {
  public:
   /// Up to this many primitives a signed rank fits a byte; above it takes two.

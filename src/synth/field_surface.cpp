@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -34,40 +35,50 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   return triangles;
 }
 
-struct FieldValue {
-  double value;
-  Vector3d gradient;
+struct Field {
+  std::vector<double> values;
+  Points gradients;
 };
 
-FieldValue field_at(const Primitive& primitive, const Vector3d& p) {
-  const PointsView point{{&p.x(), 1}, {&p.y(), 1}, {&p.z(), 1}};
-  FieldValue field{};
-  evaluate_field(primitive, point,
-                 {.distance = {&field.value, 1},
-                  .gradient_x = {&field.gradient.x(), 1},
-                  .gradient_y = {&field.gradient.y(), 1},
-                  .gradient_z = {&field.gradient.z(), 1}});
+Field field_at(const Primitive& primitive, PointsView points) {
+  Field field{.values = std::vector<double>(points.size()), .gradients = Points(points.size())};
+  Points& gradients = field.gradients;
+  evaluate_field(
+      primitive, points,
+      {.distance = field.values, .gradient_x = gradients.x, .gradient_y = gradients.y, .gradient_z = gradients.z});
   return field;
 }
 
-/// Moves a point of the mesh onto f = 0 by Newton steps along the gradient. Absent when there is no surface within
+/// Moves points of the mesh onto f = 0 by Newton steps along the gradient. False where there is no surface within
 /// `reach`: the mesh is wrong there, or it is the cap where the mesh was cut off.
-std::optional<SurfacePoint> project(const Primitive& primitive, const Vector3d& start, double reach) {
+std::vector<bool> project(const Primitive& primitive, double reach, PointCloud& cloud) {
   constexpr int k_most_steps = 30;
-  Vector3d position = start;
-  for (int step = 0; step < k_most_steps; ++step) {
-    const FieldValue field = field_at(primitive, position);
-    const double slope = field.gradient.squaredNorm();
-    if (!(slope > 0.0)) return std::nullopt;
-    const Vector3d move = field.value / slope * field.gradient;
-    position -= move;
-    if (!((position - start).norm() <= reach)) return std::nullopt;
-    constexpr double k_converged = 1e-12;
-    if (move.norm() <= k_converged * (reach + position.norm())) {
-      return SurfacePoint{.position = position, .normal = field.gradient / std::sqrt(slope)};
+  constexpr double k_converged = 1e-12;
+  const Points start = cloud.positions;
+  std::vector<bool> arrived(cloud.size(), false);
+  std::vector<std::size_t> moving(cloud.size());
+  std::iota(moving.begin(), moving.end(), std::size_t{0});
+  for (int step = 0; step < k_most_steps && !moving.empty(); ++step) {
+    Points places;
+    for (const std::size_t i : moving) places.push_back(cloud.positions[i]);
+    const Field field = field_at(primitive, places);
+    std::vector<std::size_t> still_moving;
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      const std::size_t i = moving[k];
+      const Vector3d slope = field.gradients[k];
+      const double square = slope.squaredNorm();
+      if (!(square > 0.0)) continue;
+      const Vector3d move = field.values[k] / square * slope;
+      const Vector3d position = places[k] - move;
+      if (!((position - start[i]).norm() <= reach)) continue;
+      cloud.positions.set(i, position);
+      cloud.normals.set(i, slope / std::sqrt(square));
+      arrived[i] = move.norm() <= k_converged * (reach + position.norm());
+      if (!arrived[i]) still_moving.push_back(i);
     }
+    moving = std::move(still_moving);
   }
-  return std::nullopt;
+  return arrived;
 }
 
 }  // namespace
@@ -84,10 +95,12 @@ PrimitiveSurface make_field_surface(const Primitive& primitive, const AlignedBox
   const TriangleMesh mesh = mesh_surface(CsgTree::leaf(0), {primitive}, limits, {.resolution = resolution}, run);
   const auto sampler = std::make_shared<const TriangleSampler>(triangles_of(mesh));
   const double reach = 2.0 * limits.sizes().maxCoeff() / resolution;
-  const auto draw = [primitive, sampler, reach](RandomStream& random) {
-    return project(primitive, sampler->draw(random).position, reach);
+  const auto draw = [sampler](RandomStream& random) {
+    const TriangleSampler::Draw drawn = sampler->draw(random);
+    return SurfacePoint{.position = drawn.position, .normal = sampler->normal(drawn.triangle)};
   };
-  return {.area = sampler->area(), .draw = draw};
+  const auto settle = [primitive, reach](PointCloud& cloud) { return project(primitive, reach, cloud); };
+  return {.area = sampler->area(), .draw = draw, .settle = settle};
 }
 
 }  // namespace cloud2csg

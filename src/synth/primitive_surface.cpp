@@ -34,7 +34,7 @@ class LocalSurface {
   PrimitiveSurface operator()(const Box& box) const {
     const Vector3d size = box.size;
     const Vector3d face_area(size.y() * size.z(), size.z() * size.x(), size.x() * size.y());
-    const auto draw = [size, face_area](RandomStream& random) -> std::optional<SurfacePoint> {
+    const auto draw = [size, face_area](RandomStream& random) {
       const double target = random.uniform() * face_area.sum();
       const int axis = target < face_area[0] ? 0 : target < face_area[0] + face_area[1] ? 1 : 2;
       const double side = random.chance(0.5) ? 1.0 : -1.0;
@@ -47,7 +47,7 @@ class LocalSurface {
 
   PrimitiveSurface operator()(const Sphere& sphere) const {
     const double radius = sphere.radius;
-    const auto draw = [radius](RandomStream& random) -> std::optional<SurfacePoint> {
+    const auto draw = [radius](RandomStream& random) {
       const double z = random.uniform(-1.0, 1.0);
       const double ring = std::sqrt(1.0 - z * z);
       const double angle = random_angle(random);
@@ -67,7 +67,7 @@ class LocalSurface {
     const double bottom_area = pi * cone.radius_bottom * cone.radius_bottom;
     const double top_area = pi * cone.radius_top * cone.radius_top;
     const double area = side_area + bottom_area + top_area;
-    const auto draw = [=](RandomStream& random) -> std::optional<SurfacePoint> {
+    const auto draw = [=](RandomStream& random) {
       const double target = random.uniform() * area;
       if (target < bottom_area) {
         return SurfacePoint{on_disc(cone.radius_bottom, -0.5 * cone.height, random), -Vector3d::UnitZ()};
@@ -83,7 +83,7 @@ class LocalSurface {
   PrimitiveSurface operator()(const Torus& torus) const {
     const double major = torus.major_radius;
     const double minor = torus.minor_radius;
-    const auto draw = [major, minor](RandomStream& random) -> std::optional<SurfacePoint> {
+    const auto draw = [major, minor](RandomStream& random) {
       // The ring at angle `around` of the tube is the longer the farther it is from the axis: keep by its length.
       double around = random_angle(random);
       while (!random.chance((major + minor * std::cos(around)) / (major + minor))) around = random_angle(random);
@@ -101,7 +101,7 @@ class LocalSurface {
     const double square = 0.25 * region_.diagonal().squaredNorm() - centre.z() * centre.z();
     if (square <= 0.0) return {};
     const double radius = std::sqrt(square);
-    const auto draw = [centre, radius](RandomStream& random) -> std::optional<SurfacePoint> {
+    const auto draw = [centre, radius](RandomStream& random) {
       const Vector3d middle(centre.x(), centre.y(), 0.0);
       return SurfacePoint{.position = middle + on_disc(radius, 0.0, random), .normal = Vector3d::UnitZ()};
     };
@@ -111,7 +111,7 @@ class LocalSurface {
   PrimitiveSurface operator()(const Polytope& polytope) const {
     TriangleSampler sampler(faces_of(polytope));
     const double area = sampler.area();
-    const auto draw = [sampler = std::move(sampler)](RandomStream& random) -> std::optional<SurfacePoint> {
+    const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
       const TriangleSampler::Draw drawn = sampler.draw(random);
       return SurfacePoint{.position = drawn.position, .normal = sampler.normal(drawn.triangle)};
     };
@@ -178,11 +178,9 @@ PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& regi
     return make_field_surface(primitive, region, run);
   }
   PrimitiveSurface local = std::visit(LocalSurface(primitive.pose, region), primitive.shape);
-  const auto place = [pose = primitive.pose,
-                      draw = std::move(local.draw)](RandomStream& random) -> std::optional<SurfacePoint> {
-    const std::optional<SurfacePoint> point = draw(random);
-    if (!point) return std::nullopt;
-    return SurfacePoint{.position = pose.to_world(point->position), .normal = pose.orientation * point->normal};
+  const auto place = [pose = primitive.pose, draw = std::move(local.draw)](RandomStream& random) {
+    const SurfacePoint point = draw(random);
+    return SurfacePoint{.position = pose.to_world(point.position), .normal = pose.orientation * point.normal};
   };
   return {.area = local.area, .draw = place};
 }

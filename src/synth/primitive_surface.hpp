@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <vector>
 
 #include "base/random.hpp"
 #include "cloud2csg/mesh.hpp"
+#include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/primitive.hpp"
 
 namespace cloud2csg {
@@ -18,8 +19,10 @@ struct SurfacePoint {
 /// The surface of one primitive, to draw points from, uniformly by area.
 struct PrimitiveSurface {
   double area = 0.0;  ///< 0 when no part of it lies in the region
-  /// Absent where a drawn candidate turned out to be no point of the surface: draw again, the area is an upper bound.
-  std::function<std::optional<SurfacePoint>(RandomStream&)> draw = {};
+  std::function<SurfacePoint(RandomStream&)> draw = {};
+  /// Where drawn points are only near the surface: moves them onto it, in place, normals too. Returns for each
+  /// whether it got there; the others are to be left out. Absent where draw() is exact.
+  std::function<std::vector<bool>(PointCloud&)> settle = {};
 };
 
 /// Closed forms for every plain shape; a half-space gives the part of its plane around `region` (finite). Expressions

@@ -19,13 +19,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-enum class Stream : std::uint64_t { candidates = 0x73796e7468'01, noise = 0x73796e7468'02 };
+enum class Stream : std::uint64_t { candidates = 0x73796e7468'01, order = 0x73796e7468'02, noise = 0x73796e7468'03 };
 
 constexpr std::size_t k_batch_candidates = 4096;
-/// Batches between two looks at whether there are enough points. A constant: threads must not change the result.
-constexpr std::size_t k_round_batches = 16;
-/// Rounds that measure the area for a wanted density; as many without a hit mean that there is no surface.
-constexpr std::size_t k_measuring_rounds = 8;
+/// Batches between two looks at whether there are enough points: at first one, then twice as many each time up to
+/// this. Never by the number of threads, which must not change the result.
+constexpr std::size_t k_most_round_batches = 16;
+/// Batches that measure the area for a wanted density; as many without a hit mean that there is no surface.
+constexpr std::size_t k_measuring_batches = 64;
 
 [[noreturn]] void fail_option(std::string name, std::string expected) {
   throw Error({.file = {}, .where = std::move(name), .expected = std::move(expected), .remedy = {}});
@@ -64,6 +65,18 @@ Points offset(const PointCloud& candidates, double epsilon) {
   return moved;
 }
 
+/// Shuffles, for the points of a batch come primitive by primitive and a part of it must be like the whole.
+void shuffle(PointCloud& cloud, RandomStream random) {
+  for (std::size_t i = cloud.size(); i > 1; --i) {
+    const std::size_t j = random.below(i);
+    for (Points* points : {&cloud.positions, &cloud.normals}) {
+      std::swap(points->x[i - 1], points->x[j]);
+      std::swap(points->y[i - 1], points->y[j]);
+      std::swap(points->z[i - 1], points->z[j]);
+    }
+  }
+}
+
 /// Draws candidates from the primitives' own surfaces and keeps those on the surface of the whole solid.
 class SurfaceSampler {
  public:
@@ -96,7 +109,9 @@ class SurfaceSampler {
       const double side = inner[i] < 0.0 ? 1.0 : -1.0;  // the solid is outside of a primitive that is cut away
       visible.add(points.positions[i], side * points.normals[i], candidates.owners[i]);
     }
-    return without_duplicates(visible);
+    PointCloud unique = without_duplicates(visible);
+    shuffle(unique, RandomStream(seed_, static_cast<std::uint64_t>(Stream::order), index));
+    return unique;
   }
 
  private:
@@ -113,14 +128,24 @@ class SurfaceSampler {
 
   [[nodiscard]] Candidates draw(std::uint64_t batch_index) const {
     RandomStream random(seed_, static_cast<std::uint64_t>(Stream::candidates), batch_index);
-    Candidates candidates;
+    std::vector<PointCloud> by_surface(surfaces_.size());
     for (std::size_t i = 0; i < k_batch_candidates; ++i) {
       const auto found = std::ranges::upper_bound(cumulative_area_, random.uniform() * area_);
       const auto last = static_cast<std::ptrdiff_t>(used_.size()) - 1;
       const auto chosen = static_cast<std::size_t>(std::min(found - cumulative_area_.begin(), last));
       if (surfaces_[chosen].area == 0.0) continue;
-      const std::optional<SurfacePoint> point = surfaces_[chosen].draw(random);
-      if (point) candidates.add(point->position, point->normal, used_[chosen]);
+      const SurfacePoint point = surfaces_[chosen].draw(random);
+      by_surface[chosen].positions.push_back(point.position);
+      by_surface[chosen].normals.push_back(point.normal);
+    }
+    Candidates candidates;
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+      PointCloud& points = by_surface[s];
+      const std::vector<bool> is_good =
+          surfaces_[s].settle ? surfaces_[s].settle(points) : std::vector<bool>(points.size(), true);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (is_good[i]) candidates.add(points.positions[i], points.normals[i], used_[s]);
+      }
     }
     return candidates;
   }
@@ -176,22 +201,24 @@ void append(Points& points, const Points& more) {
   points.z.insert(points.z.end(), more.z.begin(), more.z.end());
 }
 
-/// The first points that the batches give, in their order, as many as the options want.
+/// As many points as the options want: all of the first batches and a random part of the last.
 PointCloud draw_points(const SurfaceSampler& sampler, const SampleOptions& options, const RunContext& run) {
   PointCloud cloud;
-  std::size_t wanted = options.count;
-  for (std::size_t round = 0;; ++round) {
-    const bool is_measured = round >= k_measuring_rounds;
-    if (is_measured && cloud.size() == 0) fail_without_surface();
-    if (options.density > 0.0 && round == k_measuring_rounds) {
-      const double candidates = static_cast<double>(k_measuring_rounds * k_round_batches * k_batch_candidates);
-      const double area = sampler.area() * static_cast<double>(cloud.size()) / candidates;
-      wanted = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(options.density * area)));
+  std::size_t wanted = options.density > 0.0 ? 0 : options.count;
+  std::size_t batches_done = 0;
+  for (std::size_t round_batches = 1;; round_batches = std::min(2 * round_batches, k_most_round_batches)) {
+    if (batches_done >= k_measuring_batches) {
+      if (cloud.size() == 0) fail_without_surface();
+      if (wanted == 0) {
+        const auto candidates = static_cast<double>(batches_done * k_batch_candidates);
+        const double area = sampler.area() * static_cast<double>(cloud.size()) / candidates;
+        wanted = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(options.density * area)));
+      }
     }
-    if ((is_measured || options.density == 0.0) && cloud.size() >= wanted) break;
-    std::vector<PointCloud> batches(k_round_batches);
-    for_each_index(k_round_batches, run,
-                   [&](std::size_t i) { batches[i] = sampler.batch(round * k_round_batches + i); });
+    if (wanted > 0 && cloud.size() >= wanted) break;
+    std::vector<PointCloud> batches(round_batches);
+    for_each_index(round_batches, run, [&](std::size_t i) { batches[i] = sampler.batch(batches_done + i); });
+    batches_done += round_batches;
     for (const PointCloud& batch : batches) {
       append(cloud.positions, batch.positions);
       append(cloud.normals, batch.normals);

@@ -1,0 +1,28 @@
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "cloud/ply_header.hpp"
+#include "cloud2csg/compare.hpp"
+#include "cloud2csg/error.hpp"
+
+namespace cloud2csg {
+
+Shape3d read_shape(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto is_one_of = [&ending](std::initializer_list<const char*> endings) {
+    return std::ranges::find(endings, ending) != endings.end();
+  };
+  if (ending == ".json") return {.model = read_model(file)};
+  if (is_one_of({".stl", ".off", ".obj"})) return {.mesh = read_mesh(file)};
+  if (ending == ".ply" && ply_has_faces(file)) return {.mesh = read_mesh(file)};
+  if (is_one_of({".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"})) return {.cloud = read_point_cloud(file)};
+  throw Error({.file = file.string(),
+               .where = {},
+               .expected = "expected a model (.json), a mesh (.stl, .off, .obj, .ply with faces) or a point cloud "
+                           "(.ply, .pcd, .xyz, .xyzn, .txt, .pts)",
+               .remedy = "convert the file"});
+}
+
+}  // namespace cloud2csg
