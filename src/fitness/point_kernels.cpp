@@ -129,25 +129,38 @@ void contributions_of_block(const BlockField& field, const BlockNormals& normals
   }
 }
 
+/// How many of the magnitudes first .. last - 1 come before `magnitude`, added to `count`; `before` compares.
+template <class Vector, class Counts, class Before>
+HWY_INLINE Counts count_before(const double* magnitudes, std::size_t first, std::size_t last, Vector magnitude,
+                               Counts count, const Before& before) {
+  const Doubles d;
+  const hn::RebindToSigned<Doubles> di;
+  for (std::size_t q = first; q < last; ++q) {
+    const auto comes_before = before(hn::Load(d, magnitudes + q * hn::Lanes(d)), magnitude);
+    count = count - hn::BitCast(di, hn::VecFromMask(d, comes_before));  // a true mask is -1
+  }
+  return count;
+}
+
 void rank_keys_of_block(std::span<const double* const> distances, const KeyLayout& layout, std::uint64_t* keys) {
   const Doubles d;
   const hn::RebindToSigned<Doubles> di;
   const std::size_t n = distances.size();
+  // The magnitudes of a few points side by side: each is read n times.
+  AlignedVector<double> magnitudes(n * hn::Lanes(d));
   std::fill_n(keys, layout.words * k_block_points, 0);
   for (std::size_t i = 0; i < k_block_points; i += hn::Lanes(d)) {
     for (std::size_t p = 0; p < n; ++p) {
-      const auto f = hn::Load(d, distances[p] + i);
-      const auto magnitude = hn::Abs(f);
-      // Minus the rank: one for itself and one for each that comes before it; a true mask is -1.
-      auto below = hn::Set(di, -1);
-      for (std::size_t q = 0; q < p; ++q) {
-        below = below + hn::BitCast(di, hn::VecFromMask(d, hn::Abs(hn::Load(d, distances[q] + i)) <= magnitude));
-      }
-      for (std::size_t q = p + 1; q < n; ++q) {
-        below = below + hn::BitCast(di, hn::VecFromMask(d, hn::Abs(hn::Load(d, distances[q] + i)) < magnitude));
-      }
-      const auto inside = hn::RebindMask(di, f < hn::Zero(d));
-      const auto code = hn::Set(di, static_cast<std::int64_t>(n)) + hn::IfThenElse(inside, below, hn::Neg(below));
+      hn::Store(hn::Abs(hn::Load(d, distances[p] + i)), d, &magnitudes[p * hn::Lanes(d)]);
+    }
+    for (std::size_t p = 0; p < n; ++p) {
+      const auto magnitude = hn::Load(d, &magnitudes[p * hn::Lanes(d)]);
+      auto rank = hn::Set(di, 1);
+      // Ties by index: of equal magnitudes, those with a smaller index come before.
+      rank = count_before(magnitudes.data(), 0, p, magnitude, rank, [](auto a, auto b) { return a <= b; });
+      rank = count_before(magnitudes.data(), p + 1, n, magnitude, rank, [](auto a, auto b) { return a < b; });
+      const auto inside = hn::RebindMask(di, hn::Load(d, distances[p] + i) < hn::Zero(d));
+      const auto code = hn::Set(di, static_cast<std::int64_t>(n)) + hn::IfThenElse(inside, hn::Neg(rank), rank);
       auto* word = reinterpret_cast<std::int64_t*>(keys + layout.word_of(p) * k_block_points + i);
       const auto shifted = hn::ShiftLeftSame(code, static_cast<int>(layout.shift_of(p)));
       hn::Store(hn::Or(hn::Load(di, word), shifted), di, word);
