@@ -1,0 +1,97 @@
+#include "cloud2csg/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+
+namespace cloud2csg::app {
+namespace {
+
+struct CompareCommand {
+  std::string truth;
+  std::string result;
+  CompareOptions comparing;
+  bool is_json = false;
+  RunOptions running;
+
+  void run(std::stop_token stop) const;
+};
+
+nlohmann::ordered_json or_null(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+std::string to_json_text(const Comparison& comparison) {
+  return nlohmann::ordered_json{{"intersection_over_union", or_null(comparison.intersection_over_union)},
+                                {"volume_truth", or_null(comparison.volume_truth)},
+                                {"volume_result", or_null(comparison.volume_result)},
+                                {"mean_distance", comparison.mean_distance},
+                                {"hausdorff_distance", comparison.hausdorff_distance},
+                                {"size_ratio", or_null(comparison.size_ratio)},
+                                {"depth_ratio", or_null(comparison.depth_ratio)}}
+      .dump(2);
+}
+
+std::string to_table(const Comparison& comparison) {
+  std::string table;
+  const auto add = [&table](std::string_view name, const std::optional<double>& value) {
+    table += fmt::format("{:<26}{}\n", name, value ? fmt::format("{:.6g}", *value) : "-");
+  };
+  add("intersection over union", comparison.intersection_over_union);
+  add("volume of the truth", comparison.volume_truth);
+  add("volume of the result", comparison.volume_result);
+  add("mean distance", comparison.mean_distance);
+  add("Hausdorff distance", comparison.hausdorff_distance);
+  add("size ratio", comparison.size_ratio);
+  add("depth ratio", comparison.depth_ratio);
+  return table;
+}
+
+void CompareCommand::run(std::stop_token stop) const {
+  Session session(running, std::move(stop));
+  const Shape3d truth_shape = read_shape(truth);
+  const Shape3d result_shape = read_shape(result);
+  const Comparison comparison = cloud2csg::compare(truth_shape, result_shape, comparing, session.run());
+  session.display().finish();
+  if (is_json) {
+    fmt::print("{}\n", to_json_text(comparison));
+  } else {
+    fmt::print("{}", to_table(comparison));
+  }
+}
+
+void add_options(CLI::App& app, CompareCommand& command) {
+  app.add_option("truth", command.truth, "Model, mesh or cloud to compare with")->required()->type_name("TRUTH");
+  app.add_option("result", command.result, "Model, mesh or cloud to judge")->required()->type_name("RESULT");
+  app.add_flag("--json", command.is_json, "JSON instead of a table; what cannot be had is null")->group("Output");
+  app.add_option("--resolution", command.comparing.resolution, "Volumes: columns along the longest side")
+      ->check(CLI::Range(4, 8192))
+      ->type_name("N")
+      ->group("Accuracy")
+      ->capture_default_str();
+  app.add_option("--samples", command.comparing.surface_samples, "Distances: points on each surface")
+      ->check(CLI::PositiveNumber)
+      ->type_name("COUNT")
+      ->group("Accuracy")
+      ->capture_default_str();
+  app.add_option("--seed", command.comparing.seed, "Same seed, same result")
+      ->type_name("S")
+      ->group("Accuracy")
+      ->capture_default_str();
+  add_run_options(app, command.running);
+}
+
+}  // namespace
+
+Command add_compare(CLI::App& program) {
+  CLI::App* app = program.add_subcommand("compare", "Says how alike two of model, mesh or cloud are");
+  app->footer(example("  cloud2csg compare true.off extracted.json --json"));
+  auto command = std::make_shared<CompareCommand>();
+  add_options(*app, *command);
+  return {.options = app, .run = [command](std::stop_token stop) { command->run(std::move(stop)); }};
+}
+
+}  // namespace cloud2csg::app

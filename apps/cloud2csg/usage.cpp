@@ -1,0 +1,83 @@
+#include "usage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace cloud2csg::app {
+namespace {
+
+/// The innermost command that was named on the command line.
+const CLI::App& chosen(const CLI::App& program) {
+  const auto commands = program.get_subcommands();
+  return commands.empty() ? program : *commands.front();
+}
+
+std::vector<std::string> known_names(const CLI::App& app, bool options) {
+  std::vector<std::string> names;
+  if (options) {
+    for (const CLI::Option* option : app.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(command->get_name());
+    }
+  }
+  return names;
+}
+
+std::string unknown_argument(const CLI::App& app, std::string word) {
+  const bool is_option = word.size() > 1 && word.front() == '-';
+  if (is_option) word = word.substr(0, word.find('='));
+  const std::vector<std::string> names = known_names(app, is_option);
+  const char* kind = is_option ? "unknown option" : names.empty() ? "unexpected argument" : "unknown command";
+  const std::string nearest = nearest_name(word, names);
+  return fmt::format("{} '{}'{}", kind, word, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+}
+
+}  // namespace
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  // Optimal string alignment; rows of the table are prefixes of a.
+  std::vector<std::size_t> before_previous(b.size() + 1);
+  std::vector<std::size_t> previous(b.size() + 1);
+  std::vector<std::size_t> current(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) previous[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    current[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = previous[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      current[j] = std::min({previous[j] + 1, current[j - 1] + 1, replaced});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) current[j] = std::min(current[j], before_previous[j - 2] + 1);
+    }
+    before_previous.swap(previous);
+    previous.swap(current);
+  }
+  return previous[b.size()];
+}
+
+std::string nearest_name(std::string_view word, std::span<const std::string> candidates) {
+  std::string nearest;
+  // A third of the letters may be wrong.
+  std::size_t best = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const bool abbreviates = word.size() >= 4 && candidate.starts_with(word);
+    const std::size_t distance = abbreviates ? 1 : edit_distance(word, candidate);
+    if (distance < best) best = distance, nearest = candidate;
+  }
+  return nearest;
+}
+
+std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App& app = chosen(program);
+  // A misspelt option is the cause when a required one is missing too.
+  const std::vector<std::string> unknown = app.remaining();
+  const std::string what = unknown.empty() ? std::string(error.what()) : unknown_argument(app, unknown.front());
+  const std::string name = &app == &program ? program.get_name() : program.get_name() + " " + app.get_name();
+  return fmt::format("{} (see '{} --help')", what, name);
+}
+
+}  // namespace cloud2csg::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace cloud2csg::app {
+
+/// One line that says what is wrong with the command line, with the nearest right name for a wrong one.
+[[nodiscard]] std::string usage_message(const CLI::App& program, const CLI::ParseError& error);
+
+/// How many letters must be inserted, deleted, replaced or swapped with their neighbour to turn one word into the
+/// other.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate nearest to `word`; empty when none is near enough to be meant.
+[[nodiscard]] std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
+
+}  // namespace cloud2csg::app

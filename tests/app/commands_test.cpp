@@ -1,0 +1,183 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "app/program.hpp"
+
+namespace cloud2csg::test {
+namespace {
+
+using nlohmann::json;
+using Commands = ProgramTest;
+
+TEST_F(Commands, SampleMakesAsManyPointsAsAsked) {
+  const std::string cloud = path("m1.ply");
+  const Outcome outcome = run({"sample", shipped("m1.json"), "-n", "1234", "--noise", "0.01", "-o", cloud});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  const json info = json::parse(run({"info", cloud, "--json"}).out);
+  EXPECT_EQ(info["kind"], "cloud");
+  EXPECT_EQ(info["points"], 1234);
+  EXPECT_EQ(info["normals"], true);
+  EXPECT_GT(info["bounds"][1][1].get<double>(), 0.4);
+  EXPECT_LT(info["bounds"][1][1].get<double>(), 1.2);
+}
+
+TEST_F(Commands, SampleIsRepeatable) {
+  const auto sample = [this](const std::string& name, const std::string& seed) {
+    EXPECT_EQ(run({"sample", shipped("m1.json"), "-n", "500", "--seed", seed, "-o", path(name)}).status, 0);
+    return read_file(path(name));
+  };
+  const std::string once = sample("a.ply", "3");
+  EXPECT_EQ(once, sample("b.ply", "3"));
+  EXPECT_NE(once, sample("c.ply", "4"));
+}
+
+TEST_F(Commands, SampleWritesEveryEnding) {
+  const Outcome outcome = run({"sample", shipped("m1.json"), "-n", "300", "--ascii", "-o", path("c.ply"), "-o",
+                               path("c.pcd"), "-o", path("c.xyz"), "-o", path("c.pts")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"c.pcd", "c.ply", "c.pts", "c.xyz"}));
+  for (const std::string& name : files()) {
+    EXPECT_EQ(json::parse(run({"info", path(name), "--json"}).out)["points"], 300) << name;
+  }
+  EXPECT_NE(read_file(path("c.ply")).find("format ascii"), std::string::npos);
+}
+
+TEST_F(Commands, ConvertWritesEveryEnding) {
+  const Outcome outcome =
+      run({"convert", shipped("m1.json"), "-o", path("m.json"), "-o", path("m.scad"), "-o", path("m.dot"), "-o",
+           path("m.stl"), "-o", path("m.off"), "-o", path("m.obj"), "--resolution", "32"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(files(), (std::vector<std::string>{"m.dot", "m.json", "m.obj", "m.off", "m.scad", "m.stl"}));
+  EXPECT_NE(read_file(path("m.scad")).find("difference()"), std::string::npos);
+  EXPECT_NE(read_file(path("m.dot")).find("digraph"), std::string::npos);
+  for (const char* mesh : {"m.stl", "m.off", "m.obj"}) {
+    const json info = json::parse(run({"info", path(mesh), "--json"}).out);
+    EXPECT_EQ(info["kind"], "mesh");
+    EXPECT_EQ(info["watertight"], true) << mesh;
+    EXPECT_GT(info["volume"].get<double>(), 0.2) << mesh;
+  }
+}
+
+TEST_F(Commands, ConvertedModelIsTheSameModel) {
+  ASSERT_EQ(run({"convert", shipped("m0.json"), "-o", path("m.json")}).status, 0);
+  json before = json::parse(run({"info", shipped("m0.json"), "--json"}).out);
+  EXPECT_EQ(before, json::parse(run({"info", path("m.json"), "--json"}).out));
+}
+
+TEST_F(Commands, InfoDescribesAModel) {
+  const json info = json::parse(run({"info", shipped("m1.json"), "--json"}).out);
+  EXPECT_EQ(info["kind"], "model");
+  EXPECT_EQ(info["primitives"], 4);
+  EXPECT_EQ(info["types"], (json{{"cylinder", 1}, {"displaced box", 1}, {"sphere", 2}}));
+  EXPECT_EQ(info["tree"]["size"], 7);
+  EXPECT_EQ(info["tree"]["leaves"], 4);
+  EXPECT_EQ(info["tree"]["depth"], 3);
+  const Outcome table = run({"info", shipped("m1.json")});
+  EXPECT_EQ(table.status, 0);
+  EXPECT_NE(table.out.find("primitives"), std::string::npos);
+  EXPECT_NE(table.out.find(info["tree"]["text"].get<std::string>()), std::string::npos) << table.out;
+}
+
+TEST_F(Commands, InfoOfAnUnboundedModelIsValidJson) {
+  const std::string model = file("h.json", R"({"format": "cloud2csg", "version": 1,
+      "primitives": [{"id": "h", "type": "half_space"}], "tree": {"primitive": "h"}})");
+  const Outcome outcome = run({"info", model, "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(json::parse(outcome.out)["bounds"][0][0].is_null());
+}
+
+TEST_F(Commands, CompareWithItselfIsPerfect) {
+  const std::vector<std::string> same{
+      "compare", shipped("m1.json"), shipped("m1.json"), "--resolution", "48", "--samples", "2000", "--json"};
+  const Outcome outcome = run(same);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json comparison = json::parse(outcome.out);
+  EXPECT_NEAR(comparison["intersection_over_union"].get<double>(), 1, 1e-9);
+  EXPECT_EQ(comparison["size_ratio"], 1);
+  EXPECT_EQ(comparison["depth_ratio"], 1);
+}
+
+TEST_F(Commands, CompareSaysWhatCannotBeHad) {
+  ASSERT_EQ(run({"sample", shipped("m1.json"), "-n", "2000", "-o", path("c.ply")}).status, 0);
+  const std::vector<std::string> arguments{"compare", shipped("m1.json"), path("c.ply"), "--samples", "2000"};
+  const Outcome table = run(arguments);
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_NE(table.out.find("intersection over union   -\n"), std::string::npos) << table.out;
+  std::vector<std::string> with_json = arguments;
+  with_json.emplace_back("--json");
+  const json comparison = json::parse(run(with_json).out);
+  EXPECT_TRUE(comparison["intersection_over_union"].is_null());
+  EXPECT_LT(comparison["mean_distance"].get<double>(), 0.05);
+}
+
+TEST_F(Commands, QuietSaysNothing) {
+  const Outcome outcome = run({"convert", shipped("m1.json"), "-o", path("m.stl"), "--resolution", "24", "--quiet"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out + outcome.err, "");
+}
+
+TEST_F(Commands, ProgressInALogIsPlainLines) {
+  const Outcome outcome = run({"convert", shipped("m1.json"), "-o", path("m.stl"), "--resolution", "24"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err, "");
+  EXPECT_EQ(outcome.err.find_first_of("\x1b\r"), std::string::npos) << outcome.err;
+}
+
+/// A pseudo-terminal: what the program writes to it can be read back.
+class Terminal {
+ public:
+  Terminal() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) return;
+    name_ = ::ptsname(master_);
+    slave_ = ::open(name_.c_str(), O_RDWR | O_NOCTTY);  // keeps what was written when the program has ended
+  }
+  ~Terminal() {
+    ::close(slave_);
+    ::close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+  Terminal(Terminal&&) = delete;
+  Terminal& operator=(Terminal&&) = delete;
+
+  [[nodiscard]] bool is_open() const { return slave_ >= 0; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::string read_all() const {
+    std::string text;
+    char buffer[4096];
+    for (ssize_t got = 0; (got = ::read(master_, buffer, sizeof buffer)) > 0;) {
+      text.append(buffer, static_cast<std::size_t>(got));
+    }
+    return text;
+  }
+
+ private:
+  int master_ = -1;
+  int slave_ = -1;
+  std::string name_;
+};
+
+TEST_F(Commands, ProgressOnATerminalIsABar) {
+  const Terminal terminal;
+  if (!terminal.is_open()) GTEST_SKIP() << "no pseudo-terminals here";
+  const std::vector<std::string> arguments{"convert", shipped("m1.json"), "-o", path("m.stl"), "--resolution", "24"};
+  const std::string green = "\x1b[32m";
+  const auto show = [&](const std::string& setup) {
+    EXPECT_EQ(start(arguments, setup, terminal.name()).wait().status, 0);
+    return terminal.read_all();
+  };
+  const std::string colored = show("export TERM=xterm; unset NO_COLOR");
+  EXPECT_NE(colored.find("\r\x1b[K"), std::string::npos);
+  const std::string plain = show("export TERM=xterm NO_COLOR=1");
+  EXPECT_NE(plain.find("\r\x1b[K"), std::string::npos);
+  EXPECT_EQ(plain.find(green), std::string::npos);
+  EXPECT_EQ(show("export TERM=dumb").find('\x1b'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cloud2csg::test

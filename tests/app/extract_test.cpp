@@ -1,0 +1,144 @@
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/program.hpp"
+
+namespace cloud2csg::test {
+namespace {
+
+using nlohmann::json;
+
+class Extract : public ProgramTest {
+ protected:
+  /// A cloud of a shipped model.
+  std::string sampled(const std::string& model, const std::string& count) {
+    const std::string cloud = path("cloud.ply");
+    EXPECT_EQ(run({"sample", shipped(model), "-n", count, "--noise", "0.005", "-o", cloud, "--quiet"}).status, 0);
+    return cloud;
+  }
+};
+
+TEST_F(Extract, FindsTheModelAgain) {
+  const std::string cloud = sampled("m1.json", "4000");
+  const Outcome outcome = run({"extract", cloud, "--primitives", shipped("m1.json"), "-o", path("m.json"), "-o",
+                               path("m.scad"), "--stats", path("s.json"), "--threads", "2"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(files(), (std::vector<std::string>{"cloud.ply", "m.json", "m.scad", "s.json"}));
+  const Outcome compared =
+      run({"compare", shipped("m1.json"), path("m.json"), "--resolution", "64", "--samples", "2000", "--json"});
+  EXPECT_GT(json::parse(compared.out)["intersection_over_union"].get<double>(), 0.99) << compared.err;
+}
+
+TEST_F(Extract, WritesStatistics) {
+  const std::string cloud = sampled("m2.json", "4000");
+  const Outcome outcome = run({"extract", cloud, "--primitives", shipped("m2.json"), "-o", path("m.json"), "--stats",
+                               path("s.json"), "--seed", "7", "--threads", "2", "--quiet"});
+  ASSERT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+  const json statistics = json::parse(read_file(path("s.json")));
+  for (const char* field : {"version", "strategy", "parallel", "threads", "seed", "complete", "points", "primitives",
+                            "clique_histogram", "seconds", "search", "merge", "tree", "fit", "warnings"}) {
+    EXPECT_TRUE(statistics.contains(field)) << field;
+  }
+  EXPECT_EQ(statistics["points"], 4000);
+  EXPECT_EQ(statistics["primitives"], 20);
+  EXPECT_EQ(statistics["seed"], 7);
+  EXPECT_EQ(statistics["complete"], true);
+  EXPECT_EQ(statistics["clique_histogram"], (json{0, 0, 0, 12}));
+  const json& seconds = statistics["seconds"];
+  EXPECT_GT(seconds["read"].get<double>(), 0);
+  EXPECT_GT(seconds["write"].get<double>(), 0);
+  EXPECT_GE(seconds["total"].get<double>(), seconds["read"].get<double>() + seconds["extraction"].get<double>());
+}
+
+TEST_F(Extract, SameSeedSameFile) {
+  const std::string cloud = sampled("m1.json", "2000");
+  const auto extract = [&](const std::string& threads, const std::string& parallel) {
+    const std::string out = path("m" + threads + parallel + ".json");
+    EXPECT_EQ(run({"extract", cloud, "--primitives", shipped("m1.json"), "-o", out, "--threads", threads, "--parallel",
+                   parallel, "--seed", "5"})
+                  .status,
+              0);
+    return read_file(out);
+  };
+  const std::string once = extract("1", "none");
+  EXPECT_EQ(once, extract("2", "both"));
+  EXPECT_EQ(once, extract("3", "population"));
+}
+
+TEST_F(Extract, PresetsAndStrategiesAreTaken) {
+  const std::string cloud = sampled("m1.json", "1000");
+  const auto strategy_of = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"extract", cloud,          "--primitives", shipped("m1.json"),
+                                       "-o",      path("m.json"), "--stats",      path("s.json")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(read_file(path("s.json")))["strategy"].get<std::string>();
+  };
+  EXPECT_EQ(strategy_of({}), "auto");
+  EXPECT_EQ(strategy_of({"--preset", "paper"}), "partition");
+  EXPECT_EQ(strategy_of({"--preset", "paper", "--strategy", "baseline"}), "baseline");
+}
+
+/// A search that takes minutes when nobody stops it.
+std::vector<std::string> endless(const std::string& cloud, const std::string& model, const std::string& out,
+                                 const std::string& statistics) {
+  return {"extract",
+          cloud,
+          "--primitives",
+          model,
+          "-o",
+          out,
+          "--stats",
+          statistics,
+          "--preset",
+          "paper",
+          "--strategy",
+          "baseline",
+          "--threads",
+          "1",
+          "--population",
+          "20000",
+          "--idle-generations",
+          "1000000"};
+}
+
+/// Waits until the program says that it has begun to segment: then it is about to search.
+void wait_for_search(const RunningProgram& program) {
+  for (int i = 0; i < 600 && program.err_so_far().find("classes") == std::string::npos; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+}
+
+TEST_F(Extract, FirstInterruptWritesTheBestSoFar) {
+  const std::string cloud = sampled("m0.json", "3000");
+  RunningProgram program = start(endless(cloud, shipped("m0.json"), path("m.json"), path("s.json")));
+  wait_for_search(program);
+  program.send_signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("cloud2csg: interrupted: the best tree so far was written\n"), std::string::npos)
+      << outcome.err;
+  ASSERT_EQ(files(), (std::vector<std::string>{"cloud.ply", "m.json", "s.json"}));
+  EXPECT_EQ(json::parse(read_file(path("s.json")))["complete"], false);
+  const json model = json::parse(read_file(path("m.json")));
+  EXPECT_EQ(model["description"].get<std::string>().rfind("INCOMPLETE", 0), 0U);
+  EXPECT_EQ(run({"info", path("m.json")}).status, 0);
+}
+
+TEST_F(Extract, TimeLimitIsNotAFailure) {
+  const std::string cloud = sampled("m0.json", "3000");
+  std::vector<std::string> arguments = endless(cloud, shipped("m0.json"), path("m.json"), path("s.json"));
+  arguments.insert(arguments.end(), {"--time-limit", "0.5"});
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(read_file(path("s.json")))["complete"], false);
+}
+
+}  // namespace
+}  // namespace cloud2csg::test
