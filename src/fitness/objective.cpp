@@ -15,10 +15,16 @@ struct Selected {
   bool complemented;
 };
 
+/// Zero counts as positive, and so as negative when complemented.
+bool has_negative_rank(const Selected& s) {
+  return s.value < 0 || (s.value == 0 && s.complemented);
+}
+
 /// Whether a's signed rank is below b's: by value; equal values by the index of the primitive, mirrored when negative.
 bool ranks_below(const Selected& a, const Selected& b) {
   if (a.value != b.value) return a.value < b.value;
-  return a.value < 0 ? a.primitive > b.primitive : a.primitive < b.primitive;
+  if (has_negative_rank(a) != has_negative_rank(b)) return has_negative_rank(a);
+  return has_negative_rank(a) ? a.primitive > b.primitive : a.primitive < b.primitive;
 }
 
 Selected negated(Selected s) {

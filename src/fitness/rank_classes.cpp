@@ -1,5 +1,6 @@
 #include "cloud2csg/rank_classes.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "fitness/select_kernels.hpp"
@@ -13,9 +14,19 @@ RankTable<Rank> table_of(const AlignedVector<Rank>& ranks, const AlignedVector<f
   return {.ranks = ranks.data(), .scores = scores.data(), .primitives = primitives, .padded = padded};
 }
 
+/// Whether the tree is nothing or all of space: without a surface, it scores nothing at any point.
+bool is_constant(const CsgTree& tree) {
+  const auto is_constant_node = [](const CsgNode& node) {
+    return node.operation() == Operation::empty || node.operation() == Operation::full;
+  };
+  assert(tree.size() == 1 || std::ranges::none_of(tree.nodes(), is_constant_node));
+  return is_constant_node(tree.nodes().front()) && tree.size() == 1;
+}
+
 }  // namespace
 
 double RankClasses::geometry(const CsgTree& tree, RankScratch& scratch) const {
+  if (is_constant(tree)) return 0;
   return std::visit(
       [&](const auto& ranks) {
         return tree_geometry(table_of(ranks, scores_, primitive_count(), padded_count_), tree.nodes(), scratch);
@@ -25,6 +36,7 @@ double RankClasses::geometry(const CsgTree& tree, RankScratch& scratch) const {
 
 std::vector<float> RankClasses::class_scores(const CsgTree& tree, RankScratch& scratch) const {
   std::vector<float> scores(class_count_);
+  if (is_constant(tree)) return scores;
   std::visit(
       [&](const auto& ranks) {
         tree_class_scores(table_of(ranks, scores_, primitive_count(), padded_count_), tree.nodes(), scratch, scores);
@@ -34,6 +46,7 @@ std::vector<float> RankClasses::class_scores(const CsgTree& tree, RankScratch& s
 }
 
 double RankClasses::reference_geometry(const CsgTree& tree) const {
+  if (is_constant(tree)) return 0;
   double sum = 0;
   const std::size_t row = 2 * primitive_count() + 1;
   std::visit(
