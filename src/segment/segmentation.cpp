@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
+
+#include "base/random.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_noise_sample = 4096;
 constexpr double k_noise_floor = 1e-5;  // of the diagonal
+constexpr double k_noise_ceiling = 0.1;
+constexpr double k_outlier_sigmas = 5.0;
 constexpr double k_sigmas = 3.0;
+constexpr std::uint64_t k_sampling_stage = 0x6e6f'6973;  // names its stream of random numbers
 
 double cosine_of_deg(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180.0);
@@ -30,21 +36,31 @@ struct Sample {
   Points positions, normals;
 };
 
-Sample every_nth(const PointCloud& cloud, std::size_t most) {
+/// One point out of every few, which one by chance: scans come in rows, and a fixed step may follow a column of them.
+Sample one_of_every_few(const PointCloud& cloud, std::size_t most) {
   Sample sample;
-  const std::size_t stride = (cloud.size() + most - 1) / most;
-  for (std::size_t i = 0; i < cloud.size(); i += stride) {
+  RandomStream random(0, k_sampling_stage);
+  const std::size_t few = (cloud.size() + most - 1) / most;
+  for (std::size_t begin = 0; begin < cloud.size(); begin += few) {
+    const std::size_t i = begin + random.below(std::min(few, cloud.size() - begin));
     sample.positions.push_back(cloud.positions[i]);
     sample.normals.push_back(cloud.normals[i]);
   }
   return sample;
 }
 
+/// Standard deviation of a normal distribution from the median of absolute values. Reorders them.
+double robust_deviation(std::vector<double>& absolute_values) {
+  const auto middle = absolute_values.begin() + static_cast<std::ptrdiff_t>(absolute_values.size() / 2);
+  std::nth_element(absolute_values.begin(), middle, absolute_values.end());
+  return 1.4826 * *middle;
+}
+
 }  // namespace
 
 double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, double angle_tolerance_deg) {
   assert(cloud.has_normals());
-  const Sample sample = every_nth(cloud, k_noise_sample);
+  const Sample sample = one_of_every_few(cloud, k_noise_sample);
   const double least_cosine = cosine_of_deg(angle_tolerance_deg);
   std::vector<double> nearest(sample.positions.size(), std::numeric_limits<double>::infinity());
   for (const Primitive& primitive : primitives) {
@@ -56,11 +72,13 @@ double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, d
   }
   std::erase_if(nearest, [](double distance) { return !std::isfinite(distance); });
   const AlignedBox box = bounds_of(sample.positions);
-  const double floor = box.isEmpty() ? 0.0 : k_noise_floor * box.diagonal().norm();
-  if (nearest.empty()) return floor;
-  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
-  std::nth_element(nearest.begin(), middle, nearest.end());
-  return std::max(1.4826 * *middle, floor);
+  const double diagonal = box.isEmpty() ? 0.0 : box.diagonal().norm();
+  // Points all in one place have no scale; but it must not be zero, since others divide by it.
+  const double scale = diagonal > 0 ? diagonal : 1.0;
+  if (nearest.empty()) return k_noise_floor * scale;
+  const double with_outliers = robust_deviation(nearest);
+  std::erase_if(nearest, [&](double distance) { return distance > k_outlier_sigmas * with_outliers; });
+  return std::clamp(robust_deviation(nearest), k_noise_floor * scale, k_noise_ceiling * scale);
 }
 
 SegmentationTolerances segmentation_tolerances(const SegmentationOptions& options, double noise) {
