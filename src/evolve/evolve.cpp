@@ -1,6 +1,8 @@
 #include "cloud2csg/evolve.hpp"
 
-#include <numeric>
+#include <algorithm>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "cloud2csg/simplify.hpp"
@@ -69,6 +71,27 @@ void search(const RankClasses& table, std::vector<CsgTree> seeds, const GaOption
   }
 }
 
+bool is_solid(const CsgTree& tree) {
+  return !primitives_of(simplify(tree)).empty();
+}
+
+/// A formula such as a - a scores on a sheet that was seen from both sides, but there is no such solid: then the best
+/// of the primitives and their complements it is.
+void settle_for_a_solid(const RankClasses& table, Evolution& best) {
+  if (is_solid(best.tree)) return;
+  RankScratch scratch;
+  best.score = -std::numeric_limits<double>::infinity();
+  for (PrimitiveIndex p = 0; p < table.primitive_count(); ++p) {
+    for (CsgTree& tree : std::vector{CsgTree::leaf(p), complement(CsgTree::leaf(p))}) {
+      const double score = table.score(tree, scratch);
+      if (score <= best.score) continue;
+      best.score = score;
+      best.geometry = table.geometry(tree, scratch);
+      best.tree = std::move(tree);
+    }
+  }
+}
+
 Evolution nothing_yet() {
   Evolution evolution;
   evolution.score = -std::numeric_limits<double>::infinity();
@@ -102,13 +125,16 @@ Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::u
   }
   if (options.seeds) improve(best, seed_by_local_search(table, run, seeds));
   search(table, std::move(seeds), options, item, run, best);
+  settle_for_a_solid(table, best);
   return best;
 }
 
 Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const GaOptions& options, std::uint64_t item,
                            const RunContext& run) {
+  if (!is_solid(start)) return evolve_tree(table, options, item, run);
   Evolution best = local_search(table, start, {}, run);
   search(table, {start, best.tree}, options, item, run, best);
+  settle_for_a_solid(table, best);
   return best;
 }
 

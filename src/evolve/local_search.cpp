@@ -69,6 +69,8 @@ class Neighbourhood {
   }
 
   void insert(std::size_t node, const CsgTree& leaf) {
+    const Operation now = centre_.tree.nodes()[node].operation();
+    if (now == Operation::empty || now == Operation::full) return;  // nothing to join, and tables take it alone only
     const CsgTree here = child(node);
     for (const Operation operation : k_binary) consider(node, join(operation, here, leaf));
     consider(node, subtract(leaf, here));

@@ -9,7 +9,7 @@ namespace {
 int level_of(const CsgTree& tree, std::size_t node) {
   int level = 0;
   for (std::size_t above = node + 1; above < tree.size(); ++above) {
-    if (above - tree.nodes()[above].length() < node) ++level;
+    if (above + 1 - tree.nodes()[above].length() <= node) ++level;
   }
   return level;
 }
