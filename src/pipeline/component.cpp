@@ -45,7 +45,8 @@ class ComponentMerger {
 
  private:
   /// Keeps the tree when it is the best so far. Whether it is whole and keeps what the partitions promised.
-  bool consider(MergeWay way, const CsgTree& tree, bool whole) {
+  bool consider(MergeWay way, const CsgTree& found, bool whole) {
+    const CsgTree tree = simplify(found);
     const double score = component_.table.score(tree, scratch_);
     if (score > best_score_) {
       best_score_ = score;
@@ -76,6 +77,7 @@ class ComponentMerger {
       const auto [first, second] = most_entangled(trees);
       Clique both;
       std::ranges::set_union(primitives_of(trees[first]), primitives_of(trees[second]), std::back_inserter(both));
+      if (both.empty()) return false;  // trees that contradict themselves: all of space is left of them
       trees[first] = solve_jointly_(both);
       trees.erase(trees.begin() + static_cast<std::ptrdiff_t>(second));
       ++result_.statistics.joint_solutions;
@@ -108,6 +110,7 @@ class ComponentMerger {
     const Evolution found = evolve_tree_from(component_.table, result_.tree, options_.search, options_.item, run_);
     count(found);
     consider(MergeWay::search, found.tree, true);
+    result_.statistics.ways = {MergeWay::search};  // it began with the best of the others, which may be the best still
   }
 
   /// Redundancy removal on the whole component: nodes go as long as E grows.
