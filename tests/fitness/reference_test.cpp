@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "support/scene.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// The indices of the points that a request's table is judged by, found by plain segmentation.
+std::vector<std::uint32_t> points_of(const RankClassesRequest& request, const test::Scene& scene) {
+  std::vector<bool> chosen(scene.cloud.size(), request.all_points);
+  if (!request.all_points) {
+    const Segmentation segmentation = segment_points(scene.cloud, scene.primitives, test::scene_tolerances());
+    for (const PrimitiveIndex p : request.primitives) {
+      for (const std::uint32_t point : segmentation.points_of[p]) chosen[point] = true;
+    }
+  }
+  std::vector<std::uint32_t> points;
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) {
+    if (chosen[i] && i % request.stride == 0) points.push_back(i);
+  }
+  return points;
+}
+
+/// Some of the primitives, ascending; at least one.
+std::vector<PrimitiveIndex> random_subset(std::size_t primitives, RandomStream& random) {
+  std::vector<PrimitiveIndex> subset;
+  for (PrimitiveIndex p = 0; p < primitives; ++p) {
+    if (random.chance(0.7)) subset.push_back(p);
+  }
+  if (subset.empty()) subset.push_back(random.below(primitives));
+  return subset;
+}
+
+/// E(t) without the cost of size from implicit_value() and implicit_gradient(): a third way, in columns of points.
+double geometry_of_fields(const CsgTree& tree, const test::Scene& scene, std::span<const std::uint32_t> points,
+                          const Objective& objective) {
+  const std::vector<double> values = implicit_value(tree, scene.primitives, scene.cloud.positions);
+  const Points slopes = implicit_gradient(tree, scene.primitives, scene.cloud.positions);
+  double sum = 0;
+  for (const std::uint32_t i : points) {
+    const double cosine = slopes[i].normalized().dot(scene.cloud.normals[i]);
+    sum += point_score(values[i], std::acos(std::clamp(cosine, -1.0, 1.0)), objective);
+  }
+  return sum;
+}
+
+/// Holds random trees on one table against the walk over each point. Scores are relative to their sum, not to E(t),
+/// which may cancel; a point is never asked for more than the 2^-22 that contributions are rounded to.
+void expect_reference(const RankClasses& table, const RankClassesRequest& request, const test::Scene& scene,
+                      std::size_t trees, RandomStream& random) {
+  const std::vector<std::uint32_t> points = points_of(request, scene);
+  ASSERT_EQ(table.point_count(), points.size());
+  Objective geometry_only = table.objective();
+  geometry_only.alpha = 0;
+  RankScratch scratch;
+  for (const CsgTree& local : test::random_formulas(table.primitive_count(), trees, random)) {
+    const CsgTree tree = renumber(local, table.primitives());
+    const double fast = table.geometry(local, scratch);
+    const double reference = reference_objective(tree, scene.primitives, scene.cloud, points, geometry_only);
+    const double rounding = std::ldexp(static_cast<double>(points.size()), -22);
+    ASSERT_NEAR(fast, reference, 1e-6 * reference + rounding) << to_text(tree, scene.primitives);
+    ASSERT_NEAR(reference, geometry_of_fields(tree, scene, points, geometry_only), 1e-9 * reference + 1e-12);
+    ASSERT_EQ(table.score(local, scratch), fast - table.objective().alpha * static_cast<double>(tree.size()));
+  }
+}
+
+/// In a property, RapidCheck is to see that something failed, so that it looks for a smaller case.
+void fail_property_when_failed() {
+  RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+void compare_random_scene(std::size_t primitives, std::size_t points, std::size_t trees, RandomStream& random) {
+  const test::Scene scene = test::random_scene(primitives, points, random);
+  const RankClassesRequest whole{.primitives = test::all_of(scene.primitives), .all_points = true};
+  const RankClassesRequest segmented{.primitives = random_subset(primitives, random)};
+  const RankClassesRequest thinned{.primitives = whole.primitives, .stride = 1 + random.below(5), .all_points = true};
+  const std::vector<RankClassesRequest> requests{whole, segmented, thinned};
+  for (const ObjectiveOptions& weights : test::all_weights()) {
+    const PointPass pass = test::pass_over(scene, requests, weights);
+    for (std::size_t k = 0; k < requests.size(); ++k) {
+      expect_reference(pass.tables[k], requests[k], scene, trees, random);
+    }
+  }
+}
+
+RC_GTEST_PROP(RankClassesReference, AFewPrimitives, (std::uint64_t seed)) {
+  RandomStream random(seed);
+  const std::size_t primitives = 1 + random.below(12);
+  compare_random_scene(primitives, 1 + random.below(600), 8, random);
+  fail_property_when_failed();
+}
+
+RC_GTEST_PROP(RankClassesReference, NoisyCloudsWhereScoresAreNotRoundNumbers, (std::uint64_t seed)) {
+  RandomStream random(seed);
+  test::Scene scene = test::random_scene(1 + random.below(6), 300, random);
+  for (std::size_t i = 0; i < scene.cloud.size(); ++i) {
+    scene.cloud.positions.set(i, scene.cloud.positions[i] + test::random_within(0.02, random));
+  }
+  const RankClassesRequest request{.primitives = test::all_of(scene.primitives), .all_points = true};
+  for (const ObjectiveOptions& weights : test::all_weights()) {
+    expect_reference(test::pass_over(scene, {request}, weights).tables.front(), request, scene, 8, random);
+  }
+  fail_property_when_failed();
+}
+
+/// Around the limit of bytes, and the most that is promised.
+TEST(RankClassesReference, ManyPrimitives) {
+  RandomStream random(7);
+  for (const std::size_t primitives : {30U, 63U, 64U, 126U, 127U, 128U, 129U, 200U}) {
+    compare_random_scene(primitives, 60, 6, random);
+  }
+}
+
+TEST(RankClassesReference, RelativeErrorIsBelowAMillionthWherePointsFit) {
+  RandomStream random(11);
+  const test::Scene scene = test::random_scene(9, 5000, random);
+  std::vector<std::uint32_t> points(scene.cloud.size());
+  std::iota(points.begin(), points.end(), 0U);
+  RankScratch scratch;
+  for (const ObjectiveOptions& weights : test::all_weights()) {
+    const RankClasses table = test::whole_table(scene, weights);
+    Objective geometry_only = table.objective();
+    geometry_only.alpha = 0;
+    for (const CsgTree& tree : test::random_formulas(9, 40, random)) {
+      const double reference = reference_objective(tree, scene.primitives, scene.cloud, points, geometry_only);
+      EXPECT_NEAR(table.geometry(tree, scratch), reference, 1e-6 * reference);
+    }
+  }
+}
+
+TEST(PointScore, IsTheFormulaOfThePaper) {
+  const Objective objective{.alpha = 0, .beta = 100, .gamma = 18 / std::numbers::pi};
+  EXPECT_DOUBLE_EQ(point_score(0, 0, objective), 2.0);
+  EXPECT_DOUBLE_EQ(point_score(0.01, 0, objective), 1 + std::exp(-1.0));
+  EXPECT_DOUBLE_EQ(point_score(-0.01, 0, objective), 1 + std::exp(-1.0));
+  EXPECT_NEAR(point_score(1e6, std::numbers::pi / 18, objective), std::exp(-1.0), 1e-15);
+}
+
+TEST(Resolve, DerivesWhatIsAbsent) {
+  const Objective derived = resolve({}, 1000, 0.02);
+  EXPECT_DOUBLE_EQ(derived.alpha, std::log(1000.0));
+  EXPECT_DOUBLE_EQ(derived.beta, 50.0);
+  EXPECT_DOUBLE_EQ(derived.gamma, 18 / std::numbers::pi);
+  const Objective given = resolve({.alpha = 0.0, .beta = 100, .gamma = 2}, 1000, 0.02);
+  EXPECT_DOUBLE_EQ(given.alpha, 0.0);
+  EXPECT_DOUBLE_EQ(given.beta, 100.0);
+  EXPECT_DOUBLE_EQ(given.gamma, 2.0);
+  EXPECT_DOUBLE_EQ(resolve({}, 0, 0.02).alpha, 0.0);
+}
+
+TEST(ReferenceObjective, ScoresAPerfectSphereByHand) {
+  const PrimitiveSet primitives{{.id = "s", .shape = Sphere{.radius = 1}}};
+  PointCloud cloud;
+  for (int axis = 0; axis < 3; ++axis) {
+    cloud.positions.push_back(Eigen::Vector3d::Unit(axis));
+    cloud.normals.push_back(Eigen::Vector3d::Unit(axis));
+  }
+  const Objective objective{.alpha = 0.25, .beta = 100, .gamma = 18 / std::numbers::pi};
+  const std::vector<std::uint32_t> all{0, 1, 2};
+  const std::vector<std::uint32_t> one{1};
+  EXPECT_DOUBLE_EQ(reference_objective(CsgTree::leaf(0), primitives, cloud, all, objective), 6 - 0.25);
+  EXPECT_DOUBLE_EQ(reference_objective(CsgTree::leaf(0), primitives, cloud, one, objective), 2 - 0.25);
+  // Turned inside out the distances fit, the normals are 180 degrees off.
+  EXPECT_NEAR(reference_objective(complement(CsgTree::leaf(0)), primitives, cloud, all, objective), 3 - 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace cloud2csg
