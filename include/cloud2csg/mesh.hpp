@@ -18,6 +18,9 @@ struct TriangleMesh {
 
 struct MeshingOptions {
   int resolution = 128;  ///< cells along the longest side of the solid's bounds
+  /// Keep the solid's corners even where that makes a few of the small triangles around them overlap. Without, such
+  /// corners are cut off by less than a cell: for programs that need all triangles apart, as OpenSCAD does.
+  bool corners_first = true;
 };
 
 /// The surface of a solid as a closed mesh, by dual contouring of its implicit value with the known gradients, so

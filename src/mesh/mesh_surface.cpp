@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "mesh/contour.hpp"
-#include "mesh/parallel.hpp"
-#include "mesh/quad_cutter.hpp"
+#include "mesh/untangle.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -35,20 +36,13 @@ TriangleMesh mesh_surface(const CsgTree& tree, const PrimitiveSet& primitives, c
   run.report("mesh", 1, k_steps);
   const Contour contour = trace_contour(field, cells, solid.primitives, run);
   run.report("mesh", 2, k_steps);
-  const std::vector<Eigen::Vector3d> positions = place_vertices(field, cells, solid.primitives, contour, run);
+  Placement placement = place_vertices(field, cells, solid.primitives, contour, run);
   run.report("mesh", 3, k_steps);
-
-  std::vector<std::vector<Triangle>> triangles(field.blocks().size());
-  for_each_index(triangles.size(), run, [&](std::size_t slot) {
-    const QuadCutter cutter(field.grid(), field.blocks()[slot].tree, solid.primitives, positions);
-    triangles[slot] = cutter.cut(contour.quads[slot]);
-  });
   TriangleMesh mesh;
-  mesh.vertices.reserve(positions.size());
-  for (const Eigen::Vector3d& position : positions) mesh.vertices.push_back(field.grid().to_world(position));
-  for (const std::vector<Triangle>& part : triangles) {
-    mesh.triangles.insert(mesh.triangles.end(), part.begin(), part.end());
-  }
+  Untangled cut = cut_untangled(field, solid.primitives, contour, std::move(placement), options.corners_first, run);
+  mesh.triangles = std::move(cut.triangles);
+  mesh.vertices.reserve(cut.positions.size());
+  for (const Eigen::Vector3d& position : cut.positions) mesh.vertices.push_back(field.grid().to_world(position));
   run.report("mesh", k_steps, k_steps);
   return mesh;
 }

@@ -25,6 +25,7 @@ struct Proposal {
   std::uint32_t vertex;
   Eigen::Vector3d position;
   Eigen::Vector3i from_cell;
+  bool is_corner;  ///< else on a sharp edge
 
   /// From the middle of the vertex's own cell.
   [[nodiscard]] double distance() const {
@@ -45,11 +46,13 @@ class VertexPlacer {
         primitives_(primitives),
         contour_(contour),
         run_(run),
-        positions_(contour.quadrics.size()),
+        placement_{.positions = {},
+                   .in_cell = std::vector<Eigen::Vector3d>(contour.quadrics.size()),
+                   .kinds = std::vector<VertexKind>(contour.quadrics.size(), VertexKind::in_cell)},
         ranks_(contour.quadrics.size()),
         proposals_(field.blocks().size()) {}
 
-  std::vector<Eigen::Vector3d> place() {
+  Placement place() {
     for_each_index(field_.blocks().size(), run_, [&](std::size_t slot) { place_in_cells(slot); });
     const std::vector<Quadric> rings = gather_rings();
     for_each_index(field_.blocks().size(), run_, [&](std::size_t slot) {
@@ -57,8 +60,9 @@ class VertexPlacer {
       drop_off_surface(slot);
       project(slot);
     });
+    placement_.positions = placement_.in_cell;
     take_proposals();
-    return std::move(positions_);
+    return std::move(placement_);
   }
 
  private:
@@ -90,12 +94,14 @@ class VertexPlacer {
   void place_in_cells(std::size_t slot) {
     for_each_vertex(slot, [&](std::uint32_t vertex, const Eigen::Vector3i& cell) {
       const Quadric& quadric = contour_.quadrics[vertex];
-      const auto [point, rank] = quadric.minimum(k_sheet_cutoff);
+      const auto [point, rank, sharpness] = quadric.minimum(k_sheet_cutoff);
       ranks_[vertex] = rank;
-      positions_[vertex] = point;
+      placement_.in_cell[vertex] = point;
+      const bool is_corner = sharpness > k_corner_cutoff;
+      if (is_corner) placement_.kinds[vertex] = VertexKind::corner;
       if (is_within(point, cell)) return;
-      if (rank > 1 && is_near(point, cell)) proposals_[slot].push_back({vertex, point, cell});
-      positions_[vertex] = quadric.minimum_within(lowest_within(cell), highest_within(cell));
+      if (rank > 1 && is_near(point, cell)) proposals_[slot].push_back({vertex, point, cell, is_corner});
+      placement_.in_cell[vertex] = quadric.minimum_within(lowest_within(cell), highest_within(cell));
     });
   }
 
@@ -119,9 +125,10 @@ class VertexPlacer {
   void propose_corners(std::size_t slot, const std::vector<Quadric>& rings) {
     for_each_vertex(slot, [&](std::uint32_t vertex, const Eigen::Vector3i& cell) {
       if (ranks_[vertex] > 2 || rings[vertex].empty()) return;
-      const auto [point, rank] = rings[vertex].minimum(k_corner_cutoff);
-      if (rank < 3 || rings[vertex].residual(point) > k_feature_tolerance || !is_near(point, cell)) return;
-      proposals_[slot].push_back({vertex, point, cell});
+      const Quadric::Minimum corner = rings[vertex].minimum(k_corner_cutoff);
+      if (corner.rank < 3 || !is_near(corner.point, cell)) return;
+      if (rings[vertex].residual(corner.point) > k_feature_tolerance) return;
+      proposals_[slot].push_back({vertex, corner.point, cell, true});
     });
   }
 
@@ -155,14 +162,14 @@ class VertexPlacer {
     const CsgTree& tree = field_.blocks()[slot].tree;
     const double spacing = field_.grid().spacing;
     Points points;
-    for (const Placed& placed : vertices) points.push_back(field_.grid().to_world(positions_[placed.vertex]));
+    for (const Placed& placed : vertices) points.push_back(field_.grid().to_world(placement_.in_cell[placed.vertex]));
     const std::vector<double> values = implicit_value(tree, primitives_, points);
     const Points gradients = implicit_gradient(tree, primitives_, points);
     std::vector<Placed> open;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const Eigen::Vector3d step = gradients[i] * (values[i] / (gradients[i].squaredNorm() * spacing));
       if (std::abs(values[i]) <= k_surface_tolerance * spacing || !step.allFinite()) continue;
-      Eigen::Vector3d& position = positions_[vertices[i].vertex];
+      Eigen::Vector3d& position = placement_.in_cell[vertices[i].vertex];
       const Eigen::Vector3d low = lowest_within(vertices[i].cell);
       position = (position - step).cwiseMax(low).cwiseMin(highest_within(vertices[i].cell));
       open.push_back(vertices[i]);
@@ -183,7 +190,8 @@ class VertexPlacer {
       const Eigen::Vector3i cell = cell_of(proposal.position);
       std::vector<std::uint32_t>& moved = moved_into[{cell.x(), cell.y(), cell.z()}];
       if (is_taken(proposal, moved)) continue;
-      positions_[proposal.vertex] = proposal.position;
+      placement_.positions[proposal.vertex] = proposal.position;
+      placement_.kinds[proposal.vertex] = proposal.is_corner ? VertexKind::corner : VertexKind::outlying_edge;
       moved.push_back(proposal.vertex);
     }
   }
@@ -191,7 +199,7 @@ class VertexPlacer {
   /// Whether a vertex of that cell, or one that has moved into it, is there already.
   [[nodiscard]] bool is_taken(const Proposal& proposal, std::span<const std::uint32_t> moved) const {
     const auto at_same_place = [&](std::uint32_t vertex) {
-      return vertex != proposal.vertex && (positions_[vertex] - proposal.position).norm() < k_cell_margin;
+      return vertex != proposal.vertex && (placement_.positions[vertex] - proposal.position).norm() < k_cell_margin;
     };
     if (std::any_of(moved.begin(), moved.end(), at_same_place)) return true;
     const SurfaceCell* cell = cells_.find(cell_of(proposal.position));
@@ -207,16 +215,15 @@ class VertexPlacer {
   const PrimitiveSet& primitives_;
   const Contour& contour_;
   const RunContext& run_;
-  std::vector<Eigen::Vector3d> positions_;        ///< by vertex
+  Placement placement_;
   std::vector<int> ranks_;                        ///< by vertex
   std::vector<std::vector<Proposal>> proposals_;  ///< by block
 };
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> place_vertices(const SparseField& field, const SurfaceCells& cells,
-                                            const PrimitiveSet& primitives, const Contour& contour,
-                                            const RunContext& run) {
+Placement place_vertices(const SparseField& field, const SurfaceCells& cells, const PrimitiveSet& primitives,
+                         const Contour& contour, const RunContext& run) {
   return VertexPlacer(field, cells, primitives, contour, run).place();
 }
 

@@ -18,7 +18,11 @@ class QuadCutter {
              std::span<const Eigen::Vector3d> positions)
       : grid_(grid), tree_(tree), primitives_(primitives), positions_(positions) {}
 
-  [[nodiscard]] std::vector<Triangle> cut(std::span<const Quad> quads) const;
+  struct Result {
+    std::vector<Triangle> triangles;
+    std::vector<Triangle> folded;  ///< those of them that look the wrong way
+  };
+  [[nodiscard]] Result cut(std::span<const Quad> quads) const;
 
  private:
   /// The two triangles on the diagonal from corner 0 (or 1) of a quad.
@@ -32,6 +36,7 @@ class QuadCutter {
   [[nodiscard]] Eigen::Vector3d centroid_of(const Triangle& triangle) const;
   [[nodiscard]] double squared_diagonal(const Quad& quad, std::size_t start) const;
   [[nodiscard]] std::vector<double> alignments(std::span<const Cut> cuts) const;
+  [[nodiscard]] bool is_flat(const std::array<Cut, 2>& cuts) const;
 
   const Grid& grid_;
   const CsgTree& tree_;

@@ -16,7 +16,7 @@ Quadric::Minimum Quadric::minimum(double cutoff) const {
   const Eigen::Vector3d rest = vector_ - matrix_ * mean;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix_);
   const Eigen::Vector3d& eigenvalues = solver.eigenvalues();  // ascending
-  Minimum minimum{.point = mean, .rank = 0};
+  Minimum minimum{.point = mean, .rank = 0, .sharpness = eigenvalues[0] / eigenvalues[2]};
   for (int i = 2; i >= 0 && eigenvalues[i] > cutoff * eigenvalues[2]; --i) {
     const Eigen::Vector3d direction = solver.eigenvectors().col(i);
     minimum.point += direction * (direction.dot(rest) / eigenvalues[i]);

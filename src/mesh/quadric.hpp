@@ -32,7 +32,8 @@ class Quadric {
 
   struct Minimum {
     Eigen::Vector3d point;
-    int rank;  ///< of the planes' normals: 1 on a smooth surface, 2 on a sharp edge, 3 at a corner
+    int rank;          ///< of the planes' normals: 1 on a smooth surface, 2 on a sharp edge, 3 at a corner
+    double sharpness;  ///< smallest eigenvalue as a part of the largest: how clearly it is a corner
   };
   /// The minimum nearest to the mean point: directions in which the normals hardly vary are left alone.
   /// `cutoff`: eigenvalues below this part of the largest count as none.

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/export.hpp"
+
+namespace cloud2csg {
+namespace {
+
+std::filesystem::path temporary(const std::string& name) {
+  return std::filesystem::temp_directory_path() / ("cloud2csg_export_test_" + name);
+}
+
+Model data_model(const std::string& name) {
+  return read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / name);
+}
+
+std::string content_of(const std::filesystem::path& file) {
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+double mesh_volume(const Model& model, int resolution = 96) {
+  return volume_of(mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives),
+                                {.resolution = resolution}));
+}
+
+bool has_openscad() {
+  return std::system("command -v openscad > /dev/null 2>&1") == 0;
+}  // NOLINT: a fixed command
+
+struct Rendering {
+  int status;
+  std::string log;
+  TriangleMesh mesh;
+};
+
+/// Renders with the OpenSCAD program, as a user would.
+Rendering render(const std::string& name, const Model& model, const OpenScadOptions& options) {
+  const std::filesystem::path scad = temporary(name + ".scad");
+  const std::filesystem::path off = temporary(name + ".off");
+  const std::filesystem::path log = temporary(name + ".log");
+  export_model(scad, model, {.openscad = options});
+  const std::string command =
+      "timeout 500 openscad -o '" + off.string() + "' '" + scad.string() + "' > '" + log.string() + "' 2>&1";
+  Rendering rendering{.status = std::system(command.c_str()), .log = content_of(log), .mesh = {}};  // NOLINT: our names
+  if (rendering.status == 0) rendering.mesh = read_mesh(off);
+  for (const auto& file : {scad, off, log}) std::filesystem::remove(file);
+  return rendering;
+}
+
+void expect_same_solid(const std::string& name, const Model& model, const OpenScadOptions& options, double tolerance) {
+  const Rendering rendering = render(name, model, options);
+  ASSERT_EQ(rendering.status, 0) << rendering.log;
+  EXPECT_EQ(rendering.log.find("WARNING"), std::string::npos) << rendering.log;
+  EXPECT_EQ(rendering.log.find("ERROR"), std::string::npos) << rendering.log;
+  EXPECT_TRUE(is_watertight(rendering.mesh));
+  const double expected = mesh_volume(model);
+  EXPECT_NEAR(volume_of(rendering.mesh) / expected, 1.0, tolerance) << "expected volume " << expected;
+}
+
+TEST(OpenScadProgram, RendersM0) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  // A circle of 16 facets has 2.5 % less area; about half of the volume is round.
+  expect_same_solid("m0", data_model("m0.json"), {.facets = 16}, 0.02);
+}
+
+TEST(OpenScadProgram, RendersADisplacedSolid) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  expect_same_solid("m1", data_model("m1.json"), {.facets = 16, .mesh_resolution = 24}, 0.02);
+}
+
+TEST(OpenScadProgram, RendersEveryTypeTurnedAndMoved) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  const Model model = parse_model(R"({"format": "cloud2csg", "version": 1, "primitives": [
+    {"id": "box", "type": "box", "pose": {"position": [1, 2, 3], "quaternion": [0.5, 0.5, 0.5, 0.5]}, "size": [2, 3, 4]},
+    {"id": "cone", "type": "cone", "pose": {"position": [3, 2, 3], "quaternion": [0.6, 0, 0.8, 0]},
+     "radius_bottom": 1, "radius_top": 0.2, "height": 4},
+    {"id": "torus", "type": "torus", "pose": {"position": [1, 5, 3], "quaternion": [0.6, 0.48, 0.64, 0]},
+     "major_radius": 1.5, "minor_radius": 0.5},
+    {"id": "horn torus", "type": "torus", "pose": {"position": [-2.7, 2, 3]}, "major_radius": 1, "minor_radius": 1},
+    {"id": "sphere", "type": "sphere", "pose": {"position": [1, 2, 6]}, "radius": 1.7},
+    {"id": "cut", "type": "half_space", "pose": {"position": [1, 2, 3], "quaternion": [0.8, 0, 0.36, 0.48]}},
+    {"id": "keep", "type": "half_space", "pose": {"position": [1, 2, 6.6]}},
+    {"id": "polytope", "type": "polytope", "pose": {"position": [1, -1, 3], "quaternion": [0.6, 0.48, 0.64, 0]},
+     "planes": [[-1, 0, 0, 1], [0, -1, 0, 1], [0, 0, -1, 1], [0.6, 0.8, 0, 1], [0, 0, 1, 1], [0, 0.6, 0.8, 1.1]]},
+    {"id": "egg", "type": "expression", "pose": {"position": [1, 2, 0.2], "quaternion": [0.6, 0.48, 0.64, 0]},
+     "distance": "sqrt(x^2 + y^2 + 0.5 * z^2) - 1", "bounds": [[-1.1, -1.1, -1.5], [1.1, 1.1, 1.5]]}],
+    "tree": {"op": "difference", "children": [
+      {"op": "intersection", "children": [
+        {"op": "union", "children": [{"primitive": "box"}, {"primitive": "cone"}, {"primitive": "torus"},
+          {"primitive": "horn torus"}, {"primitive": "sphere"}, {"primitive": "polytope"}, {"primitive": "egg"}]},
+        {"op": "complement", "children": [{"op": "complement", "children": [{"primitive": "keep"}]}]}]},
+      {"op": "complement", "children": [{"op": "union", "children": [{"primitive": "cut"}, {"primitive": "sphere"}]}]}]}})");
+  expect_same_solid("every_type", model, {.facets = 24, .mesh_resolution = 24}, 0.03);
+}
+
+TEST(OpenScadProgram, RendersAComplement) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  Model model = parse_model(R"({"format": "cloud2csg", "version": 1, "primitives": [
+    {"id": "everything", "type": "box", "size": [2, 2, 2]}], "tree": {"op": "complement", "children": [
+    {"primitive": "everything"}]}})");
+  const Rendering rendering = render("complement", model, {});
+  ASSERT_EQ(rendering.status, 0) << rendering.log;
+  EXPECT_NEAR(volume_of(rendering.mesh), 27 - 8, 1e-6) << "a box around the model, less the model";
+}
+
+TEST(ExportModel, FollowsTheEnding) {
+  const Model model = data_model("m3.json");
+  const std::pair<const char*, const char*> expected[] = {{"m3.json", "{\"format\": \"cloud2csg\""},
+                                                          {"m3.scad", "// A stand-in"},
+                                                          {"m3.dot", "digraph"},
+                                                          {"m3.OFF", "OFF\n"},
+                                                          {"m3.obj", "v "},
+                                                          {"m3.stl", "cloud2csg"}};
+  for (const auto& [name, start] : expected) {
+    const std::filesystem::path file = temporary(name);
+    export_model(file, model, {.meshing = {.resolution = 32}});
+    EXPECT_EQ(content_of(file).rfind(start, 0), 0U) << name;
+    std::filesystem::remove(file);
+  }
+}
+
+TEST(ExportModel, MeshesHaveTheModelsVolume) {
+  const Model model = data_model("m2.json");
+  const std::filesystem::path file = temporary("m2.stl");
+  export_model(file, model, {.meshing = {.resolution = 64}});
+  const TriangleMesh mesh = read_mesh(file);
+  std::filesystem::remove(file);
+  EXPECT_TRUE(is_watertight(mesh));
+  EXPECT_NEAR(volume_of(mesh) / mesh_volume(model), 1, 0.01);
+}
+
+TEST(ExportModel, RefusesUnknownEndingsAndMissingTrees) {
+  Model model = data_model("m2.json");
+  const auto message_for = [&model](const char* name) -> std::string {
+    try {
+      export_model(temporary(name), model);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(message_for("model.docx").find(".json, .scad, .dot, .stl, .off or .obj"), std::string::npos);
+  model.tree.reset();
+  EXPECT_NE(message_for("model.scad").find("a model with a tree"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(temporary("model.scad")));
+  EXPECT_EQ(message_for("primitives.json"), "no error");
+  std::filesystem::remove(temporary("primitives.json"));
+}
+
+}  // namespace
+}  // namespace cloud2csg
