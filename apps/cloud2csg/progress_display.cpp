@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <utility>
 
 namespace cloud2csg::app {
 namespace {
@@ -35,14 +36,17 @@ ProgressDisplay::~ProgressDisplay() {
 }
 
 void ProgressDisplay::update(const Progress& progress) {
-  if (style_ == ProgressStyle::none) return;
+  const bool is_done = progress.total > 0 && progress.done >= progress.total;
+  if (style_ == ProgressStyle::none || (is_done && stage_.empty() && progress.stage == ended_)) return;
   if (progress.stage != stage_) {
     finish();
     stage_ = progress.stage;
-    stage_start_ = Clock::now();
-    last_drawn_ = stage_start_ - k_redraw_interval;
   }
-  if (has_bar() && Clock::now() - last_drawn_ >= k_redraw_interval) draw(progress);
+  if (is_done) {
+    finish();
+  } else if (has_bar() && Clock::now() - last_drawn_ >= k_redraw_interval) {
+    draw(progress);
+  }
 }
 
 void ProgressDisplay::draw(const Progress& progress) {
@@ -69,10 +73,13 @@ void ProgressDisplay::note(std::string_view line) {
 
 void ProgressDisplay::finish() {
   if (stage_.empty()) return;
-  const std::chrono::duration<double> seconds = Clock::now() - stage_start_;
+  const Clock::time_point now = Clock::now();
+  const std::chrono::duration<double> seconds = now - stage_start_;
   fmt::print(out_, "{}{:<12} {:.3f} s\n", has_bar() ? k_clear_line : "", stage_, seconds.count());
   std::fflush(out_);
-  stage_.clear();
+  stage_start_ = now;
+  last_drawn_ = {};
+  ended_ = std::exchange(stage_, {});
 }
 
 }  // namespace cloud2csg::app

@@ -19,7 +19,8 @@ enum class ProgressStyle {
 /// `bar` only when the file is a terminal that can move its cursor; with colour unless NO_COLOR is set (no-color.org).
 [[nodiscard]] ProgressStyle progress_style(std::FILE* out, bool quiet);
 
-/// Shows how far the stages are. A stage ends when the next one starts, or with finish().
+/// Shows how far the stages are. A stage ends when all of it is done, when the next one starts, or with finish(); its
+/// time is counted from the end of the one before.
 class ProgressDisplay {
  public:
   ProgressDisplay(std::FILE* out, ProgressStyle style) : out_(out), style_(style) {}
@@ -45,7 +46,8 @@ class ProgressDisplay {
   std::FILE* out_;
   ProgressStyle style_;
   std::string stage_;  ///< the running one; empty for none
-  Clock::time_point stage_start_;
+  std::string ended_;  ///< the last one that ended
+  Clock::time_point stage_start_ = Clock::now();
   Clock::time_point last_drawn_;
 };
 

@@ -107,9 +107,9 @@ std::vector<std::string> endless(const std::string& cloud, const std::string& mo
           "1000000"};
 }
 
-/// Waits until the program says that it has begun to segment: then it is about to search.
+/// Waits until the program says that the overlap graph is done: then it is about to search.
 void wait_for_search(const RunningProgram& program) {
-  for (int i = 0; i < 600 && program.err_so_far().find("classes") == std::string::npos; ++i) {
+  for (int i = 0; i < 600 && program.err_so_far().find("overlap") == std::string::npos; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -129,6 +129,17 @@ TEST_F(Extract, FirstInterruptWritesTheBestSoFar) {
   const json model = json::parse(read_file(path("m.json")));
   EXPECT_EQ(model["description"].get<std::string>().rfind("INCOMPLETE", 0), 0U);
   EXPECT_EQ(run({"info", path("m.json")}).status, 0);
+}
+
+TEST_F(Extract, SecondInterruptEndsAtOnce) {
+  const std::string cloud = sampled("m0.json", "3000");
+  RunningProgram program = start(endless(cloud, shipped("m0.json"), path("m.json"), path("s.json")));
+  wait_for_search(program);
+  // Two kinds, since two pending signals of one kind are delivered as one.
+  program.send_signal(SIGINT);
+  program.send_signal(SIGTERM);
+  EXPECT_EQ(program.wait().status, 130);
+  EXPECT_EQ(files(), std::vector<std::string>{"cloud.ply"});
 }
 
 TEST_F(Extract, TimeLimitIsNotAFailure) {
