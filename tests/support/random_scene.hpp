@@ -80,14 +80,15 @@ inline Primitive random_primitive(RandomStream& random) {
   return primitive;
 }
 
-/// One in five is a copy of an earlier one.
+/// One in five is a copy of an earlier one, but for its id.
 inline PrimitiveSet random_primitives(std::size_t count, RandomStream& random) {
   PrimitiveSet primitives;
   for (std::size_t p = 0; p < count; ++p) {
-    primitives.push_back(p > 0 && random.chance(0.2) ? Primitive(primitives[random.below(p)])
-                                                     : random_primitive(random));
-    primitives.back().id = "p";
-    primitives.back().id += std::to_string(p);
+    const bool is_copy = p > 0 && random.chance(0.2);
+    primitives.push_back(is_copy ? Primitive(primitives[random.below(p)]) : random_primitive(random));
+    std::string id(1, 'p');
+    id += std::to_string(p);
+    primitives.back().id = std::move(id);
   }
   return primitives;
 }

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/extract.hpp"
+#include "support/known_solids.hpp"
+
+namespace cloud2csg {
+namespace {
+
+PrimitiveSet ball() {
+  return {test::placed("ball", Sphere{1}, {0, 0, 0})};
+}
+
+PointCloud cloud_of_ball() {
+  return sample_surface(CsgTree::leaf(0), ball(), {.count = 300});
+}
+
+Error::Parts error_of(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    return error.parts();
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+Error::Parts error_of(const PointCloud& cloud, const PrimitiveSet& primitives) {
+  return error_of([&] { (void)extract_csg(cloud, primitives); });
+}
+
+TEST(BadInput, NoPoints) {
+  EXPECT_EQ(error_of({}, ball()).expected, "the cloud has no points");
+}
+
+TEST(BadInput, NoNormals) {
+  PointCloud cloud = cloud_of_ball();
+  cloud.normals = {};
+  const Error::Parts error = error_of(cloud, ball());
+  EXPECT_NE(error.expected.find("no normals"), std::string::npos);
+  EXPECT_NE(error.remedy.find("Compute normals"), std::string::npos);
+}
+
+TEST(BadInput, NoPrimitives) {
+  EXPECT_EQ(error_of(cloud_of_ball(), {}).expected, "there are no primitives");
+}
+
+TEST(BadInput, APrimitiveThatIsNone) {
+  EXPECT_EQ(error_of(cloud_of_ball(), {test::placed("ball", Sphere{-1}, {0, 0, 0})}).where, "radius");
+}
+
+TEST(BadInput, ACloudFarFromEverything) {
+  PointCloud cloud = cloud_of_ball();
+  for (double& x : cloud.positions.x) x += 1e4;
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.normals.set(i, Eigen::Vector3d::UnitY());
+  const Error::Parts error = error_of(cloud, ball());
+  EXPECT_EQ(error.expected, "no point of the cloud is near any primitive");
+  EXPECT_NE(error.remedy.find("units"), std::string::npos);
+}
+
+/// The same cloud with the normals as they were: the noise that is measured is as large as the gap.
+TEST(BadInput, ACloudFarFromEverythingThatFacesIt) {
+  PointCloud cloud = cloud_of_ball();
+  for (double& x : cloud.positions.x) x += 1e4;
+  const Error::Parts error = error_of(cloud, ball());
+  EXPECT_EQ(error.expected, "no point of the cloud is near any primitive");
+}
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+
+struct BadOption {
+  const char* field;
+  std::function<void(ExtractOptions&)> spoil;
+};
+
+std::vector<BadOption> bad_options() {
+  return {
+      {"distance_tolerance", [](ExtractOptions& o) { o.segmentation.distance_tolerance = 0; }},
+      {"distance_tolerance", [](ExtractOptions& o) { o.segmentation.distance_tolerance = k_nan; }},
+      {"angle_tolerance_deg", [](ExtractOptions& o) { o.segmentation.angle_tolerance_deg = 0; }},
+      {"angle_tolerance_deg", [](ExtractOptions& o) { o.segmentation.angle_tolerance_deg = 91; }},
+      {"angle_tolerance_deg", [](ExtractOptions& o) { o.segmentation.angle_tolerance_deg = k_nan; }},
+      {"alpha", [](ExtractOptions& o) { o.objective.alpha = -1; }},
+      {"alpha", [](ExtractOptions& o) { o.objective.alpha = k_infinity; }},
+      {"beta", [](ExtractOptions& o) { o.objective.beta = 0; }},
+      {"beta", [](ExtractOptions& o) { o.objective.beta = k_infinity; }},
+      {"gamma", [](ExtractOptions& o) { o.objective.gamma = -1; }},
+      {"gamma", [](ExtractOptions& o) { o.objective.gamma = k_nan; }},
+      {"overlap_tolerance", [](ExtractOptions& o) { o.overlap_tolerance = -1; }},
+      {"time_limit", [](ExtractOptions& o) { o.time_limit_seconds = 0; }},
+      {"time_limit", [](ExtractOptions& o) { o.time_limit_seconds = k_nan; }},
+      {"population", [](ExtractOptions& o) { o.search.population = 1; }},
+      {"elites", [](ExtractOptions& o) { o.search.elites = -1; }},
+      {"elites", [](ExtractOptions& o) { o.search.elites = o.search.population; }},
+      {"tournament", [](ExtractOptions& o) { o.search.tournament = 0; }},
+      {"crossover_rate", [](ExtractOptions& o) { o.search.crossover_rate = 1.5; }},
+      {"mutation_rate", [](ExtractOptions& o) { o.search.mutation_rate = -0.1; }},
+      {"new_tree_rate", [](ExtractOptions& o) { o.search.new_tree_rate = k_nan; }},
+      {"height_limit", [](ExtractOptions& o) { o.search.height_limit = 0; }},
+      {"idle_generations", [](ExtractOptions& o) { o.search.idle_generations = 0; }},
+      {"generation_limit", [](ExtractOptions& o) { o.search.generation_limit = 0; }},
+      {"listing_limit", [](ExtractOptions& o) { o.search.listing_limit = 6; }},
+      {"listing_trust", [](ExtractOptions& o) { o.search.listing_trust = 2; }},
+  };
+}
+
+TEST(BadInput, EachOptionIsNamed) {
+  for (const BadOption& bad : bad_options()) {
+    ExtractOptions options;
+    bad.spoil(options);
+    const Error::Parts error = error_of([&] { validate(options); });
+    EXPECT_EQ(error.where, bad.field);
+    EXPECT_FALSE(error.expected.empty()) << bad.field;
+    EXPECT_THROW((void)extract_csg(cloud_of_ball(), ball(), options), Error) << bad.field;
+  }
+}
+
+TEST(BadInput, TheDefaultsAreValid) {
+  EXPECT_NO_THROW(validate(ExtractOptions{}));
+  EXPECT_NO_THROW(validate(paper_options()));
+}
+
+TEST(BadInput, ManyPointsOnNoPrimitiveAreWarnedAbout) {
+  const PrimitiveSet primitives{test::placed("known", Box{{1, 1, 1}}, {0, 0, 0}),
+                                test::placed("missing", Sphere{0.5}, {2, 0, 0})};
+  const PointCloud cloud =
+      sample_surface(unite(CsgTree::leaf(0), CsgTree::leaf(1)), primitives, {.count = 2000, .noise = 0.002});
+  const Extraction result = extract_csg(cloud, {primitives[0]});
+  EXPECT_EQ(result.tree, CsgTree::leaf(0));
+  ASSERT_EQ(result.statistics.warnings.size(), 1U);
+  EXPECT_NE(result.statistics.warnings[0].find("more than a tenth of the points"), std::string::npos);
+  EXPECT_GT(result.statistics.unassigned_points, 400U);
+}
+
+}  // namespace
+}  // namespace cloud2csg

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/extract.hpp"
+#include "support/known_solids.hpp"
+#include "tree/random_trees.hpp"
+
+namespace cloud2csg {
+namespace {
+
+struct Input {
+  Model model;
+  PointCloud cloud;
+};
+
+Input small_input(const char* name) {
+  Input input{.model = test::paper_model(name), .cloud = {}};
+  input.cloud = sample_surface(*input.model.tree, input.model.primitives, {.count = 2000, .noise = 0.01, .seed = 5});
+  return input;
+}
+
+/// A search that does not end by itself within the test.
+ExtractOptions endless(Strategy strategy) {
+  ExtractOptions options;
+  options.strategy = strategy;
+  options.search.listing_limit = 1;
+  options.search.idle_generations = 1'000'000;
+  options.search.generation_limit = 1'000'000;
+  return options;
+}
+
+void expect_the_best_so_far(const Extraction& result, const PrimitiveSet& primitives) {
+  EXPECT_FALSE(result.statistics.complete);
+  EXPECT_TRUE(test::is_well_formed(result.tree));
+  ASSERT_FALSE(primitives_of(result.tree).empty());
+  EXPECT_LT(primitives_of(result.tree).back(), primitives.size());
+  ASSERT_FALSE(result.statistics.warnings.empty());
+  EXPECT_NE(result.statistics.warnings.back().find("stopped early"), std::string::npos);
+}
+
+TEST(Interruption, BeforeTheSearchThereIsNothingToGive) {
+  const Input input = small_input("m0");
+  std::stop_source stop;
+  stop.request_stop();
+  for (const int threads : {1, 2}) {
+    EXPECT_THROW(
+        (void)extract_csg(input.cloud, input.model.primitives, {}, {.stop = stop.get_token(), .threads = threads}),
+        Cancelled);
+  }
+}
+
+/// The first partition that is done asks for the end.
+TEST(Interruption, DuringTheSearchGivesTheBestSoFar) {
+  const Input input = small_input("m0");
+  for (const Strategy strategy : {Strategy::automatic, Strategy::partition}) {
+    for (const int threads : {1, 2}) {
+      std::stop_source stop;
+      const auto stop_at_first = [&stop](const Progress& progress) {
+        if (progress.stage == "search") stop.request_stop();
+      };
+      const RunContext run{.stop = stop.get_token(), .on_progress = stop_at_first, .threads = threads};
+      expect_the_best_so_far(extract_csg(input.cloud, input.model.primitives, {.strategy = strategy}, run),
+                             input.model.primitives);
+    }
+  }
+}
+
+class TimeLimit : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Paper, TimeLimit, ::testing::Values("m0", "m1", "m2", "m3"));
+
+TEST_P(TimeLimit, EndsEverySearchWithATree) {
+  const Input input = small_input(GetParam());
+  for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
+    for (const double seconds : {1e-9, 0.05}) {
+      ExtractOptions options = endless(strategy);
+      options.time_limit_seconds = seconds;
+      expect_the_best_so_far(extract_csg(input.cloud, input.model.primitives, options, {.threads = 2}),
+                             input.model.primitives);
+    }
+  }
+}
+
+TEST(TimeLimitThatIsLong, ChangesNothing) {
+  const Input input = small_input("m1");
+  ExtractOptions options;
+  const Extraction expected = extract_csg(input.cloud, input.model.primitives, options);
+  options.time_limit_seconds = 3600;
+  const Extraction result = extract_csg(input.cloud, input.model.primitives, options);
+  EXPECT_EQ(result.tree, expected.tree);
+  EXPECT_TRUE(result.statistics.complete);
+}
+
+TEST(Progress, CountsPartitionsAndComponents) {
+  const Input input = small_input("m0");
+  std::vector<std::size_t> search;
+  std::vector<std::size_t> merge;
+  const RunContext run{.stop = {},
+                       .on_progress =
+                           [&](const Progress& progress) {
+                             if (progress.stage == "search") search.push_back(progress.done);
+                             if (progress.stage == "merge") merge.push_back(progress.done);
+                             EXPECT_LE(progress.done, progress.total);
+                           },
+                       .threads = 3};
+  const Extraction result = extract_csg(input.cloud, input.model.primitives, {}, run);
+  std::vector<std::size_t> expected(result.statistics.partitions.size());
+  std::iota(expected.begin(), expected.end(), std::size_t{1});
+  EXPECT_EQ(search, expected);
+  EXPECT_EQ(merge.size(), result.statistics.components);
+}
+
+TEST(Progress, ErrorsOfTheCallerComeThrough) {
+  const Input input = small_input("m0");
+  struct Mine {};
+  const RunContext run{.stop = {},
+                       .on_progress =
+                           [](const Progress& progress) {
+                             if (progress.stage == "search") throw Mine{};
+                           },
+                       .threads = 2};
+  EXPECT_THROW((void)extract_csg(input.cloud, input.model.primitives, {}, run), Mine);
+}
+
+}  // namespace
+}  // namespace cloud2csg
