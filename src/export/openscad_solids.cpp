@@ -19,8 +19,10 @@ using FaceCorners = std::vector<std::size_t>;
 std::string polyhedron(const std::vector<Eigen::Vector3d>& points, const std::vector<FaceCorners>& faces,
                        const NumberFormat& number) {
   std::vector<std::string> point_texts;
+  point_texts.reserve(points.size());
   for (const Eigen::Vector3d& point : points) point_texts.push_back(number(point));
   std::vector<std::string> face_texts;
+  face_texts.reserve(faces.size());
   for (const FaceCorners& face : faces) {
     // OpenSCAD turns the other way: clockwise seen from outside.
     face_texts.push_back(fmt::format("[{}]", fmt::join(face.rbegin(), face.rend(), ", ")));

@@ -8,7 +8,7 @@ namespace {
 
 /// The four cells around an edge in the order in which they turn around its axis, and which of their edges it is.
 Quad quad_around(const Crossing& crossing, const SurfaceCells& cells) {
-  constexpr int k_steps[4][2] = {{-1, -1}, {0, -1}, {0, 0}, {-1, 0}};
+  constexpr std::array<std::array<int, 2>, 4> k_steps = {{{-1, -1}, {0, -1}, {0, 0}, {-1, 0}}};
   const int u = (crossing.axis + 1) % 3;
   const int v = (crossing.axis + 2) % 3;
   Quad quad = {};

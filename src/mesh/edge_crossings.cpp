@@ -136,7 +136,8 @@ const Crossing& BlockCrossings::at(const SurfaceCell& cell, int edge) const {
 
 std::size_t BlockCrossings::position(const SurfaceCell& cell, int edge) const {
   const Eigen::Vector3i local = cell.cell + corner_offset(edge_low_corner(edge)) - first_cell_;
-  return static_cast<std::size_t>(edge / 4 + 3 * (local.x() + k_layer * (local.y() + k_layer * local.z())));
+  const int corner = local.x() + k_layer * (local.y() + k_layer * local.z());
+  return std::size_t{3} * static_cast<std::size_t>(corner) + static_cast<std::size_t>(edge / 4);
 }
 
 }  // namespace cloud2csg

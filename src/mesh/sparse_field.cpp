@@ -82,6 +82,9 @@ class SparseField::Subdivision {
     const auto nodes = solid.tree.nodes();
     Region all{.low = Eigen::Vector3i::Zero(), .high = field.grid_.blocks, .tree = {nodes.begin(), nodes.end()}};
     classify({std::move(all)});
+  }
+
+  void run() {
     while (!pending_.empty()) {
       const Region region = std::move(pending_.back());
       pending_.pop_back();
@@ -96,6 +99,7 @@ class SparseField::Subdivision {
     for (const Region& region : regions) centres.push_back(field_.grid_.to_world(region.centre()));
     const std::vector<PrimitiveIndex> used = primitives_of(CsgTree(regions.front().tree));
     std::vector<std::vector<double>> values;
+    values.reserve(used.size());
     for (const PrimitiveIndex index : used) values.push_back(signed_distance(primitives_[index], centres));
     for (std::size_t i = 0; i < regions.size(); ++i) {
       const auto within = [&](double cells) {
@@ -142,7 +146,7 @@ SparseField::SparseField(const BoundedSolid& solid, int resolution, const RunCon
     : grid_(grid_around(solid.bounds, resolution)),
       slots_(slot_position(grid_.blocks - Eigen::Vector3i::Ones()) + 1, k_all_outside) {
   run.throw_if_stopped();
-  Subdivision(*this, solid);
+  Subdivision(*this, solid).run();
   for_each_index(blocks_.size(), run,
                  [&](std::size_t i) { blocks_[i].inside = corner_signs(blocks_[i], grid_, solid.primitives); });
 }

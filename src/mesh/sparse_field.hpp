@@ -59,7 +59,9 @@ class SparseField {
   static constexpr int k_all_inside = -2;
 
   [[nodiscard]] std::size_t slot_position(const Eigen::Vector3i& block) const {
-    return static_cast<std::size_t>(block.x() + grid_.blocks.x() * (block.y() + grid_.blocks.y() * block.z()));
+    const Eigen::Matrix<std::size_t, 3, 1> at = block.cast<std::size_t>();
+    const Eigen::Matrix<std::size_t, 3, 1> size = grid_.blocks.cast<std::size_t>();
+    return at.x() + size.x() * (at.y() + size.y() * at.z());
   }
 
   Grid grid_;

@@ -9,13 +9,15 @@ namespace {
 constexpr std::uint32_t k_no_cell = std::numeric_limits<std::uint32_t>::max();
 constexpr int k_layer = k_block_cells + 1;
 
+using LayerSigns = std::bitset<std::size_t{k_layer} * k_layer * k_layer>;
+
 int layer_index(int x, int y, int z) {
   return x + k_layer * (y + k_layer * z);
 }
 
 /// Signs at all corners of a block's cells: its own and the first layer of its neighbours.
-std::bitset<k_layer * k_layer * k_layer> closed_signs(const SparseField& field, const Block& block) {
-  std::bitset<k_layer * k_layer * k_layer> inside;
+LayerSigns closed_signs(const SparseField& field, const Block& block) {
+  LayerSigns inside;
   for (int z = 0; z < k_layer; ++z) {
     for (int y = 0; y < k_layer; ++y) {
       for (int x = 0; x < k_layer; ++x) {
@@ -108,6 +110,7 @@ void SurfaceCells::join_faces(const BoundedSolid& solid) {
 
 void SurfaceCells::number_vertices() {
   std::vector<Loops> unjoined;
+  unjoined.reserve(256);
   for (int signs = 0; signs < 256; ++signs) unjoined.push_back(loops_of(static_cast<CornerSigns>(signs), 0));
   for (SurfaceCell& cell : cells_) {
     cell.loops = cell.joined == 0 ? unjoined[cell.signs] : loops_of(cell.signs, cell.joined);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <vector>
 
 #include "cloud2csg/error.hpp"
@@ -17,12 +18,12 @@ struct Kind {
   const char* definition;  ///< in the schema
   Operation operation;
 };
-constexpr Kind k_kinds[] = {{"union", "n_ary", Operation::union_of},
-                            {"intersection", "n_ary", Operation::intersection},
-                            {"difference", "difference", Operation::difference},
-                            {"complement", "complement", Operation::complement},
-                            {"empty", "constant", Operation::empty},
-                            {"full", "constant", Operation::full}};
+constexpr std::array k_kinds = {Kind{"union", "n_ary", Operation::union_of},
+                                Kind{"intersection", "n_ary", Operation::intersection},
+                                Kind{"difference", "difference", Operation::difference},
+                                Kind{"complement", "complement", Operation::complement},
+                                Kind{"empty", "constant", Operation::empty},
+                                Kind{"full", "constant", Operation::full}};
 constexpr Kind k_leaf = {"", "leaf", Operation::primitive};
 
 /// An inner node whose children are being read.
@@ -94,7 +95,7 @@ class TreeReader {
     if (found == index_of_id_.end()) {
       throw Error({.file = {},
                    .where = path() + "/primitive",
-                   .expected = fmt::format("expected the id of a primitive, found \"{}\"", id),
+                   .expected = fmt::format(R"(expected the id of a primitive, found "{}")", id),
                    .remedy = "add the primitive or correct the id"});
     }
     return CsgNode::leaf(found->second);
@@ -115,7 +116,7 @@ class TreeReader {
     }
     throw Error({.file = {},
                  .where = path(),
-                 .expected = fmt::format("expected an object with a field \"primitive\" or \"op\", found {}",
+                 .expected = fmt::format(R"(expected an object with a field "primitive" or "op", found {})",
                                          node.is_object() ? "neither" : brief(node)),
                  .remedy = {}});
   }

@@ -33,20 +33,20 @@ std::string list(const Eigen::Vector3d& v) {
 }
 
 std::string fields_of(const Box& box) {
-  return fmt::format("\"size\": {}", list(box.size));
+  return fmt::format(R"("size": {})", list(box.size));
 }
 std::string fields_of(const Sphere& sphere) {
-  return fmt::format("\"radius\": {}", sphere.radius);
+  return fmt::format(R"("radius": {})", sphere.radius);
 }
 std::string fields_of(const Cylinder& cylinder) {
-  return fmt::format("\"radius\": {}, \"height\": {}", cylinder.radius, cylinder.height);
+  return fmt::format(R"("radius": {}, "height": {})", cylinder.radius, cylinder.height);
 }
 std::string fields_of(const Cone& cone) {
-  return fmt::format("\"radius_bottom\": {}, \"radius_top\": {}, \"height\": {}", cone.radius_bottom, cone.radius_top,
+  return fmt::format(R"("radius_bottom": {}, "radius_top": {}, "height": {})", cone.radius_bottom, cone.radius_top,
                      cone.height);
 }
 std::string fields_of(const Torus& torus) {
-  return fmt::format("\"major_radius\": {}, \"minor_radius\": {}", torus.major_radius, torus.minor_radius);
+  return fmt::format(R"("major_radius": {}, "minor_radius": {})", torus.major_radius, torus.minor_radius);
 }
 std::string fields_of(const HalfSpace& /*half_space*/) {
   return {};
@@ -56,10 +56,10 @@ std::string fields_of(const Polytope& polytope) {
   for (const Plane& plane : polytope.planes) {
     planes.push_back(list({plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset}));
   }
-  return fmt::format("\"planes\": [{}]", fmt::join(planes, ", "));
+  return fmt::format(R"("planes": [{}])", fmt::join(planes, ", "));
 }
 std::string fields_of(const Expression& expression) {
-  return fmt::format("\"distance\": {}, \"bounds\": [{}, {}]", quoted(expression.distance),
+  return fmt::format(R"("distance": {}, "bounds": [{}, {}])", quoted(expression.distance),
                      list(expression.bounds.min()), list(expression.bounds.max()));
 }
 
@@ -71,7 +71,7 @@ std::string line_of(const Primitive& primitive) {
   const std::string fields = std::visit([](const auto& shape) { return fields_of(shape); }, primitive.shape);
   if (!fields.empty()) line += ", " + fields;
   if (primitive.displacement) {
-    line += fmt::format(", \"displacement\": {{\"frequency\": {}}}", primitive.displacement->frequency);
+    line += fmt::format(R"(, "displacement": {{"frequency": {}}})", primitive.displacement->frequency);
   }
   return line + "}";
 }
@@ -127,11 +127,11 @@ std::string tree_text(const CsgTree& tree, const PrimitiveSet& primitives) {
   const auto write = [&](std::size_t node) {
     const CsgNode head = tree.nodes()[node];
     if (head.operation() == Operation::primitive) {
-      text += fmt::format("{{\"primitive\": {}}}", quoted(primitives[head.primitive()].id));
+      text += fmt::format(R"({{"primitive": {}}})", quoted(primitives[head.primitive()].id));
     } else if (head.is_leaf()) {
-      text += fmt::format("{{\"op\": \"{}\"}}", op_name(head.operation()));
+      text += fmt::format(R"({{"op": "{}"}})", op_name(head.operation()));
     } else {
-      text += fmt::format("{{\"op\": \"{}\", \"children\": [", op_name(head.operation()));
+      text += fmt::format(R"({{"op": "{}", "children": [)", op_name(head.operation()));
       open.push_back({.operands = operands(tree, node)});
     }
   };
@@ -169,7 +169,7 @@ std::string to_json(const Model& model) {
   require_valid(model.primitives);
   std::string text = "{\"format\": \"cloud2csg\", \"version\": 1,\n";
   if (!model.description.empty()) text += fmt::format(" \"description\": {},\n", quoted(model.description));
-  text += " \"primitives\": [";
+  text += R"( "primitives": [)";
   for (std::size_t i = 0; i < model.primitives.size(); ++i) {
     text += i == 0 ? "\n   " : ",\n   ";
     text += line_of(model.primitives[i]);

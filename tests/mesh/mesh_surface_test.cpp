@@ -151,6 +151,33 @@ TEST(MeshSurface, DetailFarBelowTheGridStaysClosed) {
   }
 }
 
+std::ptrdiff_t folded_triangles(const TriangleMesh& mesh, const CsgTree& tree, const PrimitiveSet& primitives) {
+  Points centroids;
+  std::vector<Eigen::Vector3d> normals;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d corner = mesh.vertices[a];
+    centroids.push_back((corner + mesh.vertices[b] + mesh.vertices[c]) / 3);
+    normals.push_back((mesh.vertices[b] - corner).cross(mesh.vertices[c] - corner));
+  }
+  const Points gradients = implicit_gradient(tree, primitives, centroids);
+  std::size_t i = 0;
+  return std::count_if(normals.begin(), normals.end(),
+                       [&](const Eigen::Vector3d& normal) { return normal.dot(gradients[i++]) < 0; });
+}
+
+TEST(MeshSurface, WithoutCornersFirstNoTriangleLooksTheWrongWay) {
+  const Model model = read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / "m2.json");
+  const AlignedBox bounds = bounds_of(*model.tree, model.primitives);
+  const auto folded = [&](bool corners_first) {
+    const TriangleMesh mesh =
+        mesh_surface(*model.tree, model.primitives, bounds, {.resolution = 32, .corners_first = corners_first});
+    EXPECT_TRUE(is_watertight(mesh));
+    return folded_triangles(mesh, *model.tree, model.primitives);
+  };
+  EXPECT_EQ(folded(false), 0);
+  EXPECT_LT(folded(true), 20) << "of 6600, around the corners where four spheres meet";
+}
+
 TEST(MeshSurface, CutsUnboundedSolidsAtTheBounds) {
   const PrimitiveSet primitives{at(HalfSpace{}, {0, 0, 0.25})};
   const TriangleMesh mesh = mesh_surface(CsgTree::leaf(0), primitives, cube(1), {.resolution = 32});
@@ -215,14 +242,15 @@ RC_GTEST_PROP(MeshSurface, EveryTreeIsWatertightAndHasItsVolume, ()) {
   const TriangleMesh mesh = mesh_surface(tree, primitives, bounds, {.resolution = 40});
   RC_ASSERT(is_watertight(mesh));
 
-  // The volume once more, by counting the points of a lattice.
-  constexpr int k_steps = 40;
-  Points lattice;
-  for (int i = 0; i < k_steps * k_steps * k_steps; ++i) {
-    const Eigen::Array3d index(i % k_steps, i / k_steps % k_steps, i / k_steps / k_steps);
-    lattice.push_back(bounds.min().array() + bounds.sizes().array() * (index + 0.5) / k_steps);
+  // The volume once more, by counting points spread evenly (Roberts' sequence, which no face is parallel to).
+  constexpr int k_points = 64'000;
+  const Eigen::Array3d step(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
+  Points points;
+  for (int i = 0; i < k_points; ++i) {
+    const Eigen::Array3d part = i * step;
+    points.push_back(bounds.min().array() + bounds.sizes().array() * (part - part.floor()));
   }
-  const std::vector<double> values = implicit_value(tree, primitives, lattice);
+  const std::vector<double> values = implicit_value(tree, primitives, points);
   const auto inside = std::count_if(values.begin(), values.end(), [](double value) { return value < 0; });
   const double counted = bounds.volume() * static_cast<double>(inside) / static_cast<double>(values.size());
   RC_ASSERT(std::abs(volume_of(mesh) - counted) < 0.02 * bounds.volume());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -272,7 +273,7 @@ Shape any_shape() {
 
 Primitive any_primitive(std::size_t index) {
   Primitive primitive{.id = *rc::gen::arbitrary<std::string>() + std::to_string(index), .shape = any_shape()};
-  for (char& c : primitive.id) c = static_cast<char>(c & 0x7f);
+  for (char& c : primitive.id) c = static_cast<char>(std::max(c & 0x7f, 1));  // text without NUL
   primitive.pose.position = any_vector(-100, 100);
   primitive.pose.orientation =
       Eigen::Quaterniond(*any_double(0.1, 1), *any_double(-1, 1), *any_double(-1, 1), 0.5).normalized();
