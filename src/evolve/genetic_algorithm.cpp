@@ -42,6 +42,7 @@ class GeneticAlgorithm {
         complete = false;
         break;
       }
+      run_.report("search", generation, 0);
       breed(++generation);
       ++idle;
       if (population_[order_.front()].score > best.score) {

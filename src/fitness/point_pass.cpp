@@ -196,7 +196,11 @@ constexpr std::size_t k_blocks_between_checks = 64;
 Share process_range(const PassInput& input, std::size_t first_block, std::size_t last_block, const RunContext& run) {
   Worker worker(input);
   for (std::size_t block = first_block; block < last_block; ++block) {
-    if ((block - first_block) % k_blocks_between_checks == 0) run.throw_if_stopped();
+    if ((block - first_block) % k_blocks_between_checks == 0) {
+      run.throw_if_stopped();
+      // The first share speaks for all: they are of one size and advance together.
+      if (first_block == 0) run.report("classes", block, last_block);
+    }
     const std::size_t begin = block * k_block_points;
     worker.process(begin, std::min(k_block_points, input.cloud.size() - begin));
   }

@@ -87,7 +87,8 @@ class Extractor {
   [[nodiscard]] RunContext search_run() const {
     const bool over_population = options_.parallel == Parallel::population || options_.parallel == Parallel::both;
     RunContext run = with_threads(over_population ? run_.threads : 1);
-    run.on_progress = {};
+    // Of several searches at once, those that have ended are counted; a single one tells its generations.
+    if (prepared_.partitions.size() > 1) run.on_progress = {};
     run.stop = search_stop_;
     return run;
   }
@@ -98,6 +99,7 @@ class Extractor {
     evolutions_.resize(count);
     std::atomic<std::size_t> done = 0;
     std::mutex reporting;
+    run_.report("search", 0, count);
     const auto solve = [&](std::size_t k) {
       evolutions_[k] = evolve_tree(prepared_.pass.tables[k], options_.search, k, search_run());
       const std::lock_guard lock(reporting);

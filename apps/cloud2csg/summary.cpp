@@ -1,0 +1,51 @@
+#include "summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+namespace cloud2csg::app {
+namespace {
+
+std::string merge_ways(const MergeStatistics& merge) {
+  std::vector<std::string_view> ways;
+  for (const MergeWay way : merge.ways) ways.push_back(to_string(way));
+  return fmt::format("{}", fmt::join(ways, ", "));
+}
+
+/// The stages that took at least a thousandth of the extraction, in milliseconds.
+std::string stage_times(const StageSeconds& seconds) {
+  std::string text;
+  const std::pair<const char*, double> stages[] = {{"segment", seconds.segment},     {"overlap", seconds.overlap},
+                                                   {"partition", seconds.partition}, {"classes", seconds.classes},
+                                                   {"search", seconds.search},       {"merge", seconds.merge},
+                                                   {"simplify", seconds.simplify}};
+  for (const auto& [name, value] : stages) {
+    if (value < 1e-3 * seconds.extraction) continue;
+    text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, value * 1e3);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const std::string> files) {
+  std::vector<std::string> lines{
+      fmt::format("points       {}, {} of them on no primitive; noise {:.3g}", s.points, s.unassigned_points, s.noise),
+      fmt::format("primitives   {}; cliques by size ({})", s.primitives, fmt::join(s.clique_histogram, ", ")),
+      fmt::format("partitions   {} in {} component{}; merge: {}", s.partitions.size(), s.components,
+                  s.components == 1 ? "" : "s", merge_ways(s.merge)),
+      fmt::format("tree         {} nodes, {} leaves, depth {}", s.tree.size, s.tree.leaves, s.tree.depth),
+      fmt::format("fit          rms distance {:.3g}, 95 % below {:.3g}, rms angle {:.3g} deg", s.fit.rms_distance,
+                  s.fit.p95_distance, s.fit.rms_angle_deg),
+      fmt::format("extraction   {:.1f} ms: {}", s.seconds.extraction * 1e3, stage_times(s.seconds)),
+      fmt::format("in all       {:.1f} ms: read {:.1f}, write {:.1f}", s.seconds.total * 1e3, s.seconds.read * 1e3,
+                  s.seconds.write * 1e3)};
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    lines.push_back(fmt::format("{}{}", k == 0 ? "wrote        " : "             ", files[k]));
+  }
+  return lines;
+}
+
+}  // namespace cloud2csg::app
