@@ -92,7 +92,7 @@ class RankClasses {
 
 /// A set of primitives to make a table for.
 struct RankClassesRequest {
-  std::vector<PrimitiveIndex> primitives = {};
+  std::vector<PrimitiveIndex> primitives = {};  ///< at least one
   /// Use every k-th point only (of the cloud, before the choice by segmentation): bounds memory for large sets.
   std::size_t stride = 1;
   /// All points, or only those that belong to one of the primitives, as the paper's partitions do.

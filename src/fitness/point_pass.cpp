@@ -235,7 +235,10 @@ PointPass build_rank_classes(const PointCloud& cloud, const PrimitiveSet& primit
   for (const Primitive& primitive : primitives) {
     input.parameters.push_back({scale.beta, scale.gamma, tolerances, has_unit_gradient(primitive)});
   }
-  for (const RankClassesRequest& request : requests) input.layouts.emplace_back(request.primitives.size());
+  for (const RankClassesRequest& request : requests) {
+    assert(!request.primitives.empty() && request.stride > 0);
+    input.layouts.emplace_back(request.primitives.size());
+  }
   Share share = process_all(input, run);
   PointPass pass;
   pass.points_of_primitive = std::move(share.points_of_primitive);

@@ -4,7 +4,9 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <numeric>
 
 #include "cloud2csg/evolve.hpp"
 #include "cloud2csg/sample.hpp"

@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <numbers>
+#include <algorithm>
+#include <numeric>
 #include <stop_token>
 
 #include "cloud2csg/evolve.hpp"

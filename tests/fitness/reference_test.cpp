@@ -91,7 +91,7 @@ void compare_random_scene(std::size_t primitives, std::size_t points, std::size_
 RC_GTEST_PROP(RankClassesReference, AFewPrimitives, (std::uint64_t seed)) {
   RandomStream random(seed);
   const std::size_t primitives = 1 + random.below(12);
-  compare_random_scene(primitives, 1 + random.below(600), 8, random);
+  compare_random_scene(primitives, 1 + random.below(400), 6, random);
   fail_property_when_failed();
 }
 
@@ -118,7 +118,7 @@ TEST(RankClassesReference, ManyPrimitives) {
 
 TEST(RankClassesReference, RelativeErrorIsBelowAMillionthWherePointsFit) {
   RandomStream random(11);
-  const test::Scene scene = test::random_scene(9, 5000, random);
+  const test::Scene scene = test::random_scene(9, 2000, random);
   std::vector<std::uint32_t> points(scene.cloud.size());
   std::iota(points.begin(), points.end(), 0U);
   RankScratch scratch;
@@ -126,7 +126,7 @@ TEST(RankClassesReference, RelativeErrorIsBelowAMillionthWherePointsFit) {
     const RankClasses table = test::whole_table(scene, weights);
     Objective geometry_only = table.objective();
     geometry_only.alpha = 0;
-    for (const CsgTree& tree : test::random_formulas(9, 40, random)) {
+    for (const CsgTree& tree : test::random_formulas(9, 20, random)) {
       const double reference = reference_objective(tree, scene.primitives, scene.cloud, points, geometry_only);
       EXPECT_NEAR(table.geometry(tree, scratch), reference, 1e-6 * reference);
     }
