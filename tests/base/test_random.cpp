@@ -55,7 +55,7 @@ TEST(RandomStream, BelowIsUniform) {
   std::array<int, 7> hits{};
   RandomStream random(11);
   for (int i = 0; i < k_draws; ++i) ++hits[random.below(hits.size())];
-  for (const int count : hits) EXPECT_NEAR(count, k_draws / 7, 5 * std::sqrt(k_draws / 7.0));
+  for (const int count : hits) EXPECT_NEAR(count, k_draws / 7.0, 5 * std::sqrt(k_draws / 7.0));
 }
 
 TEST(RandomStream, ChanceHasItsProbability) {

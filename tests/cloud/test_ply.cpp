@@ -65,8 +65,8 @@ std::string ascii_ply(std::string_view count, std::string_view rows) {
 
 TEST(Ply, RefusesBadHeadersNamingTheLine) {
   expect_refused("a.ply", "", "line 1", "end_header");
-  expect_refused("a.ply", "poly\n", "line 1", "expected \"ply\"");
-  expect_refused("a.ply", "ply\nformat ascii 2.0\n", "line 2", "expected \"format\", then \"ascii 1.0\"");
+  expect_refused("a.ply", "poly\n", "line 1", R"(expected "ply")");
+  expect_refused("a.ply", "ply\nformat ascii 2.0\n", "line 2", R"(expected "format", then "ascii 1.0")");
   expect_refused("a.ply", "ply\nformat ascii 1.0\nelement vertex many\n", "line 3", "element <name> <count>");
   expect_refused("a.ply", "ply\nformat ascii 1.0\nelement vertex -1\n", "line 3", "element <name> <count>");
   expect_refused("a.ply", "ply\nformat ascii 1.0\nproperty float x\n", "line 3", "element before");
