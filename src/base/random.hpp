@@ -15,7 +15,7 @@ class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed, std::uint64_t stage = 0, std::uint64_t item = 0, std::uint64_t step = 0) {
     std::uint64_t x = seed;
-    for (const std::uint64_t key : {stage, item, step}) x = mix(x + k_golden) ^ mix(key + k_golden);
+    for (const std::uint64_t key : {stage, item, step}) x = mix(mix(x + k_golden) + key);
     for (std::uint64_t& word : state_) word = mix(x += k_golden);
   }
 
