@@ -38,6 +38,6 @@ dependencies:
 	@scripts/install_dependencies.sh
 
 configure: dependencies
-	@test -f build/release/build.ninja || cmake --preset release >build-configure.log 2>&1 || \
-	  { cat build-configure.log; rm -f build-configure.log; exit 1; }
-	@rm -f build-configure.log
+	@mkdir -p build
+	@test -f build/release/build.ninja || cmake --preset release >build/configure.log 2>&1 || \
+	  { cat build/configure.log; exit 1; }
