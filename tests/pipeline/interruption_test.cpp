@@ -61,7 +61,7 @@ TEST(Interruption, DuringTheSearchGivesTheBestSoFar) {
     for (const int threads : {1, 2}) {
       std::stop_source stop;
       const auto stop_at_first = [&stop](const Progress& progress) {
-        if (progress.stage == "search") stop.request_stop();
+        if (progress.stage == "search" && progress.done > 0) stop.request_stop();
       };
       const RunContext run{.stop = stop.get_token(), .on_progress = stop_at_first, .threads = threads};
       expect_the_best_so_far(extract_csg(input.cloud, input.model.primitives, {.strategy = strategy}, run),
@@ -108,10 +108,27 @@ TEST(Progress, CountsPartitionsAndComponents) {
                            },
                        .threads = 3};
   const Extraction result = extract_csg(input.cloud, input.model.primitives, {}, run);
-  std::vector<std::size_t> expected(result.statistics.partitions.size());
-  std::iota(expected.begin(), expected.end(), std::size_t{1});
+  std::vector<std::size_t> expected(result.statistics.partitions.size() + 1);
+  std::iota(expected.begin(), expected.end(), std::size_t{0});
   EXPECT_EQ(search, expected);
   EXPECT_EQ(merge.size(), result.statistics.components);
+}
+
+TEST(Progress, ASingleSearchTellsItsGenerations) {
+  const Input input = small_input("m0");
+  std::vector<std::size_t> generations;
+  const RunContext run{.stop = {},
+                       .on_progress =
+                           [&generations](const Progress& progress) {
+                             if (progress.stage == "search" && progress.total == 0)
+                               generations.push_back(progress.done);
+                           },
+                       .threads = 2};
+  ExtractOptions options{.strategy = Strategy::baseline};
+  options.search.generation_limit = 5;
+  (void)extract_csg(input.cloud, input.model.primitives, options, run);
+  ASSERT_GE(generations.size(), 5U);
+  EXPECT_EQ(std::vector(generations.begin(), generations.begin() + 5), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
 }
 
 TEST(Progress, ErrorsOfTheCallerComeThrough) {
