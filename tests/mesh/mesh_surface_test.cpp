@@ -22,6 +22,8 @@ using shapes::euler_characteristic;
 using shapes::mesh_of;
 
 constexpr double k_pi = std::numbers::pi;
+// Not {}: an Eigen vector made so has no value.
+const Eigen::Vector3d k_origin = Eigen::Vector3d::Zero();
 
 AlignedBox cube(double half_size) {
   return {Eigen::Vector3d::Constant(-half_size), Eigen::Vector3d::Constant(half_size)};
@@ -55,9 +57,9 @@ INSTANTIATE_TEST_SUITE_P(
     Solids, KnownSolid,
     testing::Values(
         Known{"Box", at(Box{.size = {1, 0.5, 0.3}}, {5, 6, 7}), 0.15, 1e-9, 2},
-        Known{"TurnedBox", at(Box{.size = {1, 0.5, 0.3}}, {}, {1, 0.3, 0.2, 0.4}), 0.15, 1e-4, 2},
+        Known{"TurnedBox", at(Box{.size = {1, 0.5, 0.3}}, k_origin, {1, 0.3, 0.2, 0.4}), 0.15, 1e-4, 2},
         Known{"Sphere", at(Sphere{.radius = 2}), 4.0 / 3.0 * k_pi * 8, 3e-3, 2},
-        Known{"Cylinder", at(Cylinder{.radius = 1, .height = 2}, {}, {1, 0.3, 0.2, 0.4}), 2 * k_pi, 3e-3, 2},
+        Known{"Cylinder", at(Cylinder{.radius = 1, .height = 2}, k_origin, {1, 0.3, 0.2, 0.4}), 2 * k_pi, 3e-3, 2},
         Known{"Cone", at(Cone{.radius_bottom = 1, .radius_top = 0, .height = 1}), k_pi / 3, 3e-3, 2},
         Known{"Frustum", at(Cone{.radius_bottom = 1, .radius_top = 0.5, .height = 1}), k_pi * 1.75 / 3, 3e-3, 2},
         Known{"Torus", at(Torus{.major_radius = 1, .minor_radius = 0.25}), 2 * k_pi* k_pi / 16, 1e-2, 0},
@@ -142,7 +144,7 @@ TEST(MeshSurface, SolidsThatTouchStayClosed) {
 
 TEST(MeshSurface, DetailFarBelowTheGridStaysClosed) {
   // Signs that are as good as random: every configuration of cells and faces, next to every other.
-  Primitive rough = at(Sphere{.radius = 0.5}, {}, {1, 0.3, 0.2, 0.4});
+  Primitive rough = at(Sphere{.radius = 0.5}, k_origin, {1, 0.3, 0.2, 0.4});
   rough.displacement = Displacement{.frequency = 97};
   for (int resolution = 16; resolution < 40; resolution += 4) {
     const TriangleMesh mesh = mesh_of(rough, resolution);
