@@ -7,7 +7,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "compare/column_grid.hpp"
-#include "synth/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {

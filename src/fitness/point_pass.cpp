@@ -1,12 +1,9 @@
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <chrono>
 
-#include "cloud2csg/error.hpp"
+#include "base/parallel.hpp"
 #include "fitness/class_table.hpp"
 #include "fitness/point_kernels.hpp"
 #include "fitness/rank_classes_builder.hpp"
@@ -210,15 +207,11 @@ Share process_range(const PassInput& input, std::size_t first_block, std::size_t
 /// As many shares as threads: each costs a set of tables. The result does not depend on how many.
 Share process_all(const PassInput& input, const RunContext& run) {
   const std::size_t blocks = (input.cloud.size() + k_block_points - 1) / k_block_points;
-  const int threads = run.threads > 0 ? run.threads : oneapi::tbb::this_task_arena::max_concurrency();
-  if (threads == 1) return process_range(input, 0, blocks, run);
-  const auto parts = static_cast<std::size_t>(threads);
+  const auto parts = static_cast<std::size_t>(usable_threads(run));
+  if (parts == 1) return process_range(input, 0, blocks, run);
   std::vector<Share> shares(parts);
-  oneapi::tbb::task_arena arena(threads);
-  arena.execute([&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t k) {
-      shares[k] = process_range(input, blocks * k / parts, blocks * (k + 1) / parts, run);
-    });
+  for_each_index(parts, run, [&](std::size_t k) {
+    shares[k] = process_range(input, blocks * k / parts, blocks * (k + 1) / parts, run);
   });
   for (std::size_t k = 1; k < parts; ++k) shares.front().absorb(shares[k]);
   return std::move(shares.front());

@@ -1,7 +1,7 @@
 #include "mesh/contour.hpp"
 
 #include "mesh/edge_crossings.hpp"
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {

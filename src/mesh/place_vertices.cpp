@@ -4,7 +4,7 @@
 #include <map>
 
 #include "mesh/contour.hpp"
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {

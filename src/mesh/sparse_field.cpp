@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "mesh/interval_tree.hpp"
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {

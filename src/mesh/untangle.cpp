@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {

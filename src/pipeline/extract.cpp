@@ -1,13 +1,13 @@
 #include "cloud2csg/extract.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <limits>
 #include <mutex>
 
+#include "base/parallel.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/simplify.hpp"
 #include "pipeline/component.hpp"
@@ -204,7 +204,9 @@ class Extractor {
       return;
     }
     const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
-    statistics_.fit = measure_fit(tree, input_, cloud_, objective, run);
+    RunContext to_the_end = run;
+    to_the_end.stop = {};  // the tree of an interrupted search has a fit, too
+    statistics_.fit = measure_fit(tree, input_, cloud_, objective, to_the_end);
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
@@ -231,8 +233,8 @@ Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives, 
   check_input(cloud, primitives);
   const TimeLimit limit(run.stop, options.time_limit_seconds);
   RunContext inner = run;
-  inner.threads = run.threads > 0 ? run.threads : oneapi::tbb::this_task_arena::max_concurrency();
-  oneapi::tbb::task_arena arena(inner.threads);
+  inner.threads = run.threads > 0 ? run.threads : usable_threads(run);
+  oneapi::tbb::task_arena arena(usable_threads(run));
   return arena.execute([&] { return Extractor(cloud, primitives, options, inner, limit.token()).extract(); });
 }
 

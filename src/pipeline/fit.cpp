@@ -1,10 +1,10 @@
 #include "pipeline/fit.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -32,12 +32,7 @@ PointFit measure_points(const CsgTree& tree, const PrimitiveSet& primitives, con
       fit.angles[begin + i] = std::acos(std::clamp(cosine, -1.0, 1.0));
     }
   };
-  const std::size_t chunks = (cloud.size() + k_chunk - 1) / k_chunk;
-  if (run.threads == 1) {
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) measure(chunk);
-  } else {
-    oneapi::tbb::parallel_for(std::size_t{0}, chunks, measure);
-  }
+  for_each_index((cloud.size() + k_chunk - 1) / k_chunk, run, measure);
   return fit;
 }
 
