@@ -25,8 +25,9 @@ struct MeshingOptions {
 
 /// The surface of a solid as a closed mesh, by dual contouring of its implicit value with the known gradients, so
 /// that sharp edges stay sharp. Every edge has exactly two triangles. Unbounded solids are cut at `bounds`.
-/// Empty when the solid is. O(resolution^3 + surface cells x size).
-/// @throws Cancelled
+/// Empty when the solid is. O(surface cells x size): space far from the surface is skipped, and near it only the
+/// primitives that can matter are evaluated. Expressions are evaluated everywhere within their bounds.
+/// @throws Error when neither the solid nor `bounds` is finite, or the resolution is not 4 to 4096; Cancelled
 [[nodiscard]] TriangleMesh mesh_surface(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& bounds,
                                         const MeshingOptions& options = {}, const RunContext& run = {});
 
