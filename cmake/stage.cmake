@@ -5,10 +5,6 @@
 function(cloud2csg_stage)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "DEPENDS;LINK")
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${arg_NAME}/*.cpp)
-  if(NOT sources)  # TEMPORARY until every stage has sources
-    file(WRITE ${CMAKE_BINARY_DIR}/empty_${arg_NAME}.cpp "")
-    set(sources ${CMAKE_BINARY_DIR}/empty_${arg_NAME}.cpp)
-  endif()
   set(target cloud2csg_${arg_NAME})
   add_library(${target} STATIC ${sources})
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
@@ -17,7 +13,9 @@ function(cloud2csg_stage)
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
            $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
   # Third-party headers count as system headers, so that our warnings are about our code.
-  target_link_libraries(${target} PUBLIC cloud2csg_compiler Eigen3::Eigen)
+  target_link_libraries(${target} PUBLIC $<BUILD_INTERFACE:cloud2csg_compiler> Eigen3::Eigen)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  install(TARGETS ${target} EXPORT cloud2csg-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   foreach(stage IN LISTS arg_DEPENDS)
     target_link_libraries(${target} PUBLIC cloud2csg_${stage})
   endforeach()

@@ -9,12 +9,38 @@
 
 #include "cloud2csg/run_context.hpp"
 
+#if defined(__SANITIZE_THREAD__)
+#define CLOUD2CSG_THREAD_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define CLOUD2CSG_THREAD_SANITIZER
+#endif
+#endif
+#ifdef CLOUD2CSG_THREAD_SANITIZER
+#include "base/plain_threads.hpp"
+#endif
+
 namespace cloud2csg {
 
 /// The threads that a run asks for, no more than the machine has: TBB would warn about more on the standard error.
 inline int usable_threads(const RunContext& run) {
   const int cores = oneapi::tbb::info::default_concurrency();
   return run.threads > 0 ? std::min(run.threads, cores) : cores;
+}
+
+/// Calls work(i) for i = 0 .. count - 1 on the threads of the arena that the caller is in, for loops within loops. The
+/// same rules as for for_each_index().
+template <typename Work>
+void for_each_index_in_arena(std::size_t count, const RunContext& run, const Work& work) {
+  if (run.threads == 1) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+#ifdef CLOUD2CSG_THREAD_SANITIZER
+  run_on_plain_threads(count, usable_threads(run), work);
+#else
+  oneapi::tbb::parallel_for(std::size_t{0}, count, work);
+#endif
 }
 
 /// Calls work(i) for i = 0 .. count - 1 on the threads of the run. Each call must write only what belongs to its i, so
@@ -27,11 +53,11 @@ void for_each_index(std::size_t count, const RunContext& run, const Work& work) 
     work(i);
   };
   if (run.threads == 1) {
-    for (std::size_t i = 0; i < count; ++i) one(i);
+    for_each_index_in_arena(count, run, one);
     return;
   }
   oneapi::tbb::task_arena arena(usable_threads(run));
-  arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, count, one); });
+  arena.execute([&] { for_each_index_in_arena(count, run, one); });
 }
 
 }  // namespace cloud2csg

@@ -1,12 +1,11 @@
 #include "evolve/genetic_algorithm.hpp"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <numeric>
 
+#include "base/parallel.hpp"
 #include "evolve/operators.hpp"
 #include "evolve/random_tree.hpp"
 #include "evolve/scored_tree.hpp"
@@ -63,17 +62,8 @@ class GeneticAlgorithm {
     return RandomStream(options_.seed, static_cast<std::uint64_t>(name), item_, generation << 32U | place);
   }
 
-  template <class Body>
-  void for_each(std::size_t count, const Body& body) {
-    if (run_.threads == 1) {
-      for (std::size_t i = 0; i < count; ++i) body(i);
-    } else {
-      oneapi::tbb::parallel_for(std::size_t{0}, count, body);
-    }
-  }
-
   void first_generation(std::span<const CsgTree> seeds) {
-    for_each(population_.size(), [&](std::size_t i) {
+    for_each_index_in_arena(population_.size(), run_, [&](std::size_t i) {
       RandomStream random = stream(Stream::first_generation, 0, i);
       ScoredTree& individual = population_[i];
       individual.tree = i < seeds.size() ? seeds[i] : random_tree(table_.primitive_count(), height_limit_, random);
@@ -86,7 +76,7 @@ class GeneticAlgorithm {
     const auto elites = std::min(static_cast<std::size_t>(options_.elites), population_.size());
     for (std::size_t i = 0; i < elites; ++i) next_[i] = population_[order_[i]];
     const std::size_t pairs = (population_.size() - elites + 1) / 2;
-    for_each(pairs, [&](std::size_t pair) {
+    for_each_index_in_arena(pairs, run_, [&](std::size_t pair) {
       RandomStream random = stream(Stream::breeding, generation, pair);
       const CsgTree& mother = tournament(random);
       const CsgTree& father = tournament(random);

@@ -1,7 +1,5 @@
 #include "cloud2csg/extract.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <limits>
@@ -106,11 +104,7 @@ class Extractor {
       run_.report("search", ++done, count);
     };
     const bool over_partitions = options_.parallel == Parallel::partitions || options_.parallel == Parallel::both;
-    if (over_partitions && run_.threads != 1) {
-      oneapi::tbb::parallel_for(std::size_t{0}, count, solve);
-    } else {
-      for (std::size_t k = 0; k < count; ++k) solve(k);
-    }
+    for_each_index_in_arena(count, with_threads(over_partitions ? run_.threads : 1), solve);
     for (std::size_t k = 0; k < count; ++k) note_partition(k);
     statistics_.seconds.search += watch.lap();
   }
