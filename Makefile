@@ -5,7 +5,7 @@ PREFIX ?= /usr/local
 .DEFAULT_GOAL := help
 
 help: ## What there is to make
-	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):[^#]*## */  make \1|/' | column -t -s '|'
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 demo: configure ## Build, and run the main job on a shipped cloud
 	@cmake --build --preset release --target cloud2csg

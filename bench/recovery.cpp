@@ -59,7 +59,7 @@ Recovery recover(const Model& model, const ExtractOptions& setting) {
     const Extraction result = extract_csg(cloud, model.primitives, options);
     const Shape3d truth{.model = model};
     const Shape3d found{.model = Model{.primitives = model.primitives, .tree = result.tree}};
-    const double iou = compare(truth, found, {.surface_samples = 1000}).intersection_over_union.value_or(0);
+    const double iou = compare(truth, found, {.resolution = 96, .surface_samples = 1000}).intersection_over_union.value_or(0);
     const double ratio = static_cast<double>(result.tree.size()) / static_cast<double>(model.tree->size());
     recovery.right += iou >= 0.999 ? 1 : 0;
     recovery.worst_iou = std::min(recovery.worst_iou, iou);

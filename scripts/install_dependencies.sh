@@ -8,7 +8,7 @@ packages=(
   libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libfmt-dev
   libgtest-dev librapidcheck-dev openscad
 )
-[ "${1:-}" = lint ] && packages+=(clang clang-format clang-tidy)
+[ "${1:-}" = lint ] && packages+=(git clang clang-format clang-tidy)
 
 missing=()
 for package in "${packages[@]}"; do

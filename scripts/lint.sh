@@ -3,6 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mapfile -t all < <(git ls-files '*.cpp' '*.hpp')
+[ ${#all[@]} -gt 0 ] || { echo 'lint: git lists no sources' >&2; exit 1; }
 clang-format --dry-run -Werror "${all[@]}"
 mapfile -t sources < <(git ls-files 'src/*.cpp' 'apps/*.cpp' 'bench/*.cpp')
 run-clang-tidy -quiet -p build/release -j "$(nproc)" -extra-arg=-Wno-unknown-warning-option "${sources[@]/#/$PWD/}" >build/lint.log 2>build/lint.err ||

@@ -21,6 +21,7 @@ struct ConvertCommand {
 
 void ConvertCommand::run(std::stop_token stop) const {
   for (const std::string& file : outputs) check_output(file, model_endings());
+  check_distinct(outputs);
   Session session(running, std::move(stop));
   const Model read = read_model(model);
   for (const std::string& file : outputs) export_model(file, read, exporting, session.run());

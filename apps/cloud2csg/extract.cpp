@@ -78,6 +78,11 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   const ExtractOptions options = arguments.options();
   for (const std::string& file : outputs) check_output(file, model_endings());
   if (statistics) check_output(*statistics, k_statistics_endings);
+  std::vector<std::string> written = outputs;
+  if (statistics) written.push_back(*statistics);
+  std::vector<std::string> all = written;
+  all.insert(all.end(), {cloud, primitives});
+  check_distinct(all);
   Session session(running, stop);
 
   const PrimitiveSet solids = read_model(primitives).primitives;
@@ -94,9 +99,7 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   if (statistics) write_text_file(*statistics, to_json(result.statistics));
 
   for (const std::string& warning : result.statistics.warnings) session.display().note("warning: " + warning);
-  std::vector<std::string> files = outputs;
-  if (statistics) files.push_back(*statistics);
-  for (const std::string& line : summary_of(result.statistics, files)) session.display().note(line);
+  for (const std::string& line : summary_of(result.statistics, written)) session.display().note(line);
   if (stop.stop_requested() && !result.statistics.complete) {
     throw Error({.file = {}, .where = "interrupted", .expected = "the best tree so far was written", .remedy = {}});
   }

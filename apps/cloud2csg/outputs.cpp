@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "cloud2csg/error.hpp"
 
@@ -55,6 +56,21 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     refuse(fmt::format("cannot be written: folder '{}' ({})", folder.string(), std::strerror(errno)),
            "check its permissions");
+  }
+}
+
+void check_distinct(std::span<const std::string> files) {
+  std::vector<std::filesystem::path> seen;
+  for (const std::string& file : files) {
+    std::error_code ignored;
+    std::filesystem::path path = std::filesystem::weakly_canonical(file, ignored);
+    if (std::find(seen.begin(), seen.end(), path) != seen.end()) {
+      throw Error({.file = file,
+                   .where = {},
+                   .expected = "is named twice: one would overwrite the other",
+                   .remedy = "give each file a name of its own"});
+    }
+    seen.push_back(std::move(path));
   }
 }
 

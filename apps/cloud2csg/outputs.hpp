@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,5 +18,9 @@ namespace cloud2csg::app {
 /// Finds before the work starts what would stop the result from being written when it ends.
 /// @throws Error for an ending that is not among `endings`, a folder that is missing or cannot be written to.
 void check_output(const std::filesystem::path& file, std::span<const std::string_view> endings);
+
+/// Refuses a list of inputs and outputs in which two name the same file.
+/// @throws Error
+void check_distinct(std::span<const std::string> files);
 
 }  // namespace cloud2csg::app

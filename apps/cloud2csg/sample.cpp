@@ -27,6 +27,7 @@ struct SampleCommand {
 
 void SampleCommand::run(std::stop_token stop) const {
   for (const std::string& file : outputs) check_output(file, cloud_endings());
+  check_distinct(outputs);
   Session session(running, std::move(stop));
   const Model read = read_model(model);
   if (!read.tree) {

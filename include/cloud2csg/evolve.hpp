@@ -21,15 +21,15 @@ struct GaOptions {
       0.5;  ///< of the mutations: the whole tree is replaced by a new one, else a random subtree (paper)
   /// Edges on the longest path of a tree. Absent: sqrt(pi / 2 * n (n - 1)) for n primitives (paper).
   std::optional<int> height_limit = {};
-  /// Stop when the best score has not improved for so many generations. The paper's 10 finds the true solid of M0's
-  /// largest cliques in few runs; with seeds and polish, 40 found it in all that were tried (bench/recovery).
+  /// Stop when the best score has not improved for so many generations. The paper stops after 10, and then misses the
+  /// true solid in some runs (bench/recovery counts them).
   int idle_generations = 40;
   int generation_limit = 10'000;  ///< stop here in any case
 
-  // Beyond the paper. What each is worth is measured in bench/recovery.
+  // Beyond the paper. bench/recovery measures listing, seeds and polish each alone.
 
   /// Partitions of up to so many primitives are solved by listing all trees that use each primitive at most once; the
-  /// paper lists up to 2. 4 cost some 0.1 ms, 5 some ms.
+  /// paper lists up to 2. Each one more is about 20 times the work; at most 5.
   std::size_t listing_limit = 4;
   /// A listed tree must reach this share of what no tree can exceed (RankClasses::geometry_bound), else the genetic
   /// algorithm looks for a tree that uses a primitive more than once. 0: what was listed is taken as it is (paper).
@@ -59,6 +59,9 @@ struct Evolution {
   const auto n = static_cast<double>(primitives);
   return std::max(1, static_cast<int>(std::sqrt(std::numbers::pi / 2 * n * (n - 1))));
 }
+
+/// The name of a partition's random stream: the same for the same primitives, whoever searches.
+[[nodiscard]] std::uint64_t partition_item(std::span<const PrimitiveIndex> primitives);
 
 /// Searches for the tree with the highest E(t). `item` tells partitions apart: each has a random stream of its own.
 /// The result depends on the table, the options and `item` only, not on run.threads, over which the evaluation of the

@@ -35,7 +35,7 @@ Eigen::Vector3d unit_normal(const FileContent& content, FilePosition where, cons
   content.fail(where,
                fmt::format("expected a normal that is finite and not of length zero, found ({}, {}, {})", normal.x(),
                            normal.y(), normal.z()),
-               "leave the normals out to have them estimated");
+               "give every point a normal, or leave the points without one out");
 }
 
 [[noreturn]] void fail_empty(const FileContent& content) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/random.hpp"
 #include "cloud2csg/simplify.hpp"
 #include "evolve/genetic_algorithm.hpp"
 #include "evolve/listing.hpp"
@@ -110,6 +111,12 @@ GaOptions paper_ga_options() {
   return options;
 }
 
+std::uint64_t partition_item(std::span<const PrimitiveIndex> primitives) {
+  std::uint64_t item = 0;
+  for (const PrimitiveIndex p : primitives) item = RandomStream(item, p).next();
+  return item;
+}
+
 Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::uint64_t item, const RunContext& run) {
   Evolution best = nothing_yet();
   std::vector<CsgTree> seeds;
@@ -132,7 +139,9 @@ Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::u
 Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const GaOptions& options, std::uint64_t item,
                            const RunContext& run) {
   if (!is_solid(start)) return evolve_tree(table, options, item, run);
-  Evolution best = local_search(table, start, {}, run);
+  // Without polish the start is only evaluated.
+  const LocalSearchOptions climb{.evaluation_limit = options.polish ? LocalSearchOptions{}.evaluation_limit : 0};
+  Evolution best = local_search(table, start, climb, run);
   search(table, {start, best.tree}, options, item, run, best);
   settle_for_a_solid(table, best);
   return best;
@@ -145,7 +154,7 @@ CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, con
   const PointPass pass =
       build_rank_classes(cloud, primitives, requests, segmentation_tolerances({}, noise), {}, noise, run);
   const RankClasses& table = pass.tables.front();
-  return simplify(renumber(evolve_tree(table, options, clique.front(), run).tree, table.primitives()));
+  return simplify(renumber(evolve_tree(table, options, partition_item(clique), run).tree, table.primitives()));
 }
 
 }  // namespace cloud2csg

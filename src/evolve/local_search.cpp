@@ -17,8 +17,8 @@ CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
 /// The best of the neighbours of one tree.
 class Neighbourhood {
  public:
-  Neighbourhood(Evaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options)
-      : evaluator_(evaluator), centre_(centre), options_(options), best_(centre) {}
+  Neighbourhood(Evaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options, std::stop_token stop)
+      : evaluator_(evaluator), centre_(centre), options_(options), stop_(std::move(stop)), best_(centre) {}
 
   ScoredTree best() {
     for (std::size_t node = 0; node < centre_.tree.size(); ++node) {
@@ -37,7 +37,7 @@ class Neighbourhood {
 
  private:
   void consider(std::size_t node, const CsgTree& replacement) {
-    if (evaluator_.evaluations() >= options_.evaluation_limit) return;
+    if (evaluator_.evaluations() >= options_.evaluation_limit || stop_.stop_requested()) return;
     ScoredTree neighbour{centre_.tree};
     neighbour.tree.replace(node, replacement.nodes());
     neighbour.score = evaluator_.score(neighbour.tree);
@@ -79,6 +79,7 @@ class Neighbourhood {
   Evaluator& evaluator_;
   const ScoredTree& centre_;
   const LocalSearchOptions& options_;
+  std::stop_token stop_;
   ScoredTree best_;
 };
 
@@ -94,8 +95,11 @@ Evolution local_search(const RankClasses& table, const CsgTree& start, const Loc
       complete = false;
       break;
     }
-    ScoredTree better = Neighbourhood(evaluator, current, options).best();
-    if (better.score <= current.score) break;
+    ScoredTree better = Neighbourhood(evaluator, current, options, run.stop).best();
+    if (better.score <= current.score) {
+      complete = !run.stop.stop_requested();
+      break;
+    }
     current = std::move(better);
   }
   return {.tree = current.tree,

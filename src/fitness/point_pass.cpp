@@ -207,7 +207,8 @@ Share process_range(const PassInput& input, std::size_t first_block, std::size_t
 /// As many shares as threads: each costs a set of tables. The result does not depend on how many.
 Share process_all(const PassInput& input, const RunContext& run) {
   const std::size_t blocks = (input.cloud.size() + k_block_points - 1) / k_block_points;
-  const auto parts = static_cast<std::size_t>(usable_threads(run));
+  const int threads = run.threads > 0 ? run.threads : usable_threads(run);
+  const std::size_t parts = std::clamp<std::size_t>(blocks, 1, static_cast<std::size_t>(threads));
   if (parts == 1) return process_range(input, 0, blocks, run);
   std::vector<Share> shares(parts);
   for_each_index(parts, run, [&](std::size_t k) {

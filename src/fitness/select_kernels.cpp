@@ -1,6 +1,7 @@
 #include "fitness/select_kernels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <vector>
 
@@ -152,12 +153,12 @@ double geometry_of_words(const RankTable<std::int16_t>& table, std::span<const C
 RankClasses::ColumnGeometry geometry_of_column(const RankTable<std::int8_t>& table,
                                                std::span<const std::int8_t> column) {
   RankClasses::ColumnGeometry sums{0, 0};
-  alignas(64) std::int8_t negated[k_chunk];
+  alignas(64) std::array<std::int8_t, k_chunk> negated;  // NOLINT: each chunk is written before it is read
   for (std::size_t begin = 0; begin < table.padded; begin += k_chunk) {
     const std::size_t count = std::min(k_chunk, table.padded - begin);
     sums.of_column += look_up(table, column.data() + begin, begin, count);
-    negate(column.data() + begin, negated, count);
-    sums.of_negation += look_up(table, negated, begin, count);
+    negate(column.data() + begin, negated.data(), count);
+    sums.of_negation += look_up(table, static_cast<const std::int8_t*>(negated.data()), begin, count);
   }
   return sums;
 }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <limits>
 #include <mutex>
+#include <numeric>
 
 #include "base/parallel.hpp"
 #include "cloud2csg/error.hpp"
@@ -17,7 +18,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Random streams of searches over components start here; those of partitions count from 0.
+/// Random streams of searches over components and of joint searches; those of partitions are named by their primitives.
 constexpr std::uint64_t k_component_items = std::uint64_t{1} << 40U;
 constexpr std::uint64_t k_joint_items = std::uint64_t{1} << 41U;
 
@@ -99,7 +100,8 @@ class Extractor {
     std::mutex reporting;
     run_.report("search", 0, count);
     const auto solve = [&](std::size_t k) {
-      evolutions_[k] = evolve_tree(prepared_.pass.tables[k], options_.search, k, search_run());
+      evolutions_[k] =
+          evolve_tree(prepared_.pass.tables[k], options_.search, partition_item(prepared_.partitions[k]), search_run());
       const std::lock_guard lock(reporting);
       run_.report("search", ++done, count);
     };
@@ -156,13 +158,16 @@ class Extractor {
 
   /// A tree for some primitives of a component, from a pass over the points for just them; component's indices.
   CsgTree solve_set(const Clique& set, std::span<const PrimitiveIndex> component) {
-    Clique prepared;
-    for (const PrimitiveIndex p : set) prepared.push_back(component[p]);
-    const std::vector<RankClassesRequest> requests{{.primitives = prepared}};
-    RunContext run = search_run();
-    run.stop = {};  // a pass is short, and the search after it sees the stop
-    const PointPass pass = build_rank_classes(cloud_, prepared_.primitives, requests, prepared_.tolerances,
-                                              options_.objective, prepared_.noise, run);
+    // A set of its own: the pass looks at no other primitive.
+    PrimitiveSet members;
+    for (const PrimitiveIndex p : set) members.push_back(prepared_.primitives[component[p]]);
+    RankClassesRequest request;
+    request.primitives.resize(set.size());
+    std::iota(request.primitives.begin(), request.primitives.end(), PrimitiveIndex{0});
+    RunContext pass_run = search_run();
+    pass_run.stop = {};  // a pass is short, and the search after it sees the stop
+    const PointPass pass = build_rank_classes(cloud_, members, std::span(&request, 1), prepared_.tolerances,
+                                              options_.objective, prepared_.noise, pass_run);
     const Evolution evolution =
         evolve_tree(pass.tables.front(), options_.search, k_joint_items + joint_solutions_++, search_run());
     statistics_.complete = statistics_.complete && evolution.complete;
