@@ -27,9 +27,8 @@ void report(const std::string& name) {
   std::vector<std::uint32_t> points(cloud.size());
   std::iota(points.begin(), points.end(), 0U);
   double plain_score = 0;
-  const Timing plain = time_runs(5, [&] {
-    plain_score = reference_objective(*model.tree, model.primitives, cloud, points, table.objective());
-  });
+  const Timing plain = time_runs(
+      5, [&] { plain_score = reference_objective(*model.tree, model.primitives, cloud, points, table.objective()); });
   RankScratch scratch;
   double fast_score = 0;
   const Timing fast = time_runs(9, [&] {

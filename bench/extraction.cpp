@@ -56,9 +56,10 @@ void growth(const std::string& name) {
       first_points = count;
       first_seconds = seconds;
     }
-    const double exponent = count > first_points ? std::log(seconds / first_seconds) / std::log(count / first_points) : 0;
-    fmt::print("| {:5} | {:10} | {:12.1f} | {:14.1f} | {:8.2f} |\n", name, points, seconds * 1e3,
-               seconds / count * 1e9, exponent);
+    const double exponent =
+        count > first_points ? std::log(seconds / first_seconds) / std::log(count / first_points) : 0;
+    fmt::print("| {:5} | {:10} | {:12.1f} | {:14.1f} | {:8.2f} |\n", name, points, seconds * 1e3, seconds / count * 1e9,
+               exponent);
   }
 }
 
@@ -69,8 +70,12 @@ int main() {
   using namespace cloud2csg;
   using namespace cloud2csg::bench;
   fmt::print("Extraction, 150 000 points, noise 0.01, one core, the run of median duration of 15, milliseconds\n\n");
-  fmt::print("| model | strategy   | segment  | overlap  | classes  | search   | merge    | simplify | extraction | nodes/true    |\n");
-  fmt::print("|-------|------------|----------|----------|----------|----------|----------|----------|------------|---------------|\n");
+  fmt::print(
+      "| model | strategy   | segment  | overlap  | classes  | search   | merge    | simplify | extraction | "
+      "nodes/true    |\n");
+  fmt::print(
+      "|-------|------------|----------|----------|----------|----------|----------|----------|------------|-----------"
+      "----|\n");
   for (const char* name : {"m0", "m1", "m2", "m3"}) {
     ExtractOptions options;
     options.parallel = Parallel::none;

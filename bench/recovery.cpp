@@ -1,5 +1,5 @@
-// How often the right solid is found, and how large its tree is: 20 seeds a model (a cloud and a search of its own each),
-// for the default and for each thing that the default adds to the paper.
+// How often the right solid is found, and how large its tree is: 20 seeds a model (a cloud and a search of its own
+// each), for the default and for each thing that the default adds to the paper.
 
 #include <fmt/format.h>
 
@@ -59,7 +59,8 @@ Recovery recover(const Model& model, const ExtractOptions& setting) {
     const Extraction result = extract_csg(cloud, model.primitives, options);
     const Shape3d truth{.model = model};
     const Shape3d found{.model = Model{.primitives = model.primitives, .tree = result.tree}};
-    const double iou = compare(truth, found, {.resolution = 96, .surface_samples = 1000}).intersection_over_union.value_or(0);
+    const double iou =
+        compare(truth, found, {.resolution = 96, .surface_samples = 1000}).intersection_over_union.value_or(0);
     const double ratio = static_cast<double>(result.tree.size()) / static_cast<double>(model.tree->size());
     recovery.right += iou >= 0.999 ? 1 : 0;
     recovery.worst_iou = std::min(recovery.worst_iou, iou);
@@ -83,8 +84,12 @@ int main() {
   fmt::print("Recovery, {} points, noise 0.01, {} seeds, one core. right: IoU >= 0.999; ratio: nodes / true nodes;\n",
              k_points, k_seeds);
   fmt::print("fall-backs: components whose paper merge did not go through or did not hold; ms: median extraction\n\n");
-  fmt::print("| model | setting                         | right | worst IoU | mean ratio | worst ratio | fall-backs | ms      |\n");
-  fmt::print("|-------|---------------------------------|-------|-----------|------------|-------------|------------|---------|\n");
+  fmt::print(
+      "| model | setting                         | right | worst IoU | mean ratio | worst ratio | fall-backs | ms      "
+      "|\n");
+  fmt::print(
+      "|-------|---------------------------------|-------|-----------|------------|-------------|------------|---------"
+      "|\n");
   for (const char* name : {"m0", "m1", "m2", "m3"}) {
     const cloud2csg::Model model = shipped_model(name);
     for (const Setting& setting : settings()) {

@@ -29,8 +29,8 @@ struct OverlapGraph {
   [[nodiscard]] std::size_t edge_count() const;
 };
 
-/// Broad phase by an R-tree over the bounds, O(n log n + pairs); narrow phase exact for convex pairs (by libccd), by the
-/// distance fields for the rest. One solid inside another overlaps it.
+/// Broad phase by an R-tree over the bounds, O(n log n + pairs); narrow phase exact for convex pairs (by libccd), by
+/// the distance fields for the rest. One solid inside another overlaps it.
 /// @throws Cancelled
 [[nodiscard]] OverlapGraph build_overlap_graph(const PrimitiveSet& primitives, const OverlapOptions& options = {},
                                                const RunContext& run = {});

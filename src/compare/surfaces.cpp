@@ -7,10 +7,10 @@
 #include <nanoflann.hpp>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "compare/triangle_tree.hpp"
-#include "base/parallel.hpp"
 #include "synth/triangle_sampler.hpp"
 
 namespace cloud2csg {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "cloud2csg/error.hpp"
 #include "compare/column_grid.hpp"
-#include "base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {

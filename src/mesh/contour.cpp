@@ -1,7 +1,7 @@
 #include "mesh/contour.hpp"
 
-#include "mesh/edge_crossings.hpp"
 #include "base/parallel.hpp"
+#include "mesh/edge_crossings.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <map>
 
-#include "mesh/contour.hpp"
 #include "base/parallel.hpp"
+#include "mesh/contour.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <utility>
 
-#include "mesh/interval_tree.hpp"
 #include "base/parallel.hpp"
+#include "mesh/interval_tree.hpp"
 
 namespace cloud2csg {
 namespace {

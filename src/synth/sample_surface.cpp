@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/sample.hpp"
-#include "base/parallel.hpp"
 #include "synth/primitive_surface.hpp"
 
 namespace cloud2csg {
