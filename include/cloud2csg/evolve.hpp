@@ -83,6 +83,8 @@ struct LocalSearchOptions {
   /// Only moves that make the tree smaller: redundancy removal.
   bool shrink_only = false;
   std::size_t evaluation_limit = 100'000;
+  /// Evaluations x classes x nodes: some ten seconds at most, however large the table is.
+  double work_limit = 4e10;
 };
 
 /// Climbs from `start` by the best of all small changes (a node replaced by its child, by a leaf, by another operation;

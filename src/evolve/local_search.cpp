@@ -14,6 +14,10 @@ CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
                                                 : subtract(a, b);
 }
 
+bool is_spent(const Evaluator& evaluator, const LocalSearchOptions& options) {
+  return evaluator.evaluations() >= options.evaluation_limit || evaluator.work() >= options.work_limit;
+}
+
 /// The best of the neighbours of one tree.
 class Neighbourhood {
  public:
@@ -37,7 +41,7 @@ class Neighbourhood {
 
  private:
   void consider(std::size_t node, const CsgTree& replacement) {
-    if (evaluator_.evaluations() >= options_.evaluation_limit || stop_.stop_requested()) return;
+    if (is_spent(evaluator_, options_) || stop_.stop_requested()) return;
     ScoredTree neighbour{centre_.tree};
     neighbour.tree.replace(node, replacement.nodes());
     neighbour.score = evaluator_.score(neighbour.tree);
@@ -90,7 +94,7 @@ Evolution local_search(const RankClasses& table, const CsgTree& start, const Loc
   Evaluator evaluator(table);
   ScoredTree current{start, evaluator.score(start)};
   bool complete = true;
-  while (evaluator.evaluations() < options.evaluation_limit) {
+  while (!is_spent(evaluator, options)) {
     if (run.stop.stop_requested()) {
       complete = false;
       break;

@@ -19,16 +19,20 @@ class Evaluator {
 
   [[nodiscard]] double score(const CsgTree& tree) {
     ++evaluations_;
+    work_ += static_cast<double>(table_.class_count()) * static_cast<double>(tree.size());
     return table_.score(tree, scratch_);
   }
   [[nodiscard]] double geometry(const CsgTree& tree) { return table_.geometry(tree, scratch_); }
   [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
+  /// Evaluations x classes x nodes.
+  [[nodiscard]] double work() const { return work_; }
   [[nodiscard]] const RankClasses& table() const { return table_; }
 
  private:
   const RankClasses& table_;
   RankScratch scratch_;
   std::size_t evaluations_ = 0;
+  double work_ = 0;
 };
 
 }  // namespace cloud2csg

@@ -10,9 +10,9 @@ namespace cloud2csg {
 
 /// What partition trees promise on the points of a whole component, and how far a merged tree falls short of it.
 ///
-/// Every partition tree that knows a point's nearest primitive may explain the point; the best of them is the promise
-/// for the point. It is kept by nearest primitive, so that a small feature that was lost is seen although it weighs
-/// little in the whole.
+/// For each primitive, the promise is the best that a partition tree with that primitive reaches on the points nearest
+/// to it. It is kept by primitive, so that a small feature that was lost is seen although it weighs little in the
+/// whole.
 class MergeCheck {
  public:
   /// `cliques` and `trees` belong together; both index the table's primitives locally. O(trees x classes).

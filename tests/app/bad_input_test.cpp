@@ -61,6 +61,14 @@ TEST_F(BadInput, UnknownEndings) {
   expect_failure(run({"extract", odd, "--primitives", shipped("m1.json"), "-o", path("x.json")}), 1, {odd, ".doc"});
 }
 
+TEST_F(BadInput, FilesNamedTwice) {
+  const std::string same = path("same.json");
+  expect_failure(run({"sample", shipped("m1.json"), "-o", path("a.ply"), "-o", path("a.ply")}), 1, {"a.ply", "twice"});
+  expect_failure(run({"extract", path("a.ply"), "--primitives", shipped("m1.json"), "-o", same, "--stats", same}), 1,
+                 {"same.json", "twice"});
+  EXPECT_FALSE(std::filesystem::exists(same));
+}
+
 TEST_F(BadInput, OutputsAreCheckedFirst) {
   // The inputs are missing too: the message must be about the outputs, which are looked at before any work.
   const std::string model = path("missing.json");
