@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <utility>
 
 namespace cloud2csg::app {
@@ -17,10 +18,11 @@ std::string merge_ways(const MergeStatistics& merge) {
 /// The stages that took at least a thousandth of the extraction, in milliseconds.
 std::string stage_times(const StageSeconds& seconds) {
   std::string text;
-  const std::pair<const char*, double> stages[] = {{"segment", seconds.segment},     {"overlap", seconds.overlap},
-                                                   {"partition", seconds.partition}, {"classes", seconds.classes},
-                                                   {"search", seconds.search},       {"merge", seconds.merge},
-                                                   {"simplify", seconds.simplify}};
+  using Stage = std::pair<const char*, double>;
+  const std::array stages{Stage{"segment", seconds.segment},     Stage{"overlap", seconds.overlap},
+                          Stage{"partition", seconds.partition}, Stage{"classes", seconds.classes},
+                          Stage{"search", seconds.search},       Stage{"merge", seconds.merge},
+                          Stage{"simplify", seconds.simplify}};
   for (const auto& [name, value] : stages) {
     if (value < 1e-3 * seconds.extraction) continue;
     text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, value * 1e3);
