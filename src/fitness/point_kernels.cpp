@@ -95,8 +95,8 @@ void compute_exponents(const BlockField& field, const BlockNormals& normals, con
     hn::Store(hn::DemoteTo(df, hn::Min(chord, one)), df, &exponents.angle_chord[i]);
     hn::Store(hn::DemoteTo(df, cosine), df, &exponents.cosine[i]);
     const auto is_member = hn::And(hn::Abs(f) <= farthest, hn::Abs(cosine) >= least_cosine);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, is_member, bits);
+    std::array<std::uint8_t, 8> bits{};
+    hn::StoreMaskBits(d, is_member, bits.data());
     member[i / 64] |= static_cast<std::uint64_t>(bits[0]) << (i % 64);
   }
 }
