@@ -14,29 +14,14 @@
 #include "cloud2csg/primitive.hpp"
 #include "primitive/displacement-inl.hpp"
 #include "primitive/random_primitives.hpp"
+#include "support/forced_target.hpp"
 
 namespace cloud2csg {
 namespace {
 
+using test::ForcedTarget;
 using testing::any_primitive;
 using testing::points_near;
-
-/// Makes evaluate_field() use one instruction set while it lives.
-class ForcedTarget {
- public:
-  explicit ForcedTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~ForcedTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ForcedTarget(const ForcedTarget&) = delete;
-  ForcedTarget& operator=(const ForcedTarget&) = delete;
-  ForcedTarget(ForcedTarget&&) = delete;
-  ForcedTarget& operator=(ForcedTarget&&) = delete;
-};
 
 struct Evaluated {
   std::vector<double> distance;
