@@ -1,11 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "base/stopwatch.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"
 
@@ -33,9 +33,9 @@ template <class Work>
 Timing time_runs(std::size_t runs, const Work& work) {
   std::vector<double> seconds;
   for (std::size_t run = 0; run < runs; ++run) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     work();
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    seconds.push_back(watch.seconds());
   }
   std::ranges::sort(seconds);
   return {seconds.front(), seconds[seconds.size() / 2], seconds.back()};

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <memory>
 #include <optional>
 
 #include "base/atomic_file.hpp"
+#include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/model.hpp"
@@ -32,16 +32,6 @@ struct ExtractCommand {
 
   void run(const std::stop_token& stop) const;
   void write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run) const;
-};
-
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 PointCloud read_cloud_with_normals(const std::string& file, const RunContext& run) {

@@ -7,12 +7,12 @@
 #include <numeric>
 
 #include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/simplify.hpp"
 #include "pipeline/component.hpp"
 #include "pipeline/fit.hpp"
 #include "pipeline/preparation.hpp"
-#include "pipeline/stopwatch.hpp"
 #include "pipeline/time_limit.hpp"
 
 namespace cloud2csg {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
-#include "pipeline/stopwatch.hpp"
 
 namespace cloud2csg {
 namespace {
