@@ -32,6 +32,10 @@ std::vector<Setting> settings() {
   add("paper + listing up to 4", [](ExtractOptions& o) { o.search.listing_limit = 4; });
   add("paper + seeds", [](ExtractOptions& o) { o.search.seeds = true; });
   add("paper + local search at the end", [](ExtractOptions& o) { o.search.polish = true; });
+  add("paper + restarts", [](ExtractOptions& o) {
+    o.search.trust = GaOptions{}.trust;
+    o.search.restarts = GaOptions{}.restarts;
+  });
   add("paper + polish of the whole", [](ExtractOptions& o) { o.polish = true; });
   all.push_back({"baseline, default search", {.strategy = Strategy::baseline}});
   ExtractOptions paper_baseline = paper_options();

@@ -26,14 +26,19 @@ struct GaOptions {
   int idle_generations = 40;
   int generation_limit = 10'000;  ///< stop here in any case
 
-  // Beyond the paper. bench/recovery measures listing, seeds and polish each alone.
+  // Beyond the paper. bench/recovery measures each alone.
 
   /// Partitions of up to so many primitives are solved by listing all trees that use each primitive at most once; the
   /// paper lists up to 2. Each one more is about 20 times the work; at most 5.
   std::size_t listing_limit = 4;
-  /// A listed tree must reach this share of what no tree can exceed (RankClasses::geometry_bound), else the genetic
-  /// algorithm looks for a tree that uses a primitive more than once. 0: what was listed is taken as it is (paper).
-  double listing_trust = 0.9;
+  /// A tree is believed when it reaches this share of what no tree can exceed (RankClasses::geometry_bound). Where a
+  /// listed tree does not, the genetic algorithm looks for one that uses a primitive more than once; where its tree
+  /// does not either, it is run anew. 0: every tree is believed (paper).
+  double trust = 0.97;
+  /// New runs from other random trees, at most, while the best tree is not believed ...
+  int restarts = 3;
+  /// ... and no more than so many trees were evaluated for the partition.
+  std::size_t restart_budget = 200'000;
   bool seeds = true;  ///< the first generation also has the results of local searches from simple trees
   bool polish =
       true;  ///< a local search on the best tree at the end; when it finds a better one, the algorithm goes on
@@ -64,9 +69,9 @@ struct Evolution {
 [[nodiscard]] std::uint64_t partition_item(std::span<const PrimitiveIndex> primitives);
 
 /// Searches for the tree with the highest E(t). `item` tells partitions apart: each has a random stream of its own.
-/// The result depends on the table, the options and `item` only, not on run.threads, over which the evaluation of the
-/// population is spread. Stops between generations when run.stop is triggered.
-/// Precondition: the table has at least one primitive.
+/// The result depends on the table, the options and `item` only, not on threads. With run.threads == 1 there is one,
+/// else the population is spread over those of the task arena that the caller is in, so that searches may be run side
+/// by side. Stops between generations when run.stop is triggered. Precondition: the table has at least one primitive.
 [[nodiscard]] Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::uint64_t item,
                                     const RunContext& run = {});
 

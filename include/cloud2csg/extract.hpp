@@ -42,8 +42,9 @@ struct ExtractOptions {
   std::optional<double> overlap_tolerance = {};
   /// Take nodes out of the merged tree as long as E over the whole cloud grows. The paper does not.
   bool polish = true;
-  /// Stop the search after so many seconds, with the best tree so far. The one option that makes a result depend on the
-  /// machine's speed.
+  /// Stop the search when so many seconds have passed since the start of the extraction, with the best tree so far. The
+  /// pass over the points, without which there is no tree, is always completed. The one option that makes a result
+  /// depend on the machine's speed.
   std::optional<double> time_limit_seconds = {};
   std::uint64_t seed = 1;
 };

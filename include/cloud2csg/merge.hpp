@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/run_context.hpp"
 
 /// Merging the trees of the partitions into one (section 4 of the paper).
 namespace cloud2csg {
@@ -37,7 +38,8 @@ struct MergeResult {
 /// Only formulas are looked at: that the trees agree where they overlap is for the caller to verify, and trees that
 /// stay apart (over disjoint primitives, or blocked by an intersection on the way to all they share) are for the
 /// caller to join. Deterministic. O(merges x (trees + size of the result x log size)), for each blocked pair O(size)
-/// more.
-[[nodiscard]] MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order = MergeOrder::paper);
+/// more. A triggered run.stop ends it between two merges: the trees are then as merged so far.
+[[nodiscard]] MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order = MergeOrder::paper,
+                                      const RunContext& run = {});
 
 }  // namespace cloud2csg

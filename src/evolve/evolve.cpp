@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "cloud2csg/simplify.hpp"
 #include "evolve/genetic_algorithm.hpp"
@@ -12,6 +13,8 @@
 
 namespace cloud2csg {
 namespace {
+
+constexpr std::uint64_t k_restart_stage = 0x6761'0003;  // names the streams of random numbers of new runs
 
 void count_in(Evolution& total, const Evolution& part) {
   total.generations += part.generations;
@@ -26,6 +29,12 @@ void improve(Evolution& total, const Evolution& part) {
   total.tree = part.tree;
   total.score = part.score;
   total.geometry = part.geometry;
+}
+
+Evolution nothing_yet() {
+  Evolution evolution;
+  evolution.score = -std::numeric_limits<double>::infinity();
+  return evolution;
 }
 
 /// Where a local search may start without knowing anything: each primitive alone, and the union of all.
@@ -57,8 +66,8 @@ Evolution seed_by_local_search(const RankClasses& table, const RunContext& run, 
 }
 
 /// The genetic algorithm, then a local search on its best; when that improves it, again from there.
-void search(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions& options, std::uint64_t item,
-            const RunContext& run, Evolution& best) {
+void climb(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions& options, std::uint64_t item,
+           const RunContext& run, Evolution& best) {
   constexpr int k_rounds = 4;
   for (int round = 0; round < k_rounds; ++round) {
     GaOptions round_options = options;
@@ -69,6 +78,24 @@ void search(const RankClasses& table, std::vector<CsgTree> seeds, const GaOption
     improve(best, local_search(table, best.tree, {}, run));
     if (best.score <= before) return;
     seeds.push_back(best.tree);
+  }
+}
+
+bool is_believed(const Evolution& best, const RankClasses& table, const GaOptions& options) {
+  return best.geometry >= options.trust * table.geometry_bound();
+}
+
+/// A climb from the seeds, then others from random trees only, as long as no tree is believed and the budget lasts.
+void search(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions& options, std::uint64_t item,
+            const RunContext& run, Evolution& best) {
+  climb(table, std::move(seeds), options, item, run, best);
+  for (int restart = 1; restart <= options.restarts; ++restart) {
+    if (!best.complete || is_believed(best, table, options) || best.evaluations >= options.restart_budget) return;
+    GaOptions anew = options;
+    anew.seed = RandomStream(options.seed, k_restart_stage, item, static_cast<std::uint64_t>(restart)).next();
+    Evolution other = nothing_yet();
+    climb(table, {}, anew, item, run, other);
+    improve(best, other);
   }
 }
 
@@ -93,19 +120,14 @@ void settle_for_a_solid(const RankClasses& table, Evolution& best) {
   }
 }
 
-Evolution nothing_yet() {
-  Evolution evolution;
-  evolution.score = -std::numeric_limits<double>::infinity();
-  return evolution;
-}
-
 }  // namespace
 
 GaOptions paper_ga_options() {
   GaOptions options;
   options.idle_generations = 10;
   options.listing_limit = 2;
-  options.listing_trust = 0;
+  options.trust = 0;
+  options.restarts = 0;
   options.seeds = false;
   options.polish = false;
   return options;
@@ -121,13 +143,14 @@ Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::u
   Evolution best = nothing_yet();
   std::vector<CsgTree> seeds;
   if (table.primitive_count() <= options.listing_limit) {
-    const Listing listing = list_trees(table);
+    const Listing listing = list_trees(table, run.stop);
     RankScratch scratch;
     best.tree = listing.best.tree;
     best.score = listing.best.score;
     best.geometry = table.geometry(best.tree, scratch);
     best.evaluations = listing.evaluations;
-    if (best.geometry >= options.listing_trust * table.geometry_bound()) return best;
+    best.complete = listing.complete;
+    if (is_believed(best, table, options)) return best;
     seeds.push_back(best.tree);
   }
   if (options.seeds) improve(best, seed_by_local_search(table, run, seeds));
@@ -154,7 +177,9 @@ CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, con
   const PointPass pass =
       build_rank_classes(cloud, primitives, requests, segmentation_tolerances({}, noise), {}, noise, run);
   const RankClasses& table = pass.tables.front();
-  return simplify(renumber(evolve_tree(table, options, partition_item(clique), run).tree, table.primitives()));
+  oneapi::tbb::task_arena arena(usable_threads(run));
+  const Evolution found = arena.execute([&] { return evolve_tree(table, options, partition_item(clique), run); });
+  return simplify(renumber(found.tree, table.primitives()));
 }
 
 }  // namespace cloud2csg

@@ -45,14 +45,15 @@ class Lister {
  public:
   explicit Lister(const RankClasses& table) : table_(table), of_subset_(std::size_t{1} << table.primitive_count()) {}
 
-  Listing run() {
+  Listing run(const std::stop_token& stop) {
     for (std::uint32_t p = 0; p < table_.primitive_count(); ++p) add_leaf(p);
     // Ascending subsets: each part of a subset is a smaller number.
-    for (std::uint32_t subset = 1; subset < of_subset_.size(); ++subset) {
+    for (std::uint32_t subset = 1; subset < of_subset_.size() && !stop.stop_requested(); ++subset) {
       if (std::popcount(subset) > 1) list_subset(subset);
     }
     return {.best = {best_complemented_ ? complement(tree_of(best_)) : tree_of(best_), best_score_},
-            .evaluations = evaluations_};
+            .evaluations = evaluations_,
+            .complete = !stop.stop_requested()};
   }
 
  private:
@@ -136,8 +137,8 @@ class Lister {
 
 }  // namespace
 
-Listing list_trees(const RankClasses& table) {
-  return Lister(table).run();
+Listing list_trees(const RankClasses& table, const std::stop_token& stop) {
+  return Lister(table).run(stop);
 }
 
 }  // namespace cloud2csg

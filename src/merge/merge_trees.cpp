@@ -3,6 +3,7 @@
 #include <optional>
 #include <queue>
 #include <span>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -71,12 +72,12 @@ bool merge_head(std::vector<MergeCandidate>& list, std::size_t head) {
 }
 
 /// Returns the number of merges.
-std::size_t merge_in_order_of_the_paper(std::vector<MergeCandidate>& list) {
+std::size_t merge_in_order_of_the_paper(std::vector<MergeCandidate>& list, const std::stop_token& stop) {
   std::size_t merges = 0;
   for (bool may_find_more = true; may_find_more;) {
     may_find_more = false;
     for (std::size_t head = 0; head < list.size(); ++head) {
-      while (merge_head(list, head)) {
+      while (!stop.stop_requested() && merge_head(list, head)) {
         ++merges;
         may_find_more = may_find_more || head > 0;  // one of those passed over
       }
@@ -88,15 +89,16 @@ std::size_t merge_in_order_of_the_paper(std::vector<MergeCandidate>& list) {
 /// The queue of mergeable pairs, largest common subtree first, then in the order of the list.
 class LargestFirst {
  public:
-  explicit LargestFirst(std::vector<MergeCandidate>& slots) : slots_(slots), versions_(slots.size(), 0) {}
+  LargestFirst(std::vector<MergeCandidate>& slots, std::stop_token stop)
+      : slots_(slots), versions_(slots.size(), 0), stop_(std::move(stop)) {}
 
   /// Returns the number of merges; slots of trees that went into others are removed.
   std::size_t merge_all() {
-    for (std::size_t i = 0; i < slots_.size(); ++i) {
+    for (std::size_t i = 0; i < slots_.size() && !stop_.stop_requested(); ++i) {
       for (std::size_t j = i + 1; j < slots_.size(); ++j) consider(i, j);
     }
     std::size_t merges = 0;
-    while (!pairs_.empty()) {
+    while (!pairs_.empty() && !stop_.stop_requested()) {
       const Pair pair = pairs_.top();
       pairs_.pop();
       if (versions_[pair.i] != pair.version_i || versions_[pair.j] != pair.version_j) continue;
@@ -142,6 +144,7 @@ class LargestFirst {
   std::vector<MergeCandidate>& slots_;
   std::vector<std::size_t> versions_;  ///< by slot: raised when its tree changes
   std::priority_queue<Pair> pairs_;
+  std::stop_token stop_;
 };
 
 std::size_t blocked_pairs(std::span<const MergeCandidate> list) {
@@ -154,10 +157,11 @@ std::size_t blocked_pairs(std::span<const MergeCandidate> list) {
 
 }  // namespace
 
-MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order) {
+MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order, const RunContext& run) {
   std::vector<MergeCandidate> list = simplified_candidates(trees);
   MergeResult result;
-  result.merges = order == MergeOrder::paper ? merge_in_order_of_the_paper(list) : LargestFirst(list).merge_all();
+  result.merges = order == MergeOrder::paper ? merge_in_order_of_the_paper(list, run.stop)
+                                             : LargestFirst(list, run.stop).merge_all();
   result.blocked = blocked_pairs(list);
   for (MergeCandidate& candidate : list) result.trees.push_back(std::move(candidate.tree));
   return result;

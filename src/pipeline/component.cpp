@@ -62,7 +62,7 @@ class ComponentMerger {
 
   bool merge(MergeWay way, std::span<const CsgTree> trees) {
     const MergeOrder order = way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree;
-    const MergeResult merged = merge_trees(trees, order);
+    const MergeResult merged = merge_trees(trees, order, run_);
     result_.statistics.merges += merged.merges;
     result_.statistics.blocked += merged.blocked;
     remaining_ = merged.trees;

@@ -1,5 +1,7 @@
 #include "cloud2csg/extract.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <limits>
@@ -22,6 +24,16 @@ namespace {
 constexpr std::uint64_t k_component_items = std::uint64_t{1} << 40U;
 constexpr std::uint64_t k_joint_items = std::uint64_t{1} << 41U;
 
+void check_primitive(const Primitive& primitive) {
+  try {
+    validate(primitive);
+  } catch (const Error& error) {
+    Error::Parts parts = error.parts();
+    parts.where = fmt::format("primitive '{}': {}", primitive.id, parts.where);
+    throw Error(std::move(parts));
+  }
+}
+
 void check_input(const PointCloud& cloud, const PrimitiveSet& primitives) {
   const auto refuse = [](const char* expected, const char* remedy) {
     throw Error({.file = {}, .where = {}, .expected = expected, .remedy = remedy});
@@ -34,7 +46,7 @@ void check_input(const PointCloud& cloud, const PrimitiveSet& primitives) {
   }
   if (primitives.empty()) refuse("there are no primitives", "give a model file with the fitted primitives");
   if (cloud.size() > std::numeric_limits<std::uint32_t>::max()) refuse("more than 4 294 967 295 points", "down-sample");
-  for (const Primitive& primitive : primitives) validate(primitive);
+  for (const Primitive& primitive : primitives) check_primitive(primitive);
 }
 
 TreeStatistics measure(const CsgTree& tree) {

@@ -37,7 +37,8 @@ void validate(const GaOptions& search) {
   require_at_least(search.generation_limit, 1, "generation_limit");
   require(search.listing_limit <= 5, "listing_limit",
           fmt::format("expected 5 or less, found {}", search.listing_limit));
-  require_share(search.listing_trust, "listing_trust");
+  require_share(search.trust, "trust");
+  require_at_least(search.restarts, 0, "restarts");
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ double ExpressionEvaluator::value(const Eigen::Vector3d& local) {
   parser_->x = local.x();
   parser_->y = local.y();
   parser_->z = local.z();
-  return parser_->parser.Eval();
+  const double value = parser_->parser.Eval();
+  return std::isnan(value) ? k_no_distance : std::clamp(value, -k_no_distance, k_no_distance);
 }
 
 Eigen::Vector3d ExpressionEvaluator::gradient(const Eigen::Vector3d& local) {

@@ -8,6 +8,9 @@
 
 namespace cloud2csg {
 
+/// What a formula without a value at a point counts as there: far outside. Finite, so that what is computed from it is.
+inline constexpr double k_no_distance = 1e30;
+
 /// A parsed formula of x, y and z. It holds the variables that its parser reads, so it stays where it was made and
 /// serves one thread.
 class ExpressionEvaluator {
@@ -20,6 +23,7 @@ class ExpressionEvaluator {
   ExpressionEvaluator(ExpressionEvaluator&&) = delete;
   ExpressionEvaluator& operator=(ExpressionEvaluator&&) = delete;
 
+  /// Within +-k_no_distance; that itself where the formula is not a number.
   [[nodiscard]] double value(const Eigen::Vector3d& local);
 
   /// Central differences; local z where they vanish or are not finite.

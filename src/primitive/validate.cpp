@@ -41,7 +41,7 @@ void validate_torus(const Torus& torus) {
 }
 
 void require_value_at(ExpressionEvaluator& evaluator, const Eigen::Vector3d& point) {
-  if (std::isfinite(evaluator.value(point))) return;
+  if (std::abs(evaluator.value(point)) < k_no_distance) return;
   refuse("distance", fmt::format("a finite value within the bounds; there is none at ({}, {}, {})", point.x(),
                                  point.y(), point.z()));
 }

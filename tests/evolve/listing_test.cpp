@@ -57,6 +57,18 @@ RC_GTEST_PROP(ListTrees, FindsTheBestOfAllReadOnceTrees, (std::uint64_t seed)) {
   RC_ASSERT(leaf_count(listing.best.tree) == primitives_of(listing.best.tree).size());
 }
 
+TEST(ListTrees, GivesATreeWhenStopped) {
+  RandomStream random(4);
+  const RankClasses table = test::whole_table(test::random_scene(4, 300, random));
+  std::stop_source stop;
+  stop.request_stop();
+  const Listing listing = list_trees(table, stop.get_token());
+  RankScratch scratch;
+  EXPECT_FALSE(listing.complete);
+  EXPECT_EQ(listing.best.score, table.score(listing.best.tree, scratch));
+  EXPECT_TRUE(list_trees(table).complete);
+}
+
 /// Solids that all overlap, none inside another, and points enough to tell all cells apart: nothing is listed twice, so
 /// that the count of evaluations (each tree and its complement) is the number of read-once formulas.
 TEST(ListTrees, ListsAsManyTreesAsThereAre) {

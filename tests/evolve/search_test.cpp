@@ -57,7 +57,8 @@ TEST(PaperGaOptions, AreThoseOfThePaper) {
   EXPECT_EQ(paper.idle_generations, 10);
   EXPECT_FALSE(paper.height_limit.has_value());
   EXPECT_EQ(paper.listing_limit, 2U);
-  EXPECT_EQ(paper.listing_trust, 0.0);
+  EXPECT_EQ(paper.trust, 0.0);
+  EXPECT_EQ(paper.restarts, 0);
   EXPECT_FALSE(paper.seeds);
   EXPECT_FALSE(paper.polish);
 }
@@ -255,6 +256,41 @@ TEST(EvolveTree, GivesASolidWhereOnlyAnEmptyFormulaFits) {
   const Evolution evolution = evolve_tree(table, {}, 0, {});
   EXPECT_FALSE(primitives_of(simplify(evolution.tree)).empty());
   expect_consistent(evolution, table);
+}
+
+/// What a search that is run anew for lack of trust does, and the same without.
+struct Restarted {
+  Evolution with, without;
+};
+
+Restarted restarted(const GaOptions& options, std::uint64_t seed) {
+  const RankClasses table = random_table(6, seed);
+  GaOptions once = options;
+  once.restarts = 0;
+  return {evolve_tree(table, options, 0), evolve_tree(table, once, 0)};
+}
+
+TEST(Restarts, TakePlaceWhileTheTreeIsNotBelieved) {
+  GaOptions options = short_search();
+  options.trust = 1;  // of points drawn at random no tree explains all
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const auto [with, without] = restarted(options, seed);
+    EXPECT_GT(with.generations, without.generations);
+    EXPECT_GE(with.score, without.score);
+  }
+}
+
+TEST(Restarts, DoNotTakePlaceWhenTheTreeIsBelievedOrTheBudgetSpent) {
+  GaOptions believing = short_search();
+  believing.trust = 0;
+  GaOptions poor = short_search();
+  poor.trust = 1;
+  poor.restart_budget = 1;
+  for (const GaOptions& options : {believing, poor}) {
+    const auto [with, without] = restarted(options, 3);
+    EXPECT_EQ(with.tree, without.tree);
+    EXPECT_EQ(with.evaluations, without.evaluations);
+  }
 }
 
 /// Overlapping solids, a formula over them that uses each once, and a cloud of what it is.

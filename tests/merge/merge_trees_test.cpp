@@ -45,6 +45,15 @@ TEST_P(MergeTrees, LeavesNoneAndOneAlone) {
   EXPECT_EQ(result.merges, 0U);
 }
 
+TEST_P(MergeTrees, StopsWithTheTreesAsTheyAre) {
+  std::stop_source stop;
+  stop.request_stop();
+  const std::vector<CsgTree> trees = parsed({"a | b", "b | c", "c | d"});
+  const MergeResult result = merge_trees(trees, GetParam(), {.stop = stop.get_token()});
+  EXPECT_EQ(result.trees, trees);
+  EXPECT_EQ(result.merges, 0U);
+}
+
 TEST_P(MergeTrees, UnionsMergeAtWhatTheyShare) {
   EXPECT_EQ(merged({"a | b", "b | c"}, GetParam()), Texts{"a | b | c"});
   EXPECT_EQ(merged({"a | b", "b | c", "c | d"}, GetParam()), Texts{"a | b | c | d"});

@@ -50,7 +50,7 @@ TEST(BadInput, NoPrimitives) {
 }
 
 TEST(BadInput, APrimitiveThatIsNone) {
-  EXPECT_EQ(error_of(cloud_of_ball(), {test::placed("ball", Sphere{-1}, {0, 0, 0})}).where, "radius");
+  EXPECT_EQ(error_of(cloud_of_ball(), {test::placed("ball", Sphere{-1}, {0, 0, 0})}).where, "primitive 'ball': radius");
 }
 
 TEST(BadInput, ACloudFarFromEverything) {
@@ -105,7 +105,8 @@ std::vector<BadOption> bad_options() {
       {"idle_generations", [](ExtractOptions& o) { o.search.idle_generations = 0; }},
       {"generation_limit", [](ExtractOptions& o) { o.search.generation_limit = 0; }},
       {"listing_limit", [](ExtractOptions& o) { o.search.listing_limit = 6; }},
-      {"listing_trust", [](ExtractOptions& o) { o.search.listing_trust = 2; }},
+      {"trust", [](ExtractOptions& o) { o.search.trust = 2; }},
+      {"restarts", [](ExtractOptions& o) { o.search.restarts = -1; }},
   };
 }
 

@@ -195,5 +195,21 @@ TEST(HasExactDistance, IsFalseForWhatIsOnlyABound) {
   EXPECT_FALSE(has_exact_distance({.id = "b", .shape = Box{{1, 1, 1}}, .displacement = Displacement{2}}));
 }
 
+/// Ranks and sums of fields need numbers everywhere, also where the formula has none.
+TEST(SignedDistance, OfAnExpressionWithoutAValueIsFarOutside) {
+  const AlignedBox bounds(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1));
+  Points points;
+  points.push_back({-3, 0, 0});
+  points.push_back({0.5, 0, 0});
+  for (const char* formula : {"sqrt(x+2)-2", "(x < -2) ? 1/0 : x-1"}) {
+    const Primitive primitive{.id = "e", .shape = Expression{formula, bounds}};
+    const std::vector<double> distances = signed_distance(primitive, points);
+    EXPECT_TRUE(std::isfinite(distances[0])) << formula;
+    EXPECT_GT(distances[0], 1e20) << formula;
+    EXPECT_LT(distances[1], 0) << formula;
+    EXPECT_TRUE(gradient(primitive, points)[0].allFinite()) << formula;
+  }
+}
+
 }  // namespace
 }  // namespace cloud2csg
