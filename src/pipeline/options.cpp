@@ -27,7 +27,8 @@ void require_at_least(int value, int least, const char* field) {
 void validate(const GaOptions& search) {
   require_at_least(search.population, 2, "population");
   require_at_least(search.elites, 0, "elites");
-  require(search.elites < search.population, "elites", "expected fewer than the population");
+  require(search.elites < search.population, "elites",
+          fmt::format("expected fewer than the population ({}), found {}", search.population, search.elites));
   require_at_least(search.tournament, 1, "tournament");
   require_share(search.crossover_rate, "crossover_rate");
   require_share(search.mutation_rate, "mutation_rate");
