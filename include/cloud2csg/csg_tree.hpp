@@ -24,6 +24,9 @@ enum class Operation : std::uint32_t {
   difference,    ///< two children: the first less the second
 };
 
+/// "primitive", "empty", "full", "complement", "union", "intersection", "difference": as in files and pictures.
+[[nodiscard]] std::string_view to_string(Operation operation);
+
 [[nodiscard]] constexpr int arity(Operation operation) {
   return operation < Operation::complement ? 0 : operation == Operation::complement ? 1 : 2;
 }

@@ -14,17 +14,13 @@ namespace {
 using nlohmann::json;
 
 struct Kind {
-  const char* name;        ///< the value of "op"
   const char* definition;  ///< in the schema
   Operation operation;
 };
-constexpr std::array k_kinds = {Kind{"union", "n_ary", Operation::union_of},
-                                Kind{"intersection", "n_ary", Operation::intersection},
-                                Kind{"difference", "difference", Operation::difference},
-                                Kind{"complement", "complement", Operation::complement},
-                                Kind{"empty", "constant", Operation::empty},
-                                Kind{"full", "constant", Operation::full}};
-constexpr Kind k_leaf = {"", "leaf", Operation::primitive};
+constexpr std::array k_kinds = {Kind{"n_ary", Operation::union_of},        Kind{"n_ary", Operation::intersection},
+                                Kind{"difference", Operation::difference}, Kind{"complement", Operation::complement},
+                                Kind{"constant", Operation::empty},        Kind{"constant", Operation::full}};
+constexpr Kind k_leaf = {"leaf", Operation::primitive};
 
 /// An inner node whose children are being read.
 struct OpenNode {
@@ -105,7 +101,7 @@ class TreeReader {
     if (node.is_object() && node.contains("primitive")) return k_leaf;
     const json op = node.is_object() ? node.value("op", json()) : json();
     for (const Kind& kind : k_kinds) {
-      if (op == kind.name) return kind;
+      if (op == to_string(kind.operation)) return kind;
     }
     if (node.is_object() && node.contains("op")) {
       throw Error({.file = {},

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cassert>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 #include <variant>
@@ -96,27 +95,6 @@ std::vector<std::size_t> operands(const CsgTree& tree, std::size_t node) {
   return found;
 }
 
-std::string_view op_name(Operation operation) {
-  switch (operation) {
-    case Operation::empty:
-      return "empty";
-    case Operation::full:
-      return "full";
-    case Operation::complement:
-      return "complement";
-    case Operation::union_of:
-      return "union";
-    case Operation::intersection:
-      return "intersection";
-    case Operation::difference:
-      return "difference";
-    case Operation::primitive:
-      break;
-  }
-  assert(false);
-  return {};
-}
-
 std::string tree_text(const CsgTree& tree, const PrimitiveSet& primitives) {
   struct OpenNode {
     std::vector<std::size_t> operands;
@@ -129,9 +107,9 @@ std::string tree_text(const CsgTree& tree, const PrimitiveSet& primitives) {
     if (head.operation() == Operation::primitive) {
       text += fmt::format(R"({{"primitive": {}}})", quoted(primitives[head.primitive()].id));
     } else if (head.is_leaf()) {
-      text += fmt::format(R"({{"op": "{}"}})", op_name(head.operation()));
+      text += fmt::format(R"({{"op": "{}"}})", to_string(head.operation()));
     } else {
-      text += fmt::format(R"({{"op": "{}", "children": [)", op_name(head.operation()));
+      text += fmt::format(R"({{"op": "{}", "children": [)", to_string(head.operation()));
       open.push_back({.operands = operands(tree, node)});
     }
   };

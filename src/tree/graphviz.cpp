@@ -18,23 +18,8 @@ std::string escaped(std::string_view text) {
 }
 
 std::string label(CsgNode node, const PrimitiveSet& primitives) {
-  switch (node.operation()) {
-    case Operation::primitive:
-      return escaped(primitives[node.primitive()].id);
-    case Operation::empty:
-      return "empty";
-    case Operation::full:
-      return "full";
-    case Operation::complement:
-      return "complement";
-    case Operation::union_of:
-      return "union";
-    case Operation::intersection:
-      return "intersection";
-    case Operation::difference:
-      return "difference";
-  }
-  return {};
+  if (node.operation() == Operation::primitive) return escaped(primitives[node.primitive()].id);
+  return std::string(to_string(node.operation()));
 }
 
 }  // namespace

@@ -15,6 +15,26 @@ bool is_name_character(char c) {
          c == ':' || byte >= 0x80U;
 }
 
+std::string_view to_string(Operation operation) {
+  switch (operation) {
+    case Operation::primitive:
+      return "primitive";
+    case Operation::empty:
+      return "empty";
+    case Operation::full:
+      return "full";
+    case Operation::complement:
+      return "complement";
+    case Operation::union_of:
+      return "union";
+    case Operation::intersection:
+      return "intersection";
+    case Operation::difference:
+      return "difference";
+  }
+  return "";
+}
+
 namespace {
 
 std::string written_id(std::string_view id) {
