@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -13,38 +14,20 @@
 
 namespace cloud2csg {
 
-AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)), destination_(target_) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(target_, ignored);
-  if (std::filesystem::is_directory(status)) {
-    errno = EISDIR;
-    fail("cannot be written");
+AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
+  const Destination destination = destination_of(target_);
+  place_ = destination.path;
+  try {
+    if (!destination.is_direct) temporary_.emplace(place_);
+  } catch (const std::system_error& error) {
+    refuse_output(target_, "cannot be opened for writing", error.code().value());
   }
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    file_ = std::fopen(target_.c_str(), "wb");
-  } else {
-    open_temporary();
-  }
+  file_ = std::fopen(temporary_ ? temporary_->path().c_str() : target_.c_str(), "wb");
   if (file_ == nullptr) fail("cannot be opened for writing");
-}
-
-void AtomicFile::open_temporary() {
-  // A rename would put the file in the place of a link, not of what the link points to.
-  std::error_code unresolved;
-  const std::filesystem::path resolved = std::filesystem::canonical(target_, unresolved);
-  if (!unresolved) destination_ = resolved;
-  constexpr int k_most_trials = 100;
-  for (int trial = 0; trial < k_most_trials && file_ == nullptr; ++trial) {
-    temporary_ = fmt::format("{}.{}.{}.part", destination_.string(), ::getpid(), trial);
-    file_ = std::fopen(temporary_.c_str(), "wbx");
-    if (file_ == nullptr && errno != EEXIST) break;
-  }
 }
 
 AtomicFile::~AtomicFile() {
   if (file_ != nullptr) std::fclose(file_);
-  std::error_code ignored;
-  if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -57,16 +40,13 @@ void AtomicFile::commit() {
   // Pipes, terminals and some network file systems cannot be synced; that is no loss of data.
   if (flushed != 0 || (synced != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)) fail("cannot be written");
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot be written");
-  if (temporary_.empty()) return;
-  if (std::rename(temporary_.c_str(), destination_.c_str()) != 0) fail("cannot be put in place");
-  temporary_.clear();
+  if (!temporary_) return;
+  if (std::rename(temporary_->path().c_str(), place_.c_str()) != 0) fail("cannot be put in place");
+  temporary_.reset();
 }
 
 void AtomicFile::fail(const char* what) const {
-  throw Error({.file = target_.string(),
-               .where = {},
-               .expected = fmt::format("{} ({})", what, std::strerror(errno)),
-               .remedy = "check the folder, its permissions and the free space"});
+  refuse_output(target_, what, errno);
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {

@@ -2,7 +2,10 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string_view>
+
+#include "base/temporary_file.hpp"
 
 namespace cloud2csg {
 
@@ -23,12 +26,11 @@ class AtomicFile {
   void commit();
 
  private:
-  void open_temporary();
   [[noreturn]] void fail(const char* what) const;
 
-  std::filesystem::path target_;       ///< as the caller names it, for messages
-  std::filesystem::path destination_;  ///< the same with links followed
-  std::filesystem::path temporary_;    ///< empty when the target is written directly
+  std::filesystem::path target_;                 ///< as the caller names it, for messages
+  std::filesystem::path place_;                  ///< the same with links followed
+  std::optional<TemporaryFile> temporary_ = {};  ///< absent when the target is written directly
   std::FILE* file_ = nullptr;
 };
 
