@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "cloud2csg/csg_tree.hpp"
@@ -25,9 +26,16 @@ struct ExportOptions {
   MeshingOptions meshing = {};
 };
 
+/// What a file does not say of itself.
+struct ExportReport {
+  /// Meshes and OpenSCAD know bounded solids only: one that goes on beyond its primitives (a lone half-space, a
+  /// complement) is cut at this box around them. Absent when nothing was cut.
+  std::optional<AlignedBox> cut_at = {};
+};
+
 /// Writes a model by the file's ending: .json, .scad, .dot, .stl, .off, .obj. All but .json need a tree.
 /// Nothing half-written. @throws Error
-void export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options = {},
-                  const RunContext& run = {});
+ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options = {},
+                          const RunContext& run = {});
 
 }  // namespace cloud2csg

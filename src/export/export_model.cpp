@@ -27,23 +27,46 @@ const CsgTree& tree_of(const Model& model, const std::filesystem::path& file) {
                .remedy = "extract a tree first, or write .json"});
 }
 
+std::string text_of(const Eigen::Vector3d& corner) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", corner.x(), corner.y(), corner.z());
+}
+
+ExportReport export_openscad(const std::filesystem::path& file, const Model& model, OpenScadOptions options) {
+  const CsgTree& tree = tree_of(model, file);
+  const ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
+  if (options.comment.empty()) options.comment = model.description;
+  if (report.cut_at) {
+    options.comment +=
+        fmt::format("{}The solid has no bounds: it is cut at {} to {}.", options.comment.empty() ? "" : "\n",
+                    text_of(report.cut_at->min()), text_of(report.cut_at->max()));
+  }
+  write_text_file(file, to_openscad(tree, model.primitives, options));
+  return report;
+}
+
+ExportReport export_mesh(const std::filesystem::path& file, const Model& model, const MeshingOptions& options,
+                         const RunContext& run) {
+  const CsgTree& tree = tree_of(model, file);
+  const AlignedBox extent = model_extent(tree, model.primitives);
+  write_mesh(file, mesh_surface(tree, model.primitives, extent, options, run));
+  return {.cut_at = cut_at(tree, model.primitives, extent)};
+}
+
 }  // namespace
 
-void export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
-                  const RunContext& run) {
+ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
+                          const RunContext& run) {
   const std::string ending = lower_ending(file);
-  if (ending == ".json") return write_model(file, model);
-  if (ending == ".scad") {
-    OpenScadOptions openscad = options.openscad;
-    if (openscad.comment.empty()) openscad.comment = model.description;
-    return write_text_file(file, to_openscad(tree_of(model, file), model.primitives, openscad));
+  if (ending == ".json") {
+    write_model(file, model);
+    return {};
   }
-  if (ending == ".dot") return write_text_file(file, to_graphviz(tree_of(model, file), model.primitives));
-  if (ending == ".stl" || ending == ".off" || ending == ".obj") {
-    const CsgTree& tree = tree_of(model, file);
-    const AlignedBox extent = model_extent(tree, model.primitives);
-    return write_mesh(file, mesh_surface(tree, model.primitives, extent, options.meshing, run));
+  if (ending == ".dot") {
+    write_text_file(file, to_graphviz(tree_of(model, file), model.primitives));
+    return {};
   }
+  if (ending == ".scad") return export_openscad(file, model, options.openscad);
+  if (ending == ".stl" || ending == ".off" || ending == ".obj") return export_mesh(file, model, options.meshing, run);
   throw Error({.file = file.string(),
                .where = {},
                .expected = fmt::format("expected a file ending in .json, .scad, .dot, .stl, .off or .obj, found \"{}\"",

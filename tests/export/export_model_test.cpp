@@ -137,6 +137,48 @@ TEST(ExportModel, MeshesHaveTheModelsVolume) {
   EXPECT_NEAR(volume_of(mesh) / mesh_volume(model), 1, 0.01);
 }
 
+/// How an export says that it cut a model, by the ending.
+std::optional<AlignedBox> cut_of(const std::string& tree, const char* ending) {
+  const Model model = parse_model(R"({"format": "cloud2csg", "version": 1, "primitives": [
+    {"id": "down", "type": "half_space"}, {"id": "ball", "type": "sphere", "radius": 2},
+    {"id": "up", "type": "half_space", "pose": {"position": [0, 0, -1], "quaternion": [0, 1, 0, 0]}},
+    {"id": "wave", "type": "expression", "distance": "x", "bounds": [[-1, -1, -1], [1, 1, 1]]}], "tree": )" +
+                                  tree + "}");
+  const std::filesystem::path file = temporary(std::string("cut") + ending);
+  const ExportReport report = export_model(file, model, {.meshing = {.resolution = 16}});
+  if (std::string(ending) == ".scad") {
+    EXPECT_EQ(content_of(file).find("has no bounds") != std::string::npos, report.cut_at.has_value());
+  }
+  std::filesystem::remove(file);
+  return report.cut_at;
+}
+
+TEST(ExportModel, SaysWhereItCutsWhatHasNoBounds) {
+  const auto operation = [](const char* name, const char* children) {
+    return std::string(R"({"op": ")") + name + R"(", "children": [)" + children + "]}";
+  };
+  for (const char* ending : {".stl", ".off", ".obj", ".scad"}) {
+    for (const std::string& unbounded :
+         {std::string(R"({"primitive": "down"})"), operation("complement", R"({"primitive": "ball"})"),
+          operation("intersection", R"({"primitive": "down"}, {"primitive": "up"})"), std::string(R"({"op": "full"})"),
+          operation("difference", R"({"primitive": "up"}, {"primitive": "wave"})")}) {
+      const std::optional<AlignedBox> cut = cut_of(unbounded, ending);
+      ASSERT_TRUE(cut.has_value()) << unbounded << ending;
+      EXPECT_TRUE(cut->min().allFinite() && cut->max().allFinite());
+    }
+    for (const std::string& bounded :
+         {std::string(R"({"primitive": "ball"})"), std::string(R"({"primitive": "wave"})"),
+          std::string(R"({"op": "empty"})"),
+          operation("intersection", R"({"primitive": "down"}, {"primitive": "ball"})"),
+          operation("complement", R"({"op": "union", "children": [{"op": "complement", "children":
+                    [{"primitive": "ball"}]}, {"primitive": "down"}]})")}) {
+      EXPECT_FALSE(cut_of(bounded, ending).has_value()) << bounded << ending;
+    }
+  }
+  EXPECT_FALSE(cut_of(R"({"primitive": "down"})", ".json").has_value());
+  EXPECT_FALSE(cut_of(R"({"primitive": "down"})", ".dot").has_value());
+}
+
 TEST(ExportModel, RefusesUnknownEndingsAndMissingTrees) {
   Model model = data_model("m2.json");
   const auto message_for = [&model](const char* name) -> std::string {
