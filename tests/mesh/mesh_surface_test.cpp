@@ -13,10 +13,8 @@
 namespace cloud2csg {
 namespace {
 
-using shapes::any_orientation;
 using shapes::any_primitive;
 using shapes::any_tree;
-using shapes::any_vector;
 using shapes::at;
 using shapes::euler_characteristic;
 using shapes::mesh_of;
@@ -78,8 +76,9 @@ double distance_to_nearest_vertex(const TriangleMesh& mesh, const Eigen::Vector3
 }
 
 RC_GTEST_PROP(MeshSurface, CornersOfTurnedBoxesAreVertices, ()) {
-  const Eigen::Vector3d size = any_vector(0.3, 1);
-  const Primitive box = at(Box{.size = size}, any_vector(-1, 1), any_orientation());
+  const Eigen::Vector3d size = test::any_vector(0.3, 1);
+  const Pose pose = test::any_pose(1);
+  const Primitive box = at(Box{.size = size}, pose.position, pose.orientation);
   const TriangleMesh mesh = mesh_of(box, 48);
   RC_ASSERT(is_watertight(mesh));
   for (int corner = 0; corner < 8; ++corner) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cloud2csg/error.hpp"
+#include "support/any_solid.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -99,15 +100,46 @@ std::string sphere(const std::string& fields) {
   return with_primitives(R"({"id": "s", "type": "sphere", )" + fields + "}");
 }
 
-INSTANTIATE_TEST_SUITE_P(Json, Refusal,
-                         testing::Values(Refused{"Syntax", "{\"format\": \"cloud2csg\",\n \"version\": }",
-                                                 "line 2, column 13", "unexpected '}'"},
-                                         Refused{"Empty", "", "line 1, column 1", "unexpected end of input"},
-                                         Refused{"TwiceTheSameField",
-                                                 R"({"format": "cloud2csg", "format": "cloud2csg"})",
-                                                 "field \"format\"", "once"},
-                                         Refused{"TooLarge", sphere("\"radius\": 1e999"), "", "number overflow"}),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Json, Refusal,
+    testing::Values(
+        Refused{"Syntax", "{\"format\": \"cloud2csg\",\n \"version\": }", "line 2, column 13", "unexpected '}'"},
+        Refused{"Empty", "", "line 1, column 1", "unexpected end of input"},
+        Refused{"TwiceTheSameField", R"({"format": "cloud2csg", "format": "cloud2csg"})", "/format", "once"},
+        Refused{"TwiceInAPrimitive", sphere(R"("radius": 1, "radius": 2)"), "/primitives/0/radius", "once"},
+        Refused{"TooLarge", sphere("\"radius\": 1e999"), "/primitives/0/radius",
+                "a number that fits a double, found 1e999"},
+        Refused{"TooLargeInAList", with_primitives(R"({"id": "a", "type": "half_space"},
+                                                     {"id": "b", "type": "half_space", "pose": {"position":
+                                                      [0, -1e400, 0]}})"),
+                "/primitives/1/pose/position/1", "found -1e400"},
+        Refused{"Literal", sphere("\"radius\": NaN"), "line 1, column 94", "invalid literal"},
+        Refused{"BrokenText", "{\"format\": \"\xff\xfe\"}", "line 1, column 13", "ill-formed UTF-8"},
+        Refused{"OtherEncoding", "\xff\xfe{", "line 1, column 1", "invalid literal"},
+        Refused{"MoreAfterTheEnd", with_primitives("") + "\n}", "line 2, column 1", "expected end of input"},
+        Refused{"ZeroByteAfterTheEnd", with_primitives("") + std::string(2, '\0'), "line 1, column 56", "value 0"},
+        Refused{"HugeVersion", R"({"format": "cloud2csg", "version": 18446744073709551615})", "/version",
+                "found 18446744073709551615"},
+        Refused{"BottomlessList", R"({"format": )" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}",
+                "/format", "too deep"}),
+    name_of);
+
+TEST(ReadModel, MessagesAreTheProjectsOwnAndText) {
+  for (const std::string& text :
+       {std::string("{"), std::string("\xff\xfe"), sphere("\"radius\": 1e999"), sphere("\"radius\": NaN"),
+        std::string("{\"format\": \"\xff\"}"), std::string("[\"\x01\"]"), std::string("{} x")}) {
+    const Error::Parts parts = refusal(text);
+    const std::string message = parts.where + parts.expected + parts.remedy;
+    EXPECT_EQ(message.find("json.exception"), std::string::npos) << message;
+    EXPECT_EQ(message.find("parse error"), std::string::npos) << message;
+    EXPECT_TRUE(std::all_of(message.begin(), message.end(), [](char c) { return c >= ' ' && c <= '~'; })) << message;
+    EXPECT_FALSE(parts.remedy.empty()) << message;
+  }
+}
+
+TEST(ReadModel, TakesAByteOrderMark) {
+  EXPECT_EQ(parse_model("\xef\xbb\xbf" + with_primitives(k_two_spheres)).primitives.size(), 2U);
+}
 
 INSTANTIATE_TEST_SUITE_P(
     Head, Refusal,
@@ -237,47 +269,11 @@ TEST(WriteModel, RefusesWhatCouldNotBeReadAgain) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-rc::Gen<double> any_double(double low, double high) {
-  return rc::gen::map(rc::gen::arbitrary<std::uint64_t>(), [=](std::uint64_t bits) {
-    return low + (high - low) * (static_cast<double>(bits >> 11U) * 0x1p-53);
-  });
-}
-
-Eigen::Vector3d any_vector(double low, double high) {
-  return {*any_double(low, high), *any_double(low, high), *any_double(low, high)};
-}
-
-Shape any_shape() {
-  const double a = *any_double(0.5, 1);
-  const double b = *any_double(0.1, 0.5);
-  switch (*rc::gen::inRange(0, 8)) {
-    case 0:
-      return Box{.size = any_vector(0.1, 9)};
-    case 1:
-      return Sphere{.radius = a};
-    case 2:
-      return Cylinder{.radius = a, .height = b};
-    case 3:
-      return Cone{.radius_bottom = a, .radius_top = 0, .height = b};
-    case 4:
-      return Torus{.major_radius = a, .minor_radius = b};
-    case 5:
-      return HalfSpace{};
-    case 6:
-      return Polytope{
-          .planes = {{{-1, 0, 0}, a}, {{0, -1, 0}, a}, {{0, 0, -1}, b}, {{0.6, 0.8, 0}, a}, {{0, 0, 1}, b}}};
-    default:
-      return Expression{.distance = "abs(x) + y * 2 - z", .bounds = AlignedBox(any_vector(-2, -1), any_vector(1, 2))};
-  }
-}
-
 Primitive any_primitive(std::size_t index) {
-  Primitive primitive{.id = *rc::gen::arbitrary<std::string>() + std::to_string(index), .shape = any_shape()};
-  for (char& c : primitive.id) c = static_cast<char>(std::max(c & 0x7f, 1));  // text without NUL
-  primitive.pose.position = any_vector(-100, 100);
-  primitive.pose.orientation =
-      Eigen::Quaterniond(*any_double(0.1, 1), *any_double(-1, 1), *any_double(-1, 1), 0.5).normalized();
-  if (*rc::gen::arbitrary<bool>()) primitive.displacement = Displacement{.frequency = *any_double(1, 9)};
+  std::string id = *rc::gen::arbitrary<std::string>() + std::to_string(index);
+  for (char& c : id) c = static_cast<char>(std::max(c & 0x7f, 1));  // text without NUL
+  Primitive primitive{.id = id, .shape = test::any_shape(), .pose = test::any_pose(100)};
+  if (*rc::gen::arbitrary<bool>()) primitive.displacement = Displacement{.frequency = test::any_double(1, 9)};
   return primitive;
 }
 
