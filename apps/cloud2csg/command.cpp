@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
+
+#include "values.hpp"
 
 namespace cloud2csg::app {
 
 void add_run_options(CLI::App& options, RunOptions& values) {
   options.add_option("--threads", values.threads, "Threads to use; 0 = all cores")
-      ->check(CLI::Range(0, 1024))
+      ->transform(whole_number(0, 1024))
       ->type_name("N")
       ->group("Running")
       ->capture_default_str();
@@ -25,19 +26,23 @@ Session::Session(const RunOptions& options, std::stop_token stop)
 CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, const std::string& endings) {
   return options
       .add_option("-o,--output", files, fmt::format("File to write, by its ending: {}; may be repeated", endings))
+      ->check(file_name())
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group("Output");
 }
 
-CLI::Validator finite_not_negative() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (!CLI::detail::lexical_cast(text, value)) return fmt::format("'{}' is not a number", text);
-    return std::isfinite(value) && value >= 0 ? std::string() : fmt::format("{} is not a finite number >= 0", text);
-  };
-  return {check, ""};
+CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& file, const std::string& help) {
+  return options.add_option(name, file, help)->check(file_name())->required();
+}
+
+const CsgTree& tree_of(const Model& model, const std::string& file) {
+  if (model.tree) return *model.tree;
+  throw Error({.file = file,
+               .where = "/tree",
+               .expected = "the model has primitives but no tree",
+               .remedy = "extract a tree from a cloud first, or add a \"tree\" that combines the primitives"});
 }
 
 std::string example(const std::string& lines) {

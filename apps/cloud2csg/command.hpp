@@ -4,8 +4,11 @@
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/model.hpp"
 #include "cloud2csg/run_context.hpp"
 #include "progress_display.hpp"
 
@@ -47,8 +50,23 @@ class Session {
 /// `-o FILE`, as often as wanted, at least once.
 CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, const std::string& endings);
 
-/// Accepts finite numbers of 0 or more. (CLI11's own NonNegativeNumber accepts not-a-number.)
-[[nodiscard]] CLI::Validator finite_not_negative();
+/// A required file to read, as an option or by its place.
+CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& file, const std::string& help);
+
+/// @throws Error naming the file when the model has no tree.
+[[nodiscard]] const CsgTree& tree_of(const Model& model, const std::string& file);
+
+/// What `work` returns. An Error that names no file, of a stage that knows none, gets the name of what was worked on.
+template <typename Work>
+auto naming(const std::string& files, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    Error::Parts parts = error.parts();
+    if (parts.file.empty()) parts.file = files;
+    throw Error(std::move(parts));
+  }
+}
 
 /// The example that ends a subcommand's help.
 [[nodiscard]] std::string example(const std::string& lines);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -54,7 +55,9 @@ void CompareCommand::run(std::stop_token stop) const {
   Session session(running, std::move(stop));
   const Shape3d truth_shape = read_shape(truth);
   const Shape3d result_shape = read_shape(result);
-  const Comparison comparison = cloud2csg::compare(truth_shape, result_shape, comparing, session.run());
+  const Comparison comparison = naming(truth + " with " + result, [&] {
+    return cloud2csg::compare(truth_shape, result_shape, comparing, session.run());
+  });
   session.display().finish();
   if (is_json) {
     fmt::print("{}\n", to_json_text(comparison));
@@ -64,20 +67,21 @@ void CompareCommand::run(std::stop_token stop) const {
 }
 
 void add_options(CLI::App& app, CompareCommand& command) {
-  app.add_option("truth", command.truth, "Model, mesh or cloud to compare with")->required()->type_name("TRUTH");
-  app.add_option("result", command.result, "Model, mesh or cloud to judge")->required()->type_name("RESULT");
+  add_file(app, "truth", command.truth, "Model, mesh or cloud to compare with")->type_name("TRUTH");
+  add_file(app, "result", command.result, "Model, mesh or cloud to judge")->type_name("RESULT");
   app.add_flag("--json", command.is_json, "JSON instead of a table; what cannot be had is null")->group("Output");
   app.add_option("--resolution", command.comparing.resolution, "Volumes: columns along the longest side")
-      ->check(CLI::Range(4, 8192))
+      ->transform(whole_number(2, 8192))
       ->type_name("N")
       ->group("Accuracy")
       ->capture_default_str();
   app.add_option("--samples", command.comparing.surface_samples, "Distances: points on each surface")
-      ->check(CLI::PositiveNumber)
+      ->transform(whole_number_from(1))
       ->type_name("COUNT")
       ->group("Accuracy")
       ->capture_default_str();
   app.add_option("--seed", command.comparing.seed, "Same seed, same result")
+      ->transform(whole_number_from(0))
       ->type_name("S")
       ->group("Accuracy")
       ->capture_default_str();

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "base/output_set.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/model.hpp"
 #include "command.hpp"
 #include "outputs.hpp"
+#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -24,20 +27,25 @@ void ConvertCommand::run(std::stop_token stop) const {
   check_distinct(outputs);
   Session session(running, std::move(stop));
   const Model read = read_model(model);
-  for (const std::string& file : outputs) export_model(file, read, exporting, session.run());
+  if (std::any_of(outputs.begin(), outputs.end(), needs_tree)) (void)tree_of(read, model);
+  OutputSet written;
+  const std::vector<std::string> warnings =
+      naming(model, [&] { return add_models(written, outputs, read, exporting, session.run()); });
+  written.commit();
+  for (const std::string& warning : warnings) session.display().note("warning: " + warning);
 }
 
 void add_options(CLI::App& app, ConvertCommand& command) {
-  app.add_option("model", command.model, "Model file")->required()->type_name("MODEL.json");
+  add_file(app, "model", command.model, "Model file")->type_name("MODEL.json");
   add_outputs(app, command.outputs, join_endings(model_endings()));
   app.add_option("--resolution", command.exporting.meshing.resolution,
                  "Meshes (.stl .off .obj): cells along the longest side")
-      ->check(CLI::Range(4, 4096))
+      ->transform(whole_number(4, 4096))
       ->type_name("N")
       ->group("Output")
       ->capture_default_str();
   app.add_option("--facets", command.exporting.openscad.facets, "OpenSCAD: facets of a full circle ($fn)")
-      ->check(CLI::Range(3, 10'000))
+      ->transform(whole_number(3, 10'000))
       ->type_name("N")
       ->group("Output")
       ->capture_default_str();

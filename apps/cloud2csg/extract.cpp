@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/atomic_file.hpp"
+#include "base/output_set.hpp"
 #include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
@@ -16,6 +17,7 @@
 #include "extract_arguments.hpp"
 #include "outputs.hpp"
 #include "summary.hpp"
+#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -31,7 +33,11 @@ struct ExtractCommand {
   RunOptions running;
 
   void run(const std::stop_token& stop) const;
-  void write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run) const;
+  /// What is going to be written, after a look at whether it can be.
+  [[nodiscard]] std::vector<std::string> check_files() const;
+  /// Returns warnings.
+  [[nodiscard]] std::vector<std::string> write(const Extraction& result, const PrimitiveSet& solids,
+                                               const RunContext& run, OutputSet& written) const;
 };
 
 PointCloud read_cloud_with_normals(const std::string& file, const RunContext& run) {
@@ -55,17 +61,17 @@ std::string headline(const ExtractStatistics& statistics, const std::string& clo
       statistics.fit.rms_angle_deg);
 }
 
-void ExtractCommand::write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run) const {
+std::vector<std::string> ExtractCommand::write(const Extraction& result, const PrimitiveSet& solids,
+                                               const RunContext& run, OutputSet& written) const {
   const std::string comment = headline(result.statistics, cloud);
   const Model model{.primitives = solids, .tree = result.tree, .description = comment};
   // Not to be stopped: what has been found is written also after an interrupt.
   const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
-  for (const std::string& file : outputs) export_model(file, model, {.openscad = {.comment = comment}}, writing);
+  return naming(primitives,
+                [&] { return add_models(written, outputs, model, {.openscad = {.comment = comment}}, writing); });
 }
 
-void ExtractCommand::run(const std::stop_token& stop) const {
-  const Stopwatch total;
-  const ExtractOptions options = arguments.options();
+std::vector<std::string> ExtractCommand::check_files() const {
   for (const std::string& file : outputs) check_output(file, model_endings());
   if (statistics) check_output(*statistics, k_statistics_endings);
   std::vector<std::string> written = outputs;
@@ -73,38 +79,49 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   std::vector<std::string> all = written;
   all.insert(all.end(), {cloud, primitives});
   check_distinct(all);
+  return written;
+}
+
+void ExtractCommand::run(const std::stop_token& stop) const {
+  const Stopwatch total;
+  const std::vector<std::string> to_write = check_files();
   Session session(running, stop);
 
   const PrimitiveSet solids = read_model(primitives).primitives;
   const PointCloud points = read_cloud_with_normals(cloud, session.run());
   const double read_seconds = total.seconds();
-  Extraction result = extract_csg(points, solids, options, session.run());
+  Extraction result = naming(cloud + " with " + primitives,
+                             [&] { return extract_csg(points, solids, arguments.options(), session.run()); });
 
   const Stopwatch writing;
-  write(result, solids, session.run());
+  OutputSet written;
+  std::vector<std::string> warnings = write(result, solids, session.run(), written);
   StageSeconds& seconds = result.statistics.seconds;
   seconds.read = read_seconds;
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
-  if (statistics) write_text_file(*statistics, to_json(result.statistics));
+  result.statistics.warnings.insert(result.statistics.warnings.end(), warnings.begin(), warnings.end());
+  if (statistics) {
+    written.add(*statistics,
+                [&](const std::filesystem::path& path) { write_text_file(path, to_json(result.statistics)); });
+  }
+  written.commit();
 
   for (const std::string& warning : result.statistics.warnings) session.display().note("warning: " + warning);
-  for (const std::string& line : summary_of(result.statistics, written)) session.display().note(line);
+  for (const std::string& line : summary_of(result.statistics, to_write)) session.display().note(line);
   if (stop.stop_requested() && !result.statistics.complete) {
     throw Error({.file = {}, .where = "interrupted", .expected = "the best tree so far was written", .remedy = {}});
   }
 }
 
 void add_options(CLI::App& app, ExtractCommand& command) {
-  app.add_option("cloud", command.cloud, "Point cloud with normals: .ply .pcd .xyz .xyzn .txt .pts")
-      ->required()
-      ->type_name("CLOUD");
-  app.add_option("--primitives", command.primitives, "Model file with the primitives to combine")
-      ->required()
+  add_file(app, "cloud", command.cloud, "Point cloud with normals: .ply .pcd .xyz .xyzn .txt .pts")->type_name("CLOUD");
+  add_file(app, "--primitives", command.primitives, "Model file with the primitives to combine")
       ->type_name("MODEL.json")
       ->group("Input");
   add_outputs(app, command.outputs, join_endings(model_endings()));
   app.add_option("--stats", command.statistics, "Statistics: times, search, merge, fit")
+      ->check(file_name())
       ->type_name("STATS.json")
       ->group("Output");
   add_extract_arguments(app, command.arguments);
@@ -115,9 +132,12 @@ void add_options(CLI::App& app, ExtractCommand& command) {
 
 Command add_extract(CLI::App& program) {
   CLI::App* app = program.add_subcommand("extract", "Turns a point cloud and its primitives into a CSG tree");
-  app->footer(example("  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json"));
+  app->footer(
+      "A .json output keeps all primitives as they were given; the tree leaves out those that no point supports.\n\n" +
+      example("  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json"));
   auto command = std::make_shared<ExtractCommand>();
   add_options(*app, *command);
+  app->final_callback([app, command] { check_arguments(*app, command->arguments); });
   return {.options = app, .run = [command](const std::stop_token& stop) { command->run(stop); }};
 }
 

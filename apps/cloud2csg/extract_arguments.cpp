@@ -1,10 +1,13 @@
 #include "extract_arguments.hpp"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <string_view>
 #include <vector>
 
-#include "command.hpp"
+#include "cloud2csg/error.hpp"
+#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -42,13 +45,26 @@ class Group {
     return app_.add_option(option, value, help)->type_name(type)->group(name_);
   }
   void count(const std::string& option, std::optional<int>& value, const std::string& help) {
-    add(option, value, "N", help)->check(CLI::NonNegativeNumber);
+    add(option, value, "N", help)->transform(whole_number(0, std::numeric_limits<int>::max()));
+  }
+  void count(const std::string& option, std::optional<std::size_t>& value, const std::string& help) {
+    add(option, value, "N", help)->transform(whole_number_from(0));
   }
   void number(const std::string& option, std::optional<double>& value, const std::string& help) {
-    add(option, value, "X", help)->check(finite_not_negative());
+    add(option, value, "X", help)->check(number_not_negative());
   }
-  void share(const std::string& option, std::optional<double>& value, const std::string& help) {
-    add(option, value, "SHARE", help)->check(CLI::Range(0.0, 1.0));
+  void fraction(const std::string& option, std::optional<double>& value, const std::string& help) {
+    add(option, value, "SHARE", help)->check(share());
+  }
+  /// `--name` and `--no-name`, of which one may be given.
+  void either(const std::string& name, std::optional<bool>& value, const std::string& help,
+              const std::string& help_no) {
+    CLI::Option* yes = app_.add_flag_callback(
+        "--" + name, [&value] { value = true; }, help);
+    CLI::Option* no = app_.add_flag_callback(
+        "--no-" + name, [&value] { value = false; }, help_no);
+    yes->group(name_);
+    no->group(name_)->excludes(yes);
   }
 
  private:
@@ -59,20 +75,20 @@ class Group {
 void add_search_arguments(CLI::App& app, ExtractArguments& arguments) {
   Group group(app, "Search");
   group.add("--preset", arguments.preset, "NAME", "default, or paper: the paper's weights and search, nothing added")
-      ->check(CLI::IsMember({"default", "paper"}))
+      ->check(one_of({"default", "paper"}))
       ->capture_default_str();
   group
       .add("--strategy", arguments.strategy, "NAME",
            "auto, partition: a tree per partition, merged, or baseline: all primitives at once (default: auto)")
-      ->check(CLI::IsMember(names_of(k_strategies)));
+      ->check(one_of(names_of(k_strategies)));
   group.add("--parallel", arguments.parallel, "WHAT", "none, population, partitions or both (default: both)")
-      ->check(CLI::IsMember(names_of(k_parallels)));
-  group.add("--seed", arguments.seed, "S", "Same seed, same tree, whatever the threads (default: 1)");
+      ->check(one_of(names_of(k_parallels)));
+  group.add("--seed", arguments.seed, "S", "Same seed, same tree, whatever the threads (default: 1)")
+      ->transform(whole_number_from(0));
   group.add("--time-limit", arguments.time_limit_seconds, "SECONDS", "Then take the best tree so far (default: none)")
-      ->check(finite_not_negative());
-  app.add_flag("--no-polish", arguments.no_polish,
-               "Leave nodes in that the whole cloud does not need (as the paper does)")
-      ->group("Search");
+      ->check(number_not_negative());
+  group.either("polish", arguments.polish, "Take nodes out that the whole cloud does not need (default)",
+               "Leave them in (paper)");
 }
 
 void add_genetic_algorithm_arguments(CLI::App& app, ExtractArguments& arguments) {
@@ -80,17 +96,25 @@ void add_genetic_algorithm_arguments(CLI::App& app, ExtractArguments& arguments)
   group.count("--population", arguments.population, "Trees a generation (default: 150)");
   group.count("--elites", arguments.elites, "Best trees that are kept (default: 2)");
   group.count("--tournament", arguments.tournament, "A parent is the best of so many (default: 2)");
-  group.share("--crossover-rate", arguments.crossover_rate, "Parents that swap subtrees (default: 0.3)");
-  group.share("--mutation-rate", arguments.mutation_rate, "Children that are mutated (default: 0.3)");
-  group.share("--new-tree-rate", arguments.new_tree_rate, "Mutations that replace the whole tree (default: 0.5)");
+  group.fraction("--crossover-rate", arguments.crossover_rate, "Parents that swap subtrees (default: 0.3)");
+  group.fraction("--mutation-rate", arguments.mutation_rate, "Children that are mutated (default: 0.3)");
+  group.fraction("--new-tree-rate", arguments.new_tree_rate, "Mutations that replace the whole tree (default: 0.5)");
   group.count("--height-limit", arguments.height_limit, "Height of a tree (default: sqrt(pi/2 n (n-1)))");
   group.count("--idle-generations", arguments.idle_generations,
               "Stop after so many generations without a better tree (default: 40, paper: 10)");
   group.count("--generation-limit", arguments.generation_limit, "Stop after so many in any case (default: 10000)");
-  group
-      .add("--listing-limit", arguments.listing_limit, "N",
-           "Partitions up to this size are solved by listing, 0 to 5 (default: 4, paper: 2)")
-      ->check(CLI::Range(0, 5));
+  group.count("--listing-limit", arguments.listing_limit,
+              "Partitions up to this size are solved by listing, 0 to 5 (default: 4, paper: 2)");
+  group.fraction("--trust", arguments.trust,
+                 "A tree that reaches less than this share of the best score that can be is searched for again "
+                 "(default: 0.9, paper: 0, never)");
+  group.count("--restarts", arguments.restarts, "... so many times at most (default: 3, paper: 0)");
+  group.count("--restart-budget", arguments.restart_budget,
+              "... and not when so many trees were evaluated for a partition (default: 200000)");
+  group.either("seeds", arguments.seeds, "The first generation also has results of local searches (default)",
+               "The first generation is random (paper)");
+  group.either("local-search", arguments.local_search, "Improve the best tree at the end by single changes (default)",
+               "Take the best tree as it is (paper)");
 }
 
 void add_fit_arguments(CLI::App& app, ExtractArguments& arguments) {
@@ -117,6 +141,20 @@ void override_search(GaOptions& search, const ExtractArguments& arguments) {
   override_with(search.idle_generations, arguments.idle_generations);
   override_with(search.generation_limit, arguments.generation_limit);
   override_with(search.listing_limit, arguments.listing_limit);
+  override_with(search.trust, arguments.trust);
+  override_with(search.restarts, arguments.restarts);
+  override_with(search.restart_budget, arguments.restart_budget);
+  override_with(search.seeds, arguments.seeds);
+  override_with(search.polish, arguments.local_search);
+}
+
+/// The option that sets a field of the library's options: "angle_tolerance_deg" is --angle-tolerance.
+std::string option_of(std::string field) {
+  for (const std::string_view unit : {"_deg", "_seconds"}) {
+    if (field.ends_with(unit)) field.resize(field.size() - unit.size());
+  }
+  std::replace(field.begin(), field.end(), '_', '-');
+  return "--" + field;
 }
 
 }  // namespace
@@ -127,7 +165,7 @@ ExtractOptions ExtractArguments::options() const {
   override_by_name(k_parallels, options.parallel, parallel);
   override_with(options.seed, seed);
   override_with(options.time_limit_seconds, time_limit_seconds);
-  if (no_polish) options.polish = false;
+  override_with(options.polish, polish);
   override_search(options.search, *this);
   override_with(options.objective.alpha, alpha);
   override_with(options.objective.beta, beta);
@@ -137,6 +175,16 @@ ExtractOptions ExtractArguments::options() const {
   override_with(options.overlap_tolerance, overlap_tolerance);
   validate(options);
   return options;
+}
+
+void check_arguments(const CLI::App& app, const ExtractArguments& arguments) {
+  try {
+    (void)arguments.options();
+  } catch (const Error& error) {
+    const std::string option = option_of(error.parts().where);
+    throw CLI::ValidationError(app.get_option_no_throw(option) != nullptr ? option : error.parts().where,
+                               error.parts().expected);
+  }
 }
 
 void add_extract_arguments(CLI::App& app, ExtractArguments& arguments) {

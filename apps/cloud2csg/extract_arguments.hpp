@@ -15,18 +15,23 @@ struct ExtractArguments {
   std::optional<std::string> strategy, parallel;
   std::optional<std::uint64_t> seed;
   std::optional<double> time_limit_seconds;
-  bool no_polish = false;
+  std::optional<bool> polish;
 
-  std::optional<int> population, elites, tournament, height_limit, idle_generations, generation_limit;
-  std::optional<double> crossover_rate, mutation_rate, new_tree_rate;
-  std::optional<std::size_t> listing_limit;
+  std::optional<int> population, elites, tournament, height_limit, idle_generations, generation_limit, restarts;
+  std::optional<double> crossover_rate, mutation_rate, new_tree_rate, trust;
+  std::optional<std::size_t> listing_limit, restart_budget;
+  std::optional<bool> seeds, local_search;
 
   std::optional<double> alpha, beta, gamma;
   std::optional<double> distance_tolerance, angle_tolerance_deg, overlap_tolerance;
 
-  /// @throws Error naming the option that is out of range.
+  /// @throws Error naming the field that is out of range.
   [[nodiscard]] ExtractOptions options() const;
 };
+
+/// Finds values that are each right for their option but not for the extraction.
+/// @throws CLI::ValidationError naming the option
+void check_arguments(const CLI::App& app, const ExtractArguments& arguments);
 
 /// Adds them to a subcommand's help, in groups.
 void add_extract_arguments(CLI::App& app, ExtractArguments& arguments);

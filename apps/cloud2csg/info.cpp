@@ -128,7 +128,7 @@ Command add_info(CLI::App& program) {
   CLI::App* app = program.add_subcommand("info", "Says what a cloud, mesh or model file holds");
   app->footer(example("  cloud2csg info bracket.json"));
   auto command = std::make_shared<InfoCommand>();
-  app->add_option("file", command->file, "Point cloud, mesh or model")->required()->type_name("FILE");
+  add_file(*app, "file", command->file, "Point cloud, mesh or model")->type_name("FILE");
   app->add_flag("--json", command->is_json, "JSON instead of a table")->group("Output");
   return {.options = app, .run = [command](const std::stop_token& /*stop*/) { command->run(); }};
 }

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/temporary_file.hpp"
+
 namespace cloud2csg::app {
 namespace {
 
@@ -24,7 +26,10 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_alw
 /// Only async-signal-safe calls: std::stop_source::request_stop() runs callbacks and may take locks, so the watcher
 /// thread calls it.
 extern "C" void on_interrupt(int /*signal*/) {
-  if (is_stopping.exchange(true)) ::_exit(k_status_interrupted);
+  if (is_stopping.exchange(true)) {
+    remove_temporaries();
+    ::_exit(k_status_interrupted);
+  }
   const int saved = errno;
   [[maybe_unused]] const ssize_t written = ::write(pipe_write_end.load(), &k_byte_interrupt, 1);
   errno = saved;

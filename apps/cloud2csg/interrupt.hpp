@@ -7,7 +7,7 @@
 namespace cloud2csg::app {
 
 /// While it lives, the first SIGINT or SIGTERM requests a stop and the second ends the program at once, with status
-/// 130. At most one at a time.
+/// 130, less the temporary files that it was writing. At most one at a time.
 class InterruptWatcher {
  public:
   InterruptWatcher();

@@ -25,6 +25,10 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+std::string corner(const Eigen::Vector3d& point) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", point.x(), point.y(), point.z());
+}
+
 }  // namespace
 
 std::span<const std::string_view> cloud_endings() {
@@ -57,6 +61,23 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
     refuse(fmt::format("cannot be written: folder '{}' ({})", folder.string(), std::strerror(errno)),
            "check its permissions");
   }
+}
+
+bool needs_tree(const std::filesystem::path& file) {
+  return lower_case(file.extension().string()) != ".json";
+}
+
+std::vector<std::string> add_models(OutputSet& set, std::span<const std::string> files, const Model& model,
+                                    const ExportOptions& options, const RunContext& run) {
+  std::vector<std::string> warnings;
+  for (const std::string& file : files) {
+    ExportReport report;
+    set.add(file, [&](const std::filesystem::path& path) { report = export_model(path, model, options, run); });
+    if (!report.cut_at) continue;
+    warnings.push_back(fmt::format("{}: the solid has no bounds: it was cut at {} to {}; intersect it with a box", file,
+                                   corner(report.cut_at->min()), corner(report.cut_at->max())));
+  }
+  return warnings;
 }
 
 void check_distinct(std::span<const std::string> files) {

@@ -5,11 +5,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "cloud2csg/error.hpp"
+#include "base/output_set.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "command.hpp"
 #include "outputs.hpp"
+#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -30,46 +31,47 @@ void SampleCommand::run(std::stop_token stop) const {
   check_distinct(outputs);
   Session session(running, std::move(stop));
   const Model read = read_model(model);
-  if (!read.tree) {
-    throw Error({.file = model,
-                 .where = "/tree",
-                 .expected = "the model has primitives but no tree, so it has no surface",
-                 .remedy = "add a \"tree\" that combines the primitives"});
-  }
-  const PointCloud cloud = sample_surface(*read.tree, read.primitives, sampling, session.run());
+  const CsgTree& tree = tree_of(read, model);
+  const PointCloud cloud =
+      naming(model, [&] { return sample_surface(tree, read.primitives, sampling, session.run()); });
+  OutputSet written;
   for (const std::string& file : outputs) {
-    write_point_cloud(file, cloud, {.binary = !is_ascii, .double_precision = writing.double_precision});
+    written.add(file, [&](const std::filesystem::path& path) {
+      write_point_cloud(path, cloud, {.binary = !is_ascii, .double_precision = writing.double_precision});
+    });
   }
+  written.commit();
   session.display().note(fmt::format("{} points", cloud.size()));
 }
 
 void add_options(CLI::App& app, SampleCommand& command) {
-  app.add_option("model", command.model, "Model file with a tree")->required()->type_name("MODEL.json");
+  add_file(app, "model", command.model, "Model file with a tree")->type_name("MODEL.json");
   add_outputs(app, command.outputs, join_endings(cloud_endings()));
   app.add_flag("--ascii", command.is_ascii, "Text instead of binary numbers in .ply and .pcd")->group("Output");
   SampleOptions& sampling = command.sampling;
   CLI::Option* count = app.add_option("-n,--count", sampling.count, "How many points")
-                           ->check(CLI::PositiveNumber)
+                           ->transform(whole_number_from(1))
                            ->type_name("COUNT")
                            ->group("Sampling")
                            ->capture_default_str();
   app.add_option("--density", sampling.density, "Points per unit of area, instead of --count")
-      ->check(finite_not_negative())
+      ->check(number_not_negative())
       ->type_name("D")
       ->excludes(count)
       ->group("Sampling");
   app.add_option("--noise", sampling.noise, "Standard deviation by which each coordinate is moved")
-      ->check(finite_not_negative())
+      ->check(number_not_negative())
       ->type_name("SIGMA")
       ->group("Sampling")
       ->capture_default_str();
   app.add_option("--normal-noise", sampling.normal_noise_deg,
                  "Standard deviation by which normals are tilted, in degrees")
-      ->check(finite_not_negative())
+      ->check(number_not_negative())
       ->type_name("DEG")
       ->group("Sampling")
       ->capture_default_str();
   app.add_option("--seed", sampling.seed, "Same seed, same points")
+      ->transform(whole_number_from(0))
       ->type_name("S")
       ->group("Sampling")
       ->capture_default_str();

@@ -37,6 +37,21 @@ std::string unknown_argument(const CLI::App& app, std::string word) {
   return fmt::format("{} '{}'{}", kind, word, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
 
+/// CLI11's message in clearer words, where it has none.
+std::string reworded(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const std::string option = text.substr(0, text.find(": "));
+  if (error.get_name() == "ArgumentMismatch" && text.ends_with(" missing")) {
+    return fmt::format("{}: expected a value, found none", option);
+  }
+  if (error.get_name() == "ArgumentMismatch" && text.find("At Most") != std::string::npos) {
+    return fmt::format("{}: given more than once", option);
+  }
+  if (error.get_name() == "ConversionError") return fmt::format("{}; a flag takes no value", text);
+  if (error.get_name() == "ExcludesError") return fmt::format("{}: give one of the two", text);
+  return text;
+}
+
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -75,7 +90,7 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
   const CLI::App& app = chosen(program);
   // A misspelt option is the cause when a required one is missing too.
   const std::vector<std::string> unknown = app.remaining();
-  const std::string what = unknown.empty() ? std::string(error.what()) : unknown_argument(app, unknown.front());
+  const std::string what = unknown.empty() ? reworded(error) : unknown_argument(app, unknown.front());
   const std::string name = &app == &program ? program.get_name() : program.get_name() + " " + app.get_name();
   return fmt::format("{} (see '{} --help')", what, name);
 }

@@ -97,8 +97,21 @@ TEST_F(BadInput, NoPointNearAnyPrimitive) {
   for (int i = 0; i < 100; ++i) points += std::to_string(1000 + i) + " 1000 1000 0 0 1\n";
   const std::string cloud = file("far.xyz", points);
   expect_failure(run({"extract", cloud, "--primitives", shipped("m1.json"), "-o", path("x.json"), "--quiet"}), 1,
-                 {"no point"});
+                 {cloud, shipped("m1.json"), "no point"});
   EXPECT_EQ(files(), std::vector<std::string>{"far.xyz"});
+}
+
+TEST_F(BadInput, NoPrimitives) {
+  const std::string model = file("none.json", R"({"format": "cloud2csg", "version": 1, "primitives": []})");
+  const std::string cloud = file("one.xyz", "0 0 1 0 0 1\n");
+  expect_failure(run({"extract", cloud, "--primitives", model, "-o", path("x.json"), "--quiet"}), 1,
+                 {model, "no primitives"});
+}
+
+TEST_F(BadInput, SolidsWithoutSurfaceAreNamed) {
+  const std::string half = file("half.json", model_of(R"({"id": "s", "type": "half_space"})"));
+  expect_failure(run({"sample", half, "-o", path("x.ply"), "--quiet"}), 1, {half, "unbounded"});
+  expect_failure(run({"compare", shipped("m1.json"), half, "--quiet"}), 1, {half, "unbounded"});
 }
 
 TEST_F(BadInput, CloudThatIsCutOff) {
@@ -112,7 +125,8 @@ TEST_F(BadInput, ModelWithoutATree) {
   const std::string model =
       file("flat.json", R"({"format": "cloud2csg", "version": 1, "primitives": [)" + std::string(k_sphere) + "]}");
   expect_failure(run({"sample", model, "-o", path("x.ply")}), 1, {model, "tree"});
-  expect_failure(run({"convert", model, "-o", path("x.scad")}), 1, {"tree"});
+  expect_failure(run({"convert", model, "-o", path("x.scad")}), 1, {model, "/tree"});
+  expect_failure(run({"compare", model, shipped("m1.json"), "--quiet"}), 1, {model, "tree"});
   EXPECT_EQ(run({"convert", model, "-o", path("x.json"), "--quiet"}).status, 0);
 }
 
@@ -127,6 +141,27 @@ TEST_F(BadInput, FullDiskLeavesNothingBehind) {
   expect_failure(run({"convert", shipped("m2.json"), "-o", older, "--quiet"}, limit), 1, {older, "cannot be written"});
   EXPECT_EQ(files(), std::vector<std::string>{"x.stl"});
   EXPECT_EQ(read_file(older), before);
+}
+
+TEST_F(BadInput, AllOutputsOrNone) {
+  const std::string limit = "ulimit -f 32";
+  const std::string older = file("m.json", "an older result");
+  expect_failure(
+      run({"convert", shipped("m1.json"), "-o", older, "-o", path("m.stl"), "-o", path("m.dot"), "--quiet"}, limit), 1,
+      {path("m.stl") + ":", "cannot be written"});
+  EXPECT_EQ(files(), std::vector<std::string>{"m.json"});
+  expect_failure(
+      run({"sample", shipped("m1.json"), "-n", "300", "-o", path("c.ply"), "-o", path("c.xyz"), "--quiet"}, limit), 1,
+      {path("c.xyz") + ":", "cannot be written"});
+  EXPECT_EQ(files(), std::vector<std::string>{"m.json"});
+  const std::string cloud = path("c.ply");
+  ASSERT_EQ(run({"sample", shipped("m1.json"), "-n", "1000", "-o", cloud, "--quiet"}).status, 0);
+  expect_failure(run({"extract", cloud, "--primitives", shipped("m1.json"), "-o", older, "-o", path("m.off"), "--stats",
+                      path("s.json"), "--quiet"},
+                     limit),
+                 1, {path("m.off") + ":", "cannot be written"});
+  EXPECT_EQ(files(), (std::vector<std::string>{"c.ply", "m.json"}));
+  EXPECT_EQ(read_file(older), "an older result");
 }
 
 }  // namespace

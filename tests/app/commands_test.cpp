@@ -1,8 +1,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/program.hpp"
 
@@ -61,6 +64,35 @@ TEST_F(Commands, ConvertWritesEveryEnding) {
     EXPECT_EQ(info["watertight"], true) << mesh;
     EXPECT_GT(info["volume"].get<double>(), 0.2) << mesh;
   }
+}
+
+TEST_F(Commands, ConvertWarnsWhereItCuts) {
+  const std::string model = file("h.json", R"({"format": "cloud2csg", "version": 1,
+      "primitives": [{"id": "h", "type": "half_space"}], "tree": {"primitive": "h"}})");
+  const Outcome outcome =
+      run({"convert", model, "-o", path("h.off"), "-o", path("h.scad"), "-o", path("h.dot"), "--resolution", "8"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: " + path("h.off") + ": the solid has no bounds"), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: " + path("h.scad")), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("h.dot"), std::string::npos) << outcome.err;
+  EXPECT_NE(read_file(path("h.scad")).find("// The solid has no bounds"), std::string::npos);
+  EXPECT_EQ(run({"convert", shipped("m1.json"), "-o", path("m.off"), "--resolution", "8"}).err.find("warning"),
+            std::string::npos);
+}
+
+TEST_F(Commands, SecondInterruptLeavesNoTemporaries) {
+  const std::string older = file("m.scad", "an older result");
+  RunningProgram program = start(
+      {"convert", shipped("m0.json"), "-o", path("m.json"), "-o", older, "-o", path("m.stl"), "--resolution", "2048"});
+  // The mesh takes long; by then its own temporary file and those of the others are there.
+  for (int i = 0; i < 600 && files().size() < 4; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(files().size(), 4U);
+  program.send_signal(SIGINT);
+  program.send_signal(SIGTERM);
+  EXPECT_EQ(program.wait().status, 130);
+  EXPECT_EQ(files(), std::vector<std::string>{"m.scad"});
+  EXPECT_EQ(read_file(older), "an older result");
 }
 
 TEST_F(Commands, ConvertedModelIsTheSameModel) {

@@ -84,6 +84,46 @@ TEST_F(Extract, PresetsAndStrategiesAreTaken) {
   EXPECT_EQ(strategy_of({"--preset", "paper", "--strategy", "baseline"}), "baseline");
 }
 
+TEST_F(Extract, SearchOptionsAreTaken) {
+  const std::string cloud = sampled("m0.json", "1500");
+  const auto evaluations_with = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"extract",  cloud,          "--primitives", shipped("m0.json"),
+                                       "-o",       path("m.json"), "--stats",      path("s.json"),
+                                       "--preset", "paper",        "--parallel",   "none"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(read_file(path("s.json")))["search"]["evaluations"].get<int>();
+  };
+  const int paper = evaluations_with({});
+  EXPECT_EQ(paper, evaluations_with({"--no-seeds", "--no-local-search", "--no-polish", "--trust", "0"}));
+  EXPECT_NE(paper, evaluations_with({"--seeds"}));
+  EXPECT_NE(paper, evaluations_with({"--local-search"}));
+  const int restarted = evaluations_with({"--trust", "1", "--restarts", "2"});
+  EXPECT_GT(restarted, paper);
+  EXPECT_LT(evaluations_with({"--trust", "1", "--restarts", "2", "--restart-budget", "0"}), restarted);
+}
+
+TEST_F(Extract, ModelKeepsPrimitivesThatTheTreeDoesNot) {
+  const std::string cloud = sampled("m1.json", "2000");
+  json given = json::parse(read_file(shipped("m1.json")));
+  given.erase("tree");
+  // Far from every point, and first: the indices of the others must stay.
+  const json spare{{"id", "spare"}, {"type", "sphere"}, {"radius", 0.5}, {"pose", {{"position", {90, 0, 0}}}}};
+  given["primitives"].insert(given["primitives"].begin(), spare);
+  const Outcome outcome = run({"extract", cloud, "--primitives", file("p.json", given.dump()), "-o", path("m.json"),
+                               "--stats", path("s.json")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("spare"), std::string::npos) << outcome.err;
+  const json written = json::parse(read_file(path("m.json")));
+  ASSERT_EQ(written["primitives"].size(), given["primitives"].size());
+  for (std::size_t i = 0; i < given["primitives"].size(); ++i) {
+    EXPECT_EQ(written["primitives"][i]["id"], given["primitives"][i]["id"]);
+  }
+  EXPECT_EQ(written["tree"].dump().find("spare"), std::string::npos);
+  EXPECT_NE(json::parse(read_file(path("s.json")))["warnings"].dump().find("spare"), std::string::npos);
+}
+
 /// A search that takes minutes when nobody stops it.
 std::vector<std::string> endless(const std::string& cloud, const std::string& model, const std::string& out,
                                  const std::string& statistics) {

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
 #include "app/program.hpp"
 
 namespace cloud2csg::test {
@@ -49,6 +53,60 @@ TEST_F(Usage, FarNamesSuggestNothing) {
   EXPECT_EQ(outcome.err.find("did you mean"), std::string::npos) << outcome.err;
 }
 
+TEST_F(Usage, EveryValueOfEveryCommandIsChecked) {
+  // "--name TYPE" or "--name TYPE=default" in the help: options with a value. Few names are numbers, no number is -x.
+  const std::regex option_line(R"(^  (?:-\w,)?(--[a-z-]+) [A-Z](?:[^a-z]|$))");
+  for (const std::string command : {"extract", "sample", "compare", "convert"}) {
+    std::istringstream help(run({command, "--help"}).out);
+    std::size_t options = 0;
+    for (std::string line; std::getline(help, line);) {
+      std::smatch match;
+      if (!std::regex_search(line, match, option_line)) continue;
+      const std::string option = match[1];
+      ++options;
+      expect_failure(run({command, option, ""}), 2, {option + ": expected"});
+      expect_failure(run({command, option}), 2, {option + ": expected"});
+      if (option == "--output" || option == "--stats" || option == "--primitives") continue;
+      for (const char* value : {"-x", "1e999", "nan", "1x"}) {
+        expect_failure(run({command, option, value}), 2, {option + ": expected", "'" + std::string(value) + "'"});
+      }
+    }
+    EXPECT_GE(options, 4U) << command;
+  }
+}
+
+TEST_F(Usage, WholeNumbersAreDecimal) {
+  ASSERT_EQ(run({"sample", shipped("m1.json"), "-n", "010", "-o", path("x.xyz"), "--quiet"}).status, 0);
+  const std::string cloud = read_file(path("x.xyz"));
+  EXPECT_EQ(std::count(cloud.begin(), cloud.end(), '\n'), 10);
+}
+
+struct OutOfRange {
+  std::vector<std::string> options;
+  std::string message;
+};
+
+TEST_F(Usage, WhatTheExtractionRefusesNamesTheOption) {
+  for (const OutOfRange& given :
+       {OutOfRange{{"--elites", "200"}, "--elites: expected fewer than the population (150), found 200"},
+        OutOfRange{{"--population", "2"}, "--elites: expected fewer than the population (2), found 2"},
+        OutOfRange{{"--population", "1"}, "--population: expected 2 or more, found 1"},
+        OutOfRange{{"--tournament", "0"}, "--tournament: expected"},
+        OutOfRange{{"--height-limit", "0"}, "--height-limit: expected"},
+        OutOfRange{{"--idle-generations", "0"}, "--idle-generations: expected"},
+        OutOfRange{{"--generation-limit", "0"}, "--generation-limit: expected"},
+        OutOfRange{{"--listing-limit", "6"}, "--listing-limit: expected 5 or less, found 6"},
+        OutOfRange{{"--distance-tolerance", "0"}, "--distance-tolerance: expected"},
+        OutOfRange{{"--angle-tolerance", "91"},
+                   "--angle-tolerance: expected a number above 0 and at most 90, found 91"},
+        OutOfRange{{"--beta", "0"}, "--beta: expected"}, OutOfRange{{"--gamma", "0"}, "--gamma: expected"},
+        OutOfRange{{"--time-limit", "0"}, "--time-limit: expected"}}) {
+    std::vector<std::string> arguments{"extract", "c.ply", "--primitives", "m.json", "-o", path("x.json")};
+    arguments.insert(arguments.end(), given.options.begin(), given.options.end());
+    expect_failure(run(arguments), 2, {given.message});
+  }
+}
+
 TEST_F(Usage, ValuesAreChecked) {
   const std::string model = shipped("m1.json");
   const std::string out = path("x.ply");
@@ -60,8 +118,18 @@ TEST_F(Usage, ValuesAreChecked) {
   expect_failure(run({"sample", model, "-o", out, "--noise", "-0.1"}), 2, {"--noise", "-0.1"});
   expect_failure(run({"sample", model, "-o", out, "--noise", "nan"}), 2, {"--noise", "nan"});
   expect_failure(run({"sample", model, "-o", out, "extra"}), 2, {"extra"});
-  expect_failure(run({"extract", "c.ply", "--primitives", model, "-o", "x.json", "--strategy", "magic"}), 2,
-                 {"--strategy", "magic", "baseline"});
+  expect_failure(run({"sample", model, "-o", out, "-n", "5", "-n", "6"}), 2, {"--count: given more than once"});
+  expect_failure(run({"sample", model, "-o", out, "-n", "5", "--density", "6"}), 2, {"--count", "--density"});
+  expect_failure(run({"sample", model, "-o", ""}), 2, {"--output: expected the name of a file"});
+  expect_failure(run({"sample", "", "-o", out}), 2, {"model: expected the name of a file"});
+  const std::vector<std::string> extract{"extract", "c.ply", "--primitives", model, "-o", "x.json"};
+  const auto with = [&extract](std::vector<std::string> more) {
+    more.insert(more.begin(), extract.begin(), extract.end());
+    return more;
+  };
+  expect_failure(run(with({"--strategy", "magic"})), 2, {"--strategy", "magic", "baseline"});
+  expect_failure(run(with({"--seeds", "--no-seeds"})), 2, {"--seeds", "--no-seeds"});
+  expect_failure(run(with({"--quiet=loud"})), 2, {"--quiet", "loud", "no value"});
   EXPECT_TRUE(files().empty());
 }
 

@@ -1,0 +1,87 @@
+#include "values.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace cloud2csg::app {
+namespace {
+
+/// The text's number, when that is all there is in it and it fits.
+template <typename Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(text.data(), end, value);
+  if (failure != std::errc{} || stop != end) return std::nullopt;
+  return value;
+}
+
+std::string refusal(const std::string& expected, const std::string& found) {
+  return fmt::format("expected {}, found '{}'", expected, found);
+}
+
+/// `is_right` judges a text, and may bring it into the form that CLI11 reads.
+template <typename IsRight>
+CLI::Validator validator(std::string expected, IsRight is_right) {
+  return {[expected = std::move(expected), is_right = std::move(is_right)](std::string& text) {
+            return is_right(text) ? std::string() : refusal(expected, text);
+          },
+          ""};
+}
+
+/// Whether it is a whole number in that range; brings it into the form that CLI11, which takes leading zeros for the
+/// mark of octal numbers, reads as the same.
+bool make_whole(std::string& text, std::uint64_t least, std::uint64_t most) {
+  const std::optional<std::uint64_t> value = parsed<std::uint64_t>(text);
+  if (!value || *value < least || *value > most) return false;
+  text = std::to_string(*value);
+  return true;
+}
+
+CLI::Validator number_between(const std::string& expected, double least, double most) {
+  return validator(expected, [least, most](const std::string& text) {
+    const std::optional<double> value = parsed<double>(text);
+    return value && std::isfinite(*value) && *value >= least && *value <= most;
+  });
+}
+
+}  // namespace
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  return validator(fmt::format("a whole number from {} to {}", least, most),
+                   [least, most](std::string& text) { return make_whole(text, least, most); });
+}
+
+CLI::Validator whole_number_from(std::uint64_t least) {
+  return validator(fmt::format("a whole number of {} or more that fits 64 bits", least), [least](std::string& text) {
+    return make_whole(text, least, std::numeric_limits<std::uint64_t>::max());
+  });
+}
+
+CLI::Validator number_not_negative() {
+  return number_between("a finite number of 0 or more", 0, std::numeric_limits<double>::max());
+}
+
+CLI::Validator share() {
+  return number_between("a number from 0 to 1", 0, 1);
+}
+
+CLI::Validator one_of(std::vector<std::string> names) {
+  const std::string expected = fmt::format("one of {}", fmt::join(names, ", "));
+  return validator(expected, [names = std::move(names)](const std::string& text) {
+    return std::find(names.begin(), names.end(), text) != names.end();
+  });
+}
+
+CLI::Validator file_name() {
+  return validator("the name of a file", [](const std::string& text) { return !text.empty(); });
+}
+
+}  // namespace cloud2csg::app
