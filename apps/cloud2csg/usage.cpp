@@ -39,7 +39,7 @@ std::string unknown_argument(const CLI::App& app, std::string word) {
 
 /// CLI11's message in clearer words, where it has none.
 std::string reworded(const CLI::ParseError& error) {
-  const std::string text = error.what();
+  std::string text = error.what();
   const std::string option = text.substr(0, text.find(": "));
   if (error.get_name() == "ArgumentMismatch" && text.ends_with(" missing")) {
     return fmt::format("{}: expected a value, found none", option);

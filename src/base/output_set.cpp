@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include "base/temporary_file.hpp"
 #include "cloud2csg/error.hpp"
@@ -25,8 +26,8 @@ bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
 }  // namespace
 
 struct OutputSet::Entry {
-  Entry(const std::filesystem::path& given, std::filesystem::path resolved)
-      : target(given), place(std::move(resolved)), staged(place, target.extension().string()) {}
+  Entry(std::filesystem::path given, std::filesystem::path resolved)
+      : target(std::move(given)), place(std::move(resolved)), staged(place, target.extension().string()) {}
 
   /// An older file is exchanged with the new one, so that it can come back.
   void put_in_place() {

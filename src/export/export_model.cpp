@@ -33,7 +33,7 @@ std::string text_of(const Eigen::Vector3d& corner) {
 
 ExportReport export_openscad(const std::filesystem::path& file, const Model& model, OpenScadOptions options) {
   const CsgTree& tree = tree_of(model, file);
-  const ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
+  ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
   if (options.comment.empty()) options.comment = model.description;
   if (report.cut_at) {
     options.comment +=

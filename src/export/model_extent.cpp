@@ -34,7 +34,9 @@ PrimitiveSet with_boxes_for_expressions(PrimitiveSet primitives) {
   for (Primitive& primitive : primitives) {
     if (!std::holds_alternative<Expression>(primitive.shape)) continue;
     const OrientedBox box = oriented_bounds(primitive);
-    primitive = {.id = primitive.id, .shape = Box{.size = 2 * box.half_size}, .pose = box.pose, .displacement = {}};
+    primitive.shape = Box{.size = 2 * box.half_size};
+    primitive.pose = box.pose;
+    primitive.displacement.reset();
   }
   return primitives;
 }
