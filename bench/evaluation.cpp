@@ -20,8 +20,8 @@ void report(const std::string& name) {
   std::vector<PrimitiveIndex> all(model.primitives.size());
   std::iota(all.begin(), all.end(), PrimitiveIndex{0});
   const std::vector<RankClassesRequest> requests{{.primitives = all, .all_points = true}};
-  const PointPass pass =
-      build_rank_classes(cloud, model.primitives, requests, segmentation_tolerances({}, noise), {}, noise);
+  const PointPass pass = build_rank_classes(cloud, model.primitives, requests,
+                                            {.tolerances = segmentation_tolerances({}, noise), .noise = noise});
   const RankClasses& table = pass.tables.front();
 
   std::vector<std::uint32_t> points(cloud.size());

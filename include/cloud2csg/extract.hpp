@@ -37,7 +37,8 @@ struct ExtractOptions {
   Parallel parallel = Parallel::both;
   SegmentationOptions segmentation = {};
   ObjectiveOptions objective = {};
-  GaOptions search = {};  ///< its seed is not used: see below
+  Precision precision = Precision::automatic;  ///< of distances and angles in the pass over the points
+  GaOptions search = {};                       ///< its seed is not used: see below
   /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
   std::optional<double> overlap_tolerance = {};
   /// Take nodes out of the merged tree as long as E over the whole cloud grows. The paper does not.

@@ -9,17 +9,20 @@
 /// Small things on top of Eigen: points as structure of arrays, rigid poses, boxes.
 namespace cloud2csg {
 
-/// Points or directions that someone else owns, as structure of arrays: three spans of equal length.
-struct PointsView {
-  std::span<const double> x, y, z;
+/// Points or directions that someone else owns, as structure of arrays: three spans of equal length. `Real` is double
+/// or float.
+template <class Real>
+struct BasicPointsView {
+  std::span<const Real> x, y, z;
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
   [[nodiscard]] bool empty() const { return x.empty(); }
   [[nodiscard]] Eigen::Vector3d operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
-  [[nodiscard]] PointsView subview(std::size_t offset, std::size_t count) const {
+  [[nodiscard]] BasicPointsView subview(std::size_t offset, std::size_t count) const {
     return {x.subspan(offset, count), y.subspan(offset, count), z.subspan(offset, count)};
   }
 };
+using PointsView = BasicPointsView<double>;
 
 /// Points or directions as structure of arrays. Invariant: the three vectors have equal length.
 struct Points {

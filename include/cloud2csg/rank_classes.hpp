@@ -36,6 +36,9 @@ class RankClasses {
  public:
   /// Up to this many primitives a signed rank fits a byte; above it takes two.
   static constexpr std::size_t k_byte_limit = 127;
+  /// Up to this many primitives the surfaces where ranks change cut a cloud into far fewer classes than it has points.
+  /// Tables of subsets are then made from the classes of one that contains them, not from the points.
+  static constexpr std::size_t k_shared_limit = 24;
 
   [[nodiscard]] std::span<const PrimitiveIndex> primitives() const { return primitives_; }
   [[nodiscard]] std::size_t primitive_count() const { return primitives_.size(); }
@@ -92,28 +95,44 @@ class RankClasses {
 
 /// A set of primitives to make a table for.
 struct RankClassesRequest {
-  std::vector<PrimitiveIndex> primitives = {};  ///< at least one
-  /// Use every k-th point only (of the cloud, before the choice by segmentation): bounds memory for large sets.
+  std::vector<PrimitiveIndex> primitives = {};  ///< at least one, ascending
+  /// Use every k-th point only (along a curve through space, before the choice by segmentation): bounds memory for
+  /// large sets.
   std::size_t stride = 1;
   /// All points, or only those that belong to one of the primitives, as the paper's partitions do.
   bool all_points = false;
+};
+
+/// In which precision distances and angles are computed. Ranks follow from them; sums are exact in any case.
+enum class Precision {
+  automatic,  ///< single where the noise is at least 3e-4 of the cloud's diagonal, since rounding is then far below it,
+              ///< and gamma is not so small that surfaces seen from behind count
+  full,       ///< double: the ranks, ties included, are those of the reference
+  single,     ///< about twice as fast; scores move by less than 1e-5 of themselves for clouds as above
+};
+
+struct PointPassOptions {
+  SegmentationTolerances tolerances;
+  ObjectiveOptions objective = {};
+  double noise;  ///< see estimate_noise()
+  Precision precision = Precision::automatic;
 };
 
 struct PointPass {
   std::vector<RankClasses> tables;               ///< one a request
   std::vector<std::size_t> points_of_primitive;  ///< how many points belong to each primitive
   std::size_t unassigned = 0;                    ///< points that belong to no primitive
-  double segment_seconds = 0;                    ///< of all threads: distances, gradients, membership
-  double classes_seconds = 0;                    ///< of all threads: contributions, ranks, classes
+  double segment_seconds = 0;                    ///< of all threads: distances, gradients, membership, contributions
+  double classes_seconds = 0;                    ///< of all threads: ranks, classes
 };
 
 /// The one pass over the points: signed distances and normals, segmentation, contributions, ranks and classes for
-/// all requested sets at once. The result does not depend on the number of threads or the instruction set.
-/// O(points x (primitives + sum of set sizes^2 / lanes)).
+/// all requested sets at once. Sets that are part of another requested one share its work. The result does not depend
+/// on the number of threads or the instruction set. Primitives that no request names are only segmented. O(points x
+/// (primitives + sum of set sizes^2 / lanes)).
 /// @throws Cancelled
 [[nodiscard]] PointPass build_rank_classes(const PointCloud& cloud, const PrimitiveSet& primitives,
                                            std::span<const RankClassesRequest> requests,
-                                           const SegmentationTolerances& tolerances, const ObjectiveOptions& objective,
-                                           double noise, const RunContext& run = {});
+                                           const PointPassOptions& options, const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -174,8 +174,8 @@ CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, con
                     const GaOptions& options, const RunContext& run) {
   const double noise = estimate_noise(cloud, primitives);
   const std::vector<RankClassesRequest> requests{{.primitives = clique}};
-  const PointPass pass =
-      build_rank_classes(cloud, primitives, requests, segmentation_tolerances({}, noise), {}, noise, run);
+  const PointPass pass = build_rank_classes(cloud, primitives, requests,
+                                            {.tolerances = segmentation_tolerances({}, noise), .noise = noise}, run);
   const RankClasses& table = pass.tables.front();
   oneapi::tbb::task_arena arena(usable_threads(run));
   const Evolution found = arena.execute([&] { return evolve_tree(table, options, partition_item(clique), run); });

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fitness/point_kernels.hpp"
+#include "fitness/rank_kernels.hpp"
 
 namespace cloud2csg {
 
@@ -13,42 +13,49 @@ namespace cloud2csg {
 /// the order in which they came. No allocation a point.
 class ClassTable {
  public:
-  ClassTable(std::size_t primitives, const KeyLayout& layout);
+  ClassTable(std::size_t primitives, std::size_t key_words)
+      : words_(key_words), row_(2 * primitives), slots_(k_first_slots, 0) {}
 
-  /// The classes of points of a block, made when they are new. `keys` is as compute_rank_keys() gives them, `points`
-  /// are places in the block; `classes` receives one a point.
-  void find_or_insert(const std::uint64_t* keys, std::span<const std::uint16_t> points,
-                      std::span<std::uint32_t> classes);
+  /// The classes of points of a block, made when they are new. `points` are places in the block, ascending; `classes`
+  /// receives one a point.
+  void find_or_insert(const BlockKeys& keys, std::span<const std::uint16_t> points, std::span<std::uint32_t> classes);
 
   /// The sums of a class: plain and complement contribution of each primitive in turn.
   [[nodiscard]] std::span<double> sums(std::size_t class_index) {
-    return std::span(sums_).subspan(class_index * row_, row_);
+    return std::span(pages_[class_index / k_page_rows]).subspan(class_index % k_page_rows * row_, row_);
   }
   [[nodiscard]] std::span<const double> sums(std::size_t class_index) const {
-    return std::span(sums_).subspan(class_index * row_, row_);
+    return std::span(pages_[class_index / k_page_rows]).subspan(class_index % k_page_rows * row_, row_);
   }
-  [[nodiscard]] std::span<const std::uint64_t> key(std::size_t class_index) const {
+  [[nodiscard]] std::span<const std::uint32_t> key(std::size_t class_index) const {
     return std::span(keys_).subspan(class_index * words_, words_);
   }
-  [[nodiscard]] std::size_t size() const { return keys_.size() / words_; }
-  [[nodiscard]] std::size_t point_count() const { return point_count_; }
-  void count_points(std::size_t points) { point_count_ += points; }
+  /// How many points the class has.
+  [[nodiscard]] std::uint64_t count(std::size_t class_index) const { return counts_[class_index]; }
+  void add_points(std::size_t class_index, std::uint64_t points) { counts_[class_index] += points; }
+  [[nodiscard]] std::size_t size() const { return counts_.size(); }
+  /// Of all classes. O(classes).
+  [[nodiscard]] std::size_t point_count() const;
 
   /// Adds another table's classes. The sums are exact, so the order does not matter.
   void absorb(const ClassTable& other);
 
  private:
+  static constexpr std::size_t k_first_slots = 1024;
+  static constexpr std::size_t k_page_rows = 256;
+
   /// The class of the key whose word w is at key[w * stride].
-  [[nodiscard]] std::uint32_t find_or_insert(const std::uint64_t* key, std::size_t stride, std::uint64_t hash);
+  [[nodiscard]] std::uint32_t find_or_insert(const std::uint32_t* key, std::size_t stride, std::uint32_t hash);
   void grow();
-  [[nodiscard]] std::size_t slot_of(const std::uint64_t* key, std::size_t stride, std::uint64_t hash) const;
+  [[nodiscard]] std::size_t slot_of(const std::uint32_t* key, std::size_t stride, std::uint32_t hash) const;
 
   std::size_t words_;
   std::size_t row_;
-  std::size_t point_count_ = 0;
   std::vector<std::uint32_t> slots_;  // class index + 1; 0 is free. A power of two of them
-  std::vector<std::uint64_t> keys_;
-  std::vector<double> sums_;
+  std::vector<std::uint32_t> keys_;
+  std::vector<std::uint32_t> hashes_;
+  std::vector<std::uint64_t> counts_;
+  std::vector<std::vector<double>> pages_;  // of sums: k_page_rows classes each, so that growing moves none
 };
 
 }  // namespace cloud2csg

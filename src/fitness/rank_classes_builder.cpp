@@ -3,19 +3,20 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "fitness/rank_kernels.hpp"
 #include "fitness/select_kernels.hpp"
 
 namespace cloud2csg {
 
 template <class Rank>
-void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, const ClassTable& classes,
-                              const KeyLayout& layout) {
+void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, const ClassTable& classes) {
   const std::size_t n = result.primitive_count();
+  const KeyLayout layout(n);
   const std::size_t row = 2 * n + 1;
   ranks.assign(n * result.padded_count_, Rank{0});
-  const std::uint64_t mask = (std::uint64_t{1} << layout.bits) - 1;
+  const std::uint32_t mask = (std::uint32_t{1} << layout.bits) - 1;
   for (std::size_t c = 0; c < classes.size(); ++c) {
-    const std::span<const std::uint64_t> key = classes.key(c);
+    const std::span<const std::uint32_t> key = classes.key(c);
     const std::span<const double> sums = classes.sums(c);
     float* const scores = &result.scores_[c * row];
     for (std::size_t p = 0; p < n; ++p) {
@@ -31,7 +32,7 @@ void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, c
 }
 
 RankClasses RankClassesBuilder::build(std::span<const PrimitiveIndex> primitives, const ClassTable& classes,
-                                      const KeyLayout& layout, const Objective& objective) {
+                                      const Objective& objective) {
   RankClasses result;
   result.primitives_.assign(primitives.begin(), primitives.end());
   result.point_count_ = classes.point_count();
@@ -42,9 +43,9 @@ RankClasses RankClassesBuilder::build(std::span<const PrimitiveIndex> primitives
   result.scores_.assign(result.padded_count_ * (2 * primitives.size() + 1), 0.0F);
   result.nearest_.assign(classes.size(), 0);
   if (primitives.size() <= RankClasses::k_byte_limit) {
-    fill(result, result.ranks_.emplace<AlignedVector<std::int8_t>>(), classes, layout);
+    fill(result, result.ranks_.emplace<AlignedVector<std::int8_t>>(), classes);
   } else {
-    fill(result, result.ranks_.emplace<AlignedVector<std::int16_t>>(), classes, layout);
+    fill(result, result.ranks_.emplace<AlignedVector<std::int16_t>>(), classes);
   }
   return result;
 }

@@ -178,8 +178,12 @@ class Extractor {
     std::iota(request.primitives.begin(), request.primitives.end(), PrimitiveIndex{0});
     RunContext pass_run = search_run();
     pass_run.stop = {};  // a pass is short, and the search after it sees the stop
-    const PointPass pass = build_rank_classes(cloud_, members, std::span(&request, 1), prepared_.tolerances,
-                                              options_.objective, prepared_.noise, pass_run);
+    const PointPass pass = build_rank_classes(cloud_, members, std::span(&request, 1),
+                                              {.tolerances = prepared_.tolerances,
+                                               .objective = options_.objective,
+                                               .noise = prepared_.noise,
+                                               .precision = options_.precision},
+                                              pass_run);
     const Evolution evolution =
         evolve_tree(pass.tables.front(), options_.search, k_joint_items + joint_solutions_++, search_run());
     statistics_.complete = statistics_.complete && evolution.complete;

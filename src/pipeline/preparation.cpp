@@ -79,6 +79,13 @@ void build_partitions(const PointCloud& cloud, const ExtractOptions& options, co
   seconds.partition += watch.lap();
 }
 
+/// Every k-th point for tables over components whose classes may be as many as the points.
+std::size_t component_stride(std::size_t primitives, std::size_t points) {
+  if (primitives <= RankClasses::k_shared_limit) return 1;
+  const std::size_t row_bytes = 2 * sizeof(double) * primitives;
+  return std::max<std::size_t>(1, points * row_bytes / k_component_table_bytes);
+}
+
 /// One table a partition, and one for each component of several partitions.
 std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparation& preparation) {
   std::vector<RankClassesRequest> requests;
@@ -91,10 +98,9 @@ std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparatio
   }
   for (std::size_t c = 0; c < preparation.components.size(); ++c) {
     if (partitions_in[c] < 2) continue;
-    const std::size_t row_bytes = 2 * sizeof(double) * preparation.components[c].size();
-    const std::size_t stride = std::max<std::size_t>(1, cloud.size() * row_bytes / k_component_table_bytes);
     preparation.component_table[c] = requests.size();
-    requests.push_back({.primitives = preparation.components[c], .stride = stride});
+    requests.push_back({.primitives = preparation.components[c],
+                        .stride = component_stride(preparation.components[c].size(), cloud.size())});
   }
   return requests;
 }
@@ -103,7 +109,11 @@ void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, co
                       Preparation& preparation, StageSeconds& seconds) {
   Stopwatch watch;
   preparation.pass = build_rank_classes(cloud, preparation.primitives, requests_for(cloud, preparation),
-                                        preparation.tolerances, options.objective, preparation.noise, run);
+                                        {.tolerances = preparation.tolerances,
+                                         .objective = options.objective,
+                                         .noise = preparation.noise,
+                                         .precision = options.precision},
+                                        run);
   const PointPass& pass = preparation.pass;
   const double wall = watch.lap();
   const double share = pass.segment_seconds / (pass.segment_seconds + pass.classes_seconds);

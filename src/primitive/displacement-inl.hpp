@@ -93,10 +93,7 @@ class DisplacementFormula {
   using V = Lanes<Tag>;
 
   HWY_INLINE DisplacementFormula(Tag tag, double frequency, const Placement& placement)
-      : frame_(tag, placement),
-        sine_cosine_(tag),
-        frequency_(broadcast(tag, frequency)),
-        tiny_(broadcast(tag, k_tiny_square)) {}
+      : frame_(tag, placement), sine_cosine_(tag), frequency_(broadcast(tag, frequency)), tiny_(tiny_square(tag)) {}
 
   HWY_INLINE Field<V> added_to(const Field<V>& base, const Vector<V>& point) const {
     const Vector<V> local = frame_.to_local(point);

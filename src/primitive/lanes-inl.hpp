@@ -11,8 +11,9 @@
 #include <cmath>
 
 /// The few operations in which the formulas are written, for one double (tag PlainTag) and for a Highway vector of
-/// doubles (tag hn::ScalableTag<double>). All are exact in the sense of IEEE 754 and choose alike between equal
-/// operands and between zeros of either sign, so that one formula gives the same bits in every instruction set.
+/// doubles or floats (tag hn::ScalableTag<double>, <float>). All are exact in the sense of IEEE 754 and choose alike
+/// between equal operands and between zeros of either sign, so that one formula gives the same bits in every
+/// instruction set.
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -59,7 +60,7 @@ HWY_INLINE bool either(bool a, bool b) {
 
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> broadcast(Tag tag, double value) {
-  return hn::Set(tag, value);
+  return hn::Set(tag, static_cast<hn::TFromD<Tag>>(value));
 }
 template <class V>
 HWY_INLINE V square_root(V a) {
@@ -118,7 +119,7 @@ HWY_INLINE M either(M a, M b) {
   return hn::Or(a, b);
 }
 
-/// The number type of a tag: double, or a vector of doubles.
+/// The number type of a tag: double, or a vector.
 template <class Tag>
 using Lanes = decltype(broadcast(Tag(), 0.0));
 
@@ -135,7 +136,13 @@ struct Field {
 };
 
 /// Squares below this count as zero. Their roots still have room to be multiplied and inverted without overflow.
-inline constexpr double k_tiny_square = 1e-280;
+HWY_INLINE double tiny_square(PlainTag /*tag*/) {
+  return 1e-280;
+}
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> tiny_square(Tag tag) {
+  return broadcast(tag, sizeof(hn::TFromD<Tag>) == sizeof(double) ? 1e-280 : 1e-34);
+}
 
 }  // namespace cloud2csg::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -34,7 +34,7 @@ class CylinderProfile {
         half_height_(broadcast(tag, 0.5 * cylinder.height)),
         zero_(broadcast(tag, 0.0)),
         one_(broadcast(tag, 1.0)),
-        tiny_(broadcast(tag, k_tiny_square)) {}
+        tiny_(tiny_square(tag)) {}
 
   HWY_INLINE ProfileField<V> at(V r, V z) const {
     const V excess_r = r - radius_;
@@ -106,7 +106,7 @@ class ConeProfile {
         zero_(broadcast(tag, 0.0)),
         one_(broadcast(tag, 1.0)),
         minus_one_(broadcast(tag, -1.0)),
-        tiny_(broadcast(tag, k_tiny_square)) {}
+        tiny_(tiny_square(tag)) {}
 
   V radius_bottom_, radius_top_, half_height_, slant_, tangent_r_, tangent_z_, zero_, one_, minus_one_, tiny_;
 };
@@ -121,7 +121,7 @@ class TorusProfile {
       : major_radius_(broadcast(tag, torus.major_radius)),
         minor_radius_(broadcast(tag, torus.minor_radius)),
         one_(broadcast(tag, 1.0)),
-        tiny_(broadcast(tag, k_tiny_square)) {}
+        tiny_(tiny_square(tag)) {}
 
   HWY_INLINE ProfileField<V> at(V r, V z) const {
     const V arm_r = r - major_radius_;
@@ -142,7 +142,7 @@ class Revolved {
   using V = Lanes<Tag>;
 
   HWY_INLINE Revolved(Tag tag, const Profile& profile)
-      : profile_(profile), one_(broadcast(tag, 1.0)), tiny_(broadcast(tag, k_tiny_square)) {}
+      : profile_(profile), one_(broadcast(tag, 1.0)), tiny_(tiny_square(tag)) {}
 
   HWY_INLINE Field<V> at(const Vector<V>& p) const {
     const V squared = p.x * p.x + p.y * p.y;

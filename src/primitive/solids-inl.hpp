@@ -104,7 +104,7 @@ class BoxFormula {
                    broadcast(tag, 0.5 * box.size.z())},
         zero_(broadcast(tag, 0.0)),
         one_(broadcast(tag, 1.0)),
-        tiny_(broadcast(tag, k_tiny_square)) {}
+        tiny_(tiny_square(tag)) {}
 
   HWY_INLINE Field<V> at(const Vector<V>& p) const {
     const Vector<V> excess = difference({absolute(p.x), absolute(p.y), absolute(p.z)}, half_size_);
@@ -142,7 +142,7 @@ class SphereFormula {
       : centre_(broadcast_vector(tag, placement.position)),
         radius_(broadcast(tag, sphere.radius)),
         one_(broadcast(tag, 1.0)),
-        tiny_(broadcast(tag, k_tiny_square)) {}
+        tiny_(tiny_square(tag)) {}
 
   HWY_INLINE Field<V> at(const Vector<V>& point) const {
     const Vector<V> arm = difference(point, centre_);

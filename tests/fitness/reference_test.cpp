@@ -21,7 +21,7 @@ std::vector<std::uint32_t> points_of(const RankClassesRequest& request, const te
   }
   std::vector<std::uint32_t> points;
   for (std::uint32_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i] && i % request.stride == 0) points.push_back(i);
+    if (chosen[i]) points.push_back(i);
   }
   return points;
 }
@@ -78,8 +78,10 @@ void compare_random_scene(std::size_t primitives, std::size_t points, std::size_
   const test::Scene scene = test::random_scene(primitives, points, random);
   const RankClassesRequest whole{.primitives = test::all_of(scene.primitives), .all_points = true};
   const RankClassesRequest segmented{.primitives = random_subset(primitives, random)};
-  const RankClassesRequest thinned{.primitives = whole.primitives, .stride = 1 + random.below(5), .all_points = true};
-  const std::vector<RankClassesRequest> requests{whole, segmented, thinned};
+  const RankClassesRequest other{.primitives = random_subset(primitives, random), .all_points = random.chance(0.5)};
+  // Together, one set's table is made from another's; one alone is made from the points.
+  const std::vector<RankClassesRequest> requests =
+      random.chance(0.7) ? std::vector{segmented, whole, other} : std::vector{random.chance(0.5) ? whole : segmented};
   for (const ObjectiveOptions& weights : test::all_weights()) {
     const PointPass pass = test::pass_over(scene, requests, weights);
     for (std::size_t k = 0; k < requests.size(); ++k) {
@@ -113,6 +115,61 @@ TEST(RankClassesReference, ManyPrimitives) {
   RandomStream random(7);
   for (const std::size_t primitives : {30U, 63U, 64U, 126U, 127U, 128U, 129U, 200U}) {
     compare_random_scene(primitives, 60, 6, random);
+  }
+}
+
+/// Single precision moves no score by more than 1e-5 of itself.
+TEST(SinglePrecision, MovesScoresByLessThanAHundredThousandth) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    RandomStream random(seed);
+    const std::size_t primitives = 2 + random.below(8);
+    test::Scene scene = test::random_scene(primitives, 20'000, random);
+    const Eigen::Vector3d offset = test::random_within(100, random);  // the frame's origin is elsewhere
+    for (Primitive& primitive : scene.primitives) primitive.pose.position += offset;
+    for (std::size_t i = 0; i < scene.cloud.size(); ++i) {
+      const Eigen::Vector3d noise(0.02 * random.normal(), 0.02 * random.normal(), 0.02 * random.normal());
+      scene.cloud.positions.set(i, scene.cloud.positions[i] + offset + noise);
+    }
+    const RankClasses full = test::whole_table(scene);
+    const RankClasses single = test::whole_table(scene, {}, 1, Precision::single);
+    RankScratch scratch;
+    for (const CsgTree& tree : test::random_formulas(primitives, 20, random)) {
+      const double expected = full.geometry(tree, scratch);
+      EXPECT_NEAR(single.geometry(tree, scratch), expected, 1e-5 * expected) << to_text(tree, scene.primitives);
+    }
+  }
+}
+
+TEST(SinglePrecision, IsUsedWhereTheNoiseIsFarAboveRounding) {
+  RandomStream random(3);
+  const test::Scene scene = test::random_scene(4, 500, random);
+  const std::vector<RankClassesRequest> requests{{.primitives = test::all_of(scene.primitives), .all_points = true}};
+  const auto geometry = [&](double noise, Precision precision) {
+    const PointPass pass = build_rank_classes(
+        scene.cloud, scene.primitives, requests,
+        {.tolerances = test::scene_tolerances(), .objective = {}, .noise = noise, .precision = precision});
+    RankScratch scratch;
+    return pass.tables.front().geometry(CsgTree::leaf(0), scratch);
+  };
+  EXPECT_EQ(geometry(0.02, Precision::automatic), geometry(0.02, Precision::single));
+  EXPECT_NE(geometry(0.02, Precision::single), geometry(0.02, Precision::full));
+  EXPECT_EQ(geometry(1e-5, Precision::automatic), geometry(1e-5, Precision::full));
+  EXPECT_NE(geometry(1e-5, Precision::single), geometry(1e-5, Precision::full));
+}
+
+/// Of every k points along the curve one is taken, and each counts as it does among all.
+TEST(Stride, TakesOneOfEveryKPoints) {
+  RandomStream random(9);
+  const test::Scene scene = test::random_scene(5, 1000, random);
+  const std::vector<PrimitiveIndex> all = test::all_of(scene.primitives);
+  const std::vector<RankClassesRequest> requests{{.primitives = all, .all_points = true},
+                                                 {.primitives = all, .stride = 7, .all_points = true}};
+  const PointPass pass = test::pass_over(scene, requests);
+  EXPECT_EQ(pass.tables[0].point_count(), 1000U);
+  EXPECT_EQ(pass.tables[1].point_count(), 143U);
+  RankScratch scratch;
+  for (const CsgTree& tree : test::random_formulas(5, 10, random)) {
+    EXPECT_LE(pass.tables[1].geometry(tree, scratch), pass.tables[0].geometry(tree, scratch));
   }
 }
 

@@ -239,8 +239,9 @@ TEST(RankClassesTables, StopsWhenAsked) {
   stop.request_stop();
   const std::vector<RankClassesRequest> requests{{.primitives = {0, 1, 2}}};
   for (const int threads : {1, 2}) {
-    EXPECT_THROW((void)build_rank_classes(scene.cloud, scene.primitives, requests, test::scene_tolerances(), {},
-                                          test::k_scene_noise, {.stop = stop.get_token(), .threads = threads}),
+    EXPECT_THROW((void)build_rank_classes(scene.cloud, scene.primitives, requests,
+                                          {.tolerances = test::scene_tolerances(), .noise = test::k_scene_noise},
+                                          {.stop = stop.get_token(), .threads = threads}),
                  Cancelled);
   }
 }

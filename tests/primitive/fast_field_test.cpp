@@ -79,6 +79,74 @@ RC_GTEST_PROP(EvaluateField, IsBitForBitThePlainReferenceOnEveryInstructionSet, 
   }
 }
 
+struct SingleField {
+  std::array<std::vector<float>, 7> columns;
+
+  [[nodiscard]] BasicPointsView<float> points() const { return {columns[0], columns[1], columns[2]}; }
+  [[nodiscard]] Eigen::Vector3d slope(std::size_t i) const {
+    return Eigen::Vector3f(columns[4][i], columns[5][i], columns[6][i]).cast<double>();
+  }
+};
+
+/// At the points, rounded to single precision.
+SingleField single_field(const Primitive& primitive, const Points& points) {
+  SingleField field;
+  for (std::vector<float>& column : field.columns) column.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      field.columns[axis][i] = static_cast<float>(points[i][static_cast<Eigen::Index>(axis)]);
+    }
+  }
+  evaluate_field(primitive, field.points(),
+                 {.distance = field.columns[3],
+                  .gradient_x = field.columns[4],
+                  .gradient_y = field.columns[5],
+                  .gradient_z = field.columns[6]});
+  return field;
+}
+
+/// Whether the slope is nearly one that the field has at a point or right beside it, where it may be another.
+bool is_slope_near(const Primitive& primitive, const Eigen::Vector3d& point, const Eigen::Vector3d& slope,
+                   double step) {
+  Points around;
+  for (int k = 0; k < 27; ++k) {
+    around.push_back(point + step * Eigen::Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+  }
+  const Points slopes = gradient(primitive, around);
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    if ((slopes[i] - slope).norm() <= 1e-3 * (1 + slopes[i].norm())) return true;
+  }
+  return false;
+}
+
+RC_GTEST_PROP(EvaluateField, InSinglePrecisionIsNearTheDoubleOne, ()) {
+  const Primitive primitive = any_primitive();
+  const Points points = points_near(primitive, static_cast<std::size_t>(testing::integer(0, 71)));
+  const SingleField field = single_field(primitive, points);
+  Points rounded(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    rounded.set(i, Eigen::Vector3f(field.columns[0][i], field.columns[1][i], field.columns[2][i]).cast<double>());
+  }
+  const std::vector<double> distance = signed_distance(primitive, rounded);
+  const OrientedBox box = oriented_bounds(primitive);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double size = box.half_size.allFinite() ? box.half_size.norm() : 0.0;
+    const double scale = 1 + rounded[i].norm() + primitive.pose.position.norm() + size + std::abs(distance[i]);
+    RC_ASSERT(std::abs(static_cast<double>(field.columns[3][i]) - distance[i]) <= 2e-6 * scale);
+    RC_ASSERT(is_slope_near(primitive, rounded[i], field.slope(i), 1e-5 * scale));
+  }
+}
+
+RC_GTEST_PROP(EvaluateField, InSinglePrecisionIsTheSameOnEveryInstructionSet, ()) {
+  const Primitive primitive = any_primitive();
+  const Points points = varied_points(primitive, static_cast<std::size_t>(testing::integer(0, 71)));
+  const SingleField expected = single_field(primitive, points);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    const ForcedTarget forced(target);
+    if (single_field(primitive, points).columns != expected.columns) RC_FAIL(std::string(hwy::TargetName(target)));
+  }
+}
+
 TEST(EvaluateField, HandlesEveryLengthAndWritesNothingBeyond) {
   const Primitive primitive{.id = "c",
                             .shape = Cone{1, 0.5, 2},

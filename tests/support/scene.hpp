@@ -39,15 +39,20 @@ inline std::vector<PrimitiveIndex> all_of(const PrimitiveSet& primitives) {
   return all;
 }
 
+/// In full precision unless told otherwise, so that it may be held against the reference.
 inline PointPass pass_over(const Scene& scene, const std::vector<RankClassesRequest>& requests,
-                           const ObjectiveOptions& weights = {}, int threads = 1) {
-  return build_rank_classes(scene.cloud, scene.primitives, requests, scene_tolerances(), weights, k_scene_noise,
-                            {.threads = threads});
+                           const ObjectiveOptions& weights = {}, int threads = 1,
+                           Precision precision = Precision::full) {
+  return build_rank_classes(
+      scene.cloud, scene.primitives, requests,
+      {.tolerances = scene_tolerances(), .objective = weights, .noise = k_scene_noise, .precision = precision},
+      {.threads = threads});
 }
 
 /// One table over all primitives and all points.
-inline RankClasses whole_table(const Scene& scene, const ObjectiveOptions& weights = {}, int threads = 1) {
-  return pass_over(scene, {{.primitives = all_of(scene.primitives), .all_points = true}}, weights, threads)
+inline RankClasses whole_table(const Scene& scene, const ObjectiveOptions& weights = {}, int threads = 1,
+                               Precision precision = Precision::full) {
+  return pass_over(scene, {{.primitives = all_of(scene.primitives), .all_points = true}}, weights, threads, precision)
       .tables.front();
 }
 

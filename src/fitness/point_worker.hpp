@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "fitness/point_blocks.hpp"
+#include "fitness/root_table.hpp"
+
+namespace cloud2csg {
+
+/// What every worker reads.
+template <class Real>
+struct WorkerInput {
+  PrimitiveSet primitives;                         ///< in the frame of the blocks
+  std::vector<ContributionParameters> parameters;  ///< by primitive
+  PointBlocks<Real> blocks;
+  std::vector<Root> roots;
+};
+
+/// What a worker gathers from its share of the points; shares are added up at the end.
+struct WorkerShare {
+  std::vector<ClassTable> tables;  ///< one a root
+  std::vector<std::size_t> points_of_primitive;
+  std::size_t unassigned = 0;
+  double segment_seconds = 0;
+  double classes_seconds = 0;
+
+  void absorb(const WorkerShare& other);
+};
+
+/// Takes blocks of points through distances, membership, contributions, ranks and classes.
+/// @throws Cancelled
+template <class Real>
+[[nodiscard]] WorkerShare work_on_blocks(const WorkerInput<Real>& input, std::size_t first_block,
+                                         std::size_t last_block, const RunContext& run);
+
+extern template WorkerShare work_on_blocks(const WorkerInput<double>&, std::size_t, std::size_t, const RunContext&);
+extern template WorkerShare work_on_blocks(const WorkerInput<float>&, std::size_t, std::size_t, const RunContext&);
+
+}  // namespace cloud2csg

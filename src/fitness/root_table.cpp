@@ -1,0 +1,137 @@
+#include "fitness/root_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <numeric>
+
+namespace cloud2csg {
+namespace {
+
+static_assert(RankClasses::k_shared_limit <= 32, "a member word has a bit a primitive");
+
+bool contains(const Root& root, const RankClassesRequest& request) {
+  return std::ranges::includes(root.primitives, request.primitives);
+}
+
+/// Whether the root may be grouped by for the request as well.
+bool can_answer(const Root& root, const RankClassesRequest& request) {
+  return root.primitives.size() <= RankClasses::k_shared_limit && root.stride == request.stride &&
+         contains(root, request);
+}
+
+/// Where in the root's set the request's primitives are.
+std::vector<std::size_t> places_in(const Root& root, const RankClassesRequest& request) {
+  std::vector<std::size_t> places;
+  for (const PrimitiveIndex p : request.primitives) {
+    const auto found = std::ranges::lower_bound(root.primitives, p);
+    places.push_back(static_cast<std::size_t>(found - root.primitives.begin()));
+  }
+  return places;
+}
+
+/// Takes the classes of a root, a block of them at a time, into the table of a subset.
+class Projection {
+ public:
+  Projection(const Root& root, const ClassTable& from, const RankClassesRequest& request)
+      : from_(from),
+        root_layout_(root.layout()),
+        root_size_(root.primitives.size()),
+        places_(places_in(root, request)),
+        layout_(request.primitives.size()),
+        old_ranks_(places_.size()),
+        new_ranks_(places_.size()),
+        keys_(layout_.words),
+        table_(request.primitives.size(), layout_.words) {
+    std::iota(in_turn_.begin(), in_turn_.end(), std::uint16_t{0});
+    if (root.has_member_word && !request.all_points) {
+      for (const std::size_t place : places_) wanted_ |= std::uint32_t{1} << place;
+    }
+  }
+
+  ClassTable run() {
+    for (std::uint32_t c = 0; c < from_.size(); ++c) {
+      if (wanted_ != 0 && (from_.key(c).back() & wanted_) == 0) continue;
+      chosen_[count_++] = c;
+      if (count_ == k_block_points) take_block();
+    }
+    take_block();
+    return std::move(table_);
+  }
+
+ private:
+  void take_block() {
+    for (std::size_t k = 0; k < places_.size(); ++k) decode(places_[k], old_ranks_[k]);
+    std::vector<const RankColumn*> columns;
+    for (const RankColumn& column : old_ranks_) columns.push_back(&column);
+    compute_signed_ranks(columns, new_ranks_);
+    pack_rank_keys(new_ranks_, layout_, keys_);
+    compute_hashes(keys_);
+    const std::span<std::uint32_t> classes = std::span(classes_).first(count_);
+    table_.find_or_insert(keys_, std::span(in_turn_).first(count_), classes);
+    for (std::size_t i = 0; i < count_; ++i) add(chosen_[i], classes[i]);
+    count_ = 0;
+  }
+
+  void decode(std::size_t place, RankColumn& out) const {
+    const std::uint32_t word = root_layout_.word_of(place);
+    const std::uint32_t shift = root_layout_.shift_of(place);
+    const std::uint32_t mask = (std::uint32_t{1} << root_layout_.bits) - 1;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::uint32_t code = from_.key(chosen_[i])[word] >> shift & mask;
+      out.ranks[i] = static_cast<std::int8_t>(static_cast<int>(code) - static_cast<int>(root_size_));
+    }
+  }
+
+  void add(std::uint32_t old_class, std::uint32_t new_class) {
+    table_.add_points(new_class, from_.count(old_class));
+    const std::span<const double> added = from_.sums(old_class);
+    const std::span<double> sums = table_.sums(new_class);
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      sums[2 * k] += added[2 * places_[k]];
+      sums[2 * k + 1] += added[2 * places_[k] + 1];
+    }
+  }
+
+  const ClassTable& from_;
+  KeyLayout root_layout_;
+  std::size_t root_size_;
+  std::vector<std::size_t> places_;
+  std::uint32_t wanted_ = 0;  // member bits of which a class must have one; 0: takes every class
+  KeyLayout layout_;
+  std::vector<RankColumn> old_ranks_, new_ranks_;
+  BlockKeys keys_;
+  std::array<std::uint16_t, k_block_points> in_turn_{};
+  std::array<std::uint32_t, k_block_points> chosen_{}, classes_{};
+  std::size_t count_ = 0;
+  ClassTable table_;
+};
+
+}  // namespace
+
+std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
+  std::vector<std::size_t> largest_first(requests.size());
+  std::iota(largest_first.begin(), largest_first.end(), std::size_t{0});
+  std::ranges::stable_sort(largest_first, std::ranges::greater(),
+                           [&](std::size_t k) { return requests[k].primitives.size(); });
+  std::vector<Root> roots;
+  for (const std::size_t k : largest_first) {
+    const RankClassesRequest& request = requests[k];
+    assert(!request.primitives.empty() && request.stride > 0 && std::ranges::is_sorted(request.primitives));
+    auto root = std::ranges::find_if(roots, [&](const Root& other) { return can_answer(other, request); });
+    if (root == roots.end()) {
+      roots.push_back({.primitives = request.primitives, .stride = request.stride});
+      root = roots.end() - 1;
+    }
+    root->all_points = root->all_points || request.all_points;
+    root->requests.push_back(k);
+  }
+  for (Root& root : roots) root.has_member_word = root.requests.size() > 1;
+  return roots;
+}
+
+ClassTable project(const Root& root, const ClassTable& classes, const RankClassesRequest& request) {
+  return Projection(root, classes, request).run();
+}
+
+}  // namespace cloud2csg

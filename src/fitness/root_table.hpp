@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cloud2csg/rank_classes.hpp"
+#include "fitness/class_table.hpp"
+#include "fitness/rank_kernels.hpp"
+
+namespace cloud2csg {
+
+/// A set of primitives by which points are grouped one by one. Tables of subsets are made of its classes, of which
+/// there are far fewer than points; therefore points of one class also belong to the same primitives of the set.
+struct Root {
+  std::vector<PrimitiveIndex> primitives;
+  std::size_t stride = 1;                  ///< every k-th point
+  bool all_points = false;                 ///< also those that belong to none of the primitives
+  bool has_member_word = false;            ///< whether keys end with a word that tells to whom the points belong
+  std::vector<std::size_t> requests = {};  ///< that are answered from it
+
+  [[nodiscard]] KeyLayout layout() const { return KeyLayout(primitives.size()); }
+  [[nodiscard]] std::size_t key_words() const { return layout().words + (has_member_word ? 1 : 0); }
+};
+
+/// The roots for all requests. Each request is answered by one of them.
+[[nodiscard]] std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests);
+
+/// Groups the classes of a root by the order of the request's primitives.
+[[nodiscard]] ClassTable project(const Root& root, const ClassTable& classes, const RankClassesRequest& request);
+
+}  // namespace cloud2csg
