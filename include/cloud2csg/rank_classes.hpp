@@ -96,8 +96,8 @@ class RankClasses {
 /// A set of primitives to make a table for.
 struct RankClassesRequest {
   std::vector<PrimitiveIndex> primitives = {};  ///< at least one, ascending
-  /// Use every k-th point only (along a curve through space, before the choice by segmentation): bounds memory for
-  /// large sets.
+  /// Use every k-th point only (along a curve through some thousands of points at a time, before the choice by
+  /// segmentation): bounds memory for large sets.
   std::size_t stride = 1;
   /// All points, or only those that belong to one of the primitives, as the paper's partitions do.
   bool all_points = false;

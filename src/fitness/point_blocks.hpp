@@ -6,47 +6,64 @@
 #include <memory>
 
 #include "cloud2csg/point_cloud.hpp"
-#include "cloud2csg/rank_classes.hpp"
 #include "fitness/point_kernels.hpp"
 
 namespace cloud2csg {
 
-/// The points of a cloud in the order of a space-filling curve (Morton's), cut into blocks: the points of a block are
-/// neighbours, so that most of what is computed of them is alike. `Real` is double or float.
+/// Points a chunk: what is kept of them in any precision stays in the second-level cache.
+inline constexpr std::size_t k_chunk_points = 16384;
+
+/// How many chunks a cloud has.
+[[nodiscard]] inline std::size_t chunk_count(std::size_t points) {
+  return (points + k_chunk_points - 1) / k_chunk_points;
+}
+
+/// One chunk of a cloud after the other, its points in the order of a space-filling curve (Morton's) and cut into
+/// blocks: the points of a block are near each other, so that much of what is computed of them is alike. One a thread.
+/// `Real` is double or float.
 template <class Real>
 class PointBlocks {
  public:
-  /// `box` is the cloud's bounds. Precondition: the cloud has normals and at least one point. O(points).
-  /// @throws Cancelled
-  PointBlocks(const PointCloud& cloud, const AlignedBox& box, const RunContext& run);
+  /// `box` is the cloud's bounds. Precondition: the cloud has normals and outlives this.
+  PointBlocks(const PointCloud& cloud, const AlignedBox& box);
 
-  /// Coordinates of the blocks are relative to it: for doubles it is zero, so that nothing is rounded.
-  [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
+  /// Coordinates are relative to it: for doubles it is zero, so that nothing is rounded.
+  [[nodiscard]] static Eigen::Vector3d origin(const AlignedBox& box);
+
+  /// Turns to chunk 0 .. chunk_count() - 1. O(points of the chunk).
+  void load(std::size_t chunk);
+
+  /// Blocks of the chunk.
   [[nodiscard]] std::size_t count() const { return (points_ + k_block_points - 1) / k_block_points; }
   /// Points of a block: k_block_points of all but the last.
   [[nodiscard]] std::size_t size(std::size_t block) const {
     return std::min(k_block_points, points_ - block * k_block_points);
   }
-  /// k_block_points entries; those past the block's size repeat the cloud's last point.
+  /// k_block_points entries; those past the block's size repeat the last point.
   [[nodiscard]] BasicPointsView<Real> positions(std::size_t block) const {
-    return {columns_[0][block].values, columns_[1][block].values, columns_[2][block].values};
+    return {column(0, block), column(1, block), column(2, block)};
   }
   [[nodiscard]] BlockNormals<Real> normals(std::size_t block) const {
-    return {columns_[3][block].values.data(), columns_[4][block].values.data(), columns_[5][block].values.data()};
+    return {column(3, block).data(), column(4, block).data(), column(5, block).data()};
   }
 
  private:
   struct alignas(64) Column {
-    std::array<Real, k_block_points> values;
+    std::array<Real, k_chunk_points> values{};
   };
-  [[nodiscard]] Real& at(std::size_t column, std::size_t place) {
-    return columns_[column][place / k_block_points].values[place % k_block_points];
+  [[nodiscard]] std::span<const Real> column(std::size_t which, std::size_t block) const {
+    return std::span((*columns_)[which].values).subspan(block * k_block_points, k_block_points);
   }
+  /// The cell of a cubic grid that a point is in, numbered along the curve.
+  [[nodiscard]] std::uint16_t cell_of(double x, double y, double z) const;
 
-  std::size_t points_;
+  const PointCloud* cloud_;
+  Eigen::Vector3d corner_;
+  double cells_a_unit_;
   Eigen::Vector3d origin_;
-  /// Coordinates, then normals. Not vectors, which would be filled with zeros first.
-  std::array<std::unique_ptr<Column[]>, 6> columns_;
+  std::size_t points_ = 0;
+  std::unique_ptr<std::array<Column, 6>> columns_;  ///< coordinates, then normals
+  std::array<std::uint16_t, k_chunk_points> cells_{};
 };
 
 extern template class PointBlocks<double>;

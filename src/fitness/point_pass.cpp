@@ -27,13 +27,12 @@ bool has_unit_gradient(const Primitive& primitive) {
 
 template <class Real>
 WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const PrimitiveSet& primitives,
-                           std::span<const RankClassesRequest> requests, const PointPassOptions& options,
-                           const RunContext& run) {
+                           std::span<const RankClassesRequest> requests, const PointPassOptions& options) {
   const Objective scale = resolve(options.objective, cloud.size(), options.noise);
   WorkerInput<Real> input{
-      .primitives = primitives, .parameters = {}, .blocks = {cloud, box, run}, .roots = plan_roots(requests)};
+      .primitives = primitives, .parameters = {}, .cloud = cloud, .box = box, .roots = plan_roots(requests)};
   for (Primitive& primitive : input.primitives) {
-    primitive.pose.position -= input.blocks.origin();
+    primitive.pose.position -= PointBlocks<Real>::origin(box);
     input.parameters.push_back({scale.beta, scale.gamma, options.tolerances, has_unit_gradient(primitive)});
   }
   return input;
@@ -42,13 +41,13 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
 /// As many shares as threads: each costs a set of tables. The result does not depend on how many.
 template <class Real>
 WorkerShare work(const WorkerInput<Real>& input, const RunContext& run) {
-  const std::size_t blocks = input.blocks.count();
+  const std::size_t chunks = chunk_count(input.cloud.size());
   const int threads = run.threads > 0 ? run.threads : usable_threads(run);
-  const std::size_t parts = std::clamp<std::size_t>(blocks, 1, static_cast<std::size_t>(threads));
-  if (parts == 1) return work_on_blocks(input, 0, blocks, run);
+  const std::size_t parts = std::clamp<std::size_t>(chunks, 1, static_cast<std::size_t>(threads));
+  if (parts == 1) return work_on_chunks(input, 0, chunks, run);
   std::vector<WorkerShare> shares(parts);
   for_each_index(parts, run, [&](std::size_t k) {
-    shares[k] = work_on_blocks(input, blocks * k / parts, blocks * (k + 1) / parts, run);
+    shares[k] = work_on_chunks(input, chunks * k / parts, chunks * (k + 1) / parts, run);
   });
   for (std::size_t k = 1; k < parts; ++k) shares.front().absorb(shares[k]);
   return std::move(shares.front());
@@ -78,14 +77,13 @@ PointPass pass_over(const PointCloud& cloud, const AlignedBox& box, const Primit
                     std::span<const RankClassesRequest> requests, const PointPassOptions& options,
                     const RunContext& run) {
   Stopwatch watch;
-  const WorkerInput<Real> input = input_of<Real>(cloud, box, primitives, requests, options, run);
-  const double binning = watch.lap();
+  const WorkerInput<Real> input = input_of<Real>(cloud, box, primitives, requests, options);
   const WorkerShare share = work(input, run);
   watch.lap();
   PointPass pass{.tables = build_tables(requests, input.roots, share.tables, options),
                  .points_of_primitive = share.points_of_primitive,
                  .unassigned = share.unassigned,
-                 .segment_seconds = binning + share.segment_seconds,
+                 .segment_seconds = share.segment_seconds,
                  .classes_seconds = share.classes_seconds};
   pass.classes_seconds += watch.lap();
   return pass;

@@ -37,7 +37,10 @@ template <class Real>
 class Worker {
  public:
   explicit Worker(const WorkerInput<Real>& input)
-      : input_(input), fields_(input.primitives.size()), contributions_(input.primitives.size()) {
+      : input_(input),
+        blocks_(input.cloud, input.box),
+        fields_(input.primitives.size()),
+        contributions_(input.primitives.size()) {
     share_.points_of_primitive.resize(input.primitives.size());
     std::size_t most_primitives = 0;
     for (const Root& root : input.roots) {
@@ -48,28 +51,32 @@ class Worker {
     ranks_.resize(most_primitives);
   }
 
-  void process(std::size_t block) {
+  void process(std::size_t chunk) {
     Stopwatch watch;
-    evaluate_fields(block);
-    share_.segment_seconds += watch.lap();
-    for (std::size_t k = 0; k < input_.roots.size(); ++k) group(k, block);
-    share_.classes_seconds += watch.lap();
+    blocks_.load(chunk);
+    for (std::size_t block = 0; block < blocks_.count(); ++block) {
+      evaluate_fields(block);
+      share_.segment_seconds += watch.lap();
+      const std::size_t begin = chunk * k_chunk_points + block * k_block_points;
+      for (std::size_t k = 0; k < input_.roots.size(); ++k) group(k, block, begin);
+      share_.classes_seconds += watch.lap();
+    }
   }
 
   [[nodiscard]] WorkerShare& share() { return share_; }
 
  private:
   void evaluate_fields(std::size_t block) {
-    const BlockMask in_block = first_bits(input_.blocks.size(block));
+    const BlockMask in_block = first_bits(blocks_.size(block));
     BlockMask assigned{};
     for (std::size_t p = 0; p < input_.primitives.size(); ++p) {
       BlockField<Real>& field = fields_[p];
-      evaluate_field(input_.primitives[p], input_.blocks.positions(block),
+      evaluate_field(input_.primitives[p], blocks_.positions(block),
                      BasicFieldSpans<Real>{.distance = field.distance,
                                            .gradient_x = field.gradient_x,
                                            .gradient_y = field.gradient_y,
                                            .gradient_z = field.gradient_z});
-      compute_contributions(field, input_.blocks.normals(block), input_.parameters[p], contributions_[p]);
+      compute_contributions(field, blocks_.normals(block), input_.parameters[p], contributions_[p]);
       BlockMask& member = contributions_[p].member;
       for (std::size_t w = 0; w < member.size(); ++w) {
         member[w] &= in_block[w];
@@ -77,11 +84,11 @@ class Worker {
       }
       share_.points_of_primitive[p] += count_bits(member);
     }
-    share_.unassigned += input_.blocks.size(block) - count_bits(assigned);
+    share_.unassigned += blocks_.size(block) - count_bits(assigned);
   }
 
-  [[nodiscard]] BlockMask points_of(const Root& root, std::size_t block) const {
-    BlockMask chosen = every_kth(block * k_block_points, input_.blocks.size(block), root.stride);
+  [[nodiscard]] BlockMask points_of(const Root& root, std::size_t block, std::size_t begin) const {
+    BlockMask chosen = every_kth(begin, blocks_.size(block), root.stride);
     if (root.all_points) return chosen;
     for (std::size_t w = 0; w < chosen.size(); ++w) {
       std::uint64_t any = 0;
@@ -102,9 +109,10 @@ class Worker {
     return std::span(places_).first(found);
   }
 
-  void group(std::size_t k, std::size_t block) {
+  /// `begin` is the number of points before the block.
+  void group(std::size_t k, std::size_t block, std::size_t begin) {
     const Root& root = input_.roots[k];
-    const std::span<const std::uint16_t> chosen = places_of(points_of(root, block));
+    const std::span<const std::uint16_t> chosen = places_of(points_of(root, block, begin));
     if (chosen.empty()) return;
     make_keys(root, keys_[k]);
     ClassTable& table = share_.tables[k];
@@ -158,6 +166,7 @@ class Worker {
   };
 
   const WorkerInput<Real>& input_;
+  PointBlocks<Real> blocks_;
   std::vector<BlockField<Real>> fields_;
   std::vector<BlockContributions<Real>> contributions_;
   std::vector<DistanceColumn<Real>> columns_;
@@ -170,8 +179,6 @@ class Worker {
   WorkerShare share_;
 };
 
-constexpr std::size_t k_blocks_between_checks = 64;
-
 }  // namespace
 
 void WorkerShare::absorb(const WorkerShare& other) {
@@ -183,21 +190,18 @@ void WorkerShare::absorb(const WorkerShare& other) {
 }
 
 template <class Real>
-WorkerShare work_on_blocks(const WorkerInput<Real>& input, std::size_t first_block, std::size_t last_block,
-                           const RunContext& run) {
+WorkerShare work_on_chunks(const WorkerInput<Real>& input, std::size_t first, std::size_t last, const RunContext& run) {
   Worker<Real> worker(input);
-  for (std::size_t block = first_block; block < last_block; ++block) {
-    if ((block - first_block) % k_blocks_between_checks == 0) {
-      run.throw_if_stopped();
-      // The first share speaks for all: they are of one size and advance together.
-      if (first_block == 0) run.report("classes", block, last_block);
-    }
-    worker.process(block);
+  for (std::size_t chunk = first; chunk < last; ++chunk) {
+    run.throw_if_stopped();
+    // The first share speaks for all: they are of one size and advance together.
+    if (first == 0) run.report("classes", chunk, last);
+    worker.process(chunk);
   }
   return std::move(worker.share());
 }
 
-template WorkerShare work_on_blocks(const WorkerInput<double>&, std::size_t, std::size_t, const RunContext&);
-template WorkerShare work_on_blocks(const WorkerInput<float>&, std::size_t, std::size_t, const RunContext&);
+template WorkerShare work_on_chunks(const WorkerInput<double>&, std::size_t, std::size_t, const RunContext&);
+template WorkerShare work_on_chunks(const WorkerInput<float>&, std::size_t, std::size_t, const RunContext&);
 
 }  // namespace cloud2csg

@@ -12,7 +12,8 @@ template <class Real>
 struct WorkerInput {
   PrimitiveSet primitives;                         ///< in the frame of the blocks
   std::vector<ContributionParameters> parameters;  ///< by primitive
-  PointBlocks<Real> blocks;
+  const PointCloud& cloud;
+  AlignedBox box;  ///< of the cloud
   std::vector<Root> roots;
 };
 
@@ -27,13 +28,13 @@ struct WorkerShare {
   void absorb(const WorkerShare& other);
 };
 
-/// Takes blocks of points through distances, membership, contributions, ranks and classes.
+/// Takes chunks of points through distances, membership, contributions, ranks and classes.
 /// @throws Cancelled
 template <class Real>
-[[nodiscard]] WorkerShare work_on_blocks(const WorkerInput<Real>& input, std::size_t first_block,
-                                         std::size_t last_block, const RunContext& run);
+[[nodiscard]] WorkerShare work_on_chunks(const WorkerInput<Real>& input, std::size_t first, std::size_t last,
+                                         const RunContext& run);
 
-extern template WorkerShare work_on_blocks(const WorkerInput<double>&, std::size_t, std::size_t, const RunContext&);
-extern template WorkerShare work_on_blocks(const WorkerInput<float>&, std::size_t, std::size_t, const RunContext&);
+extern template WorkerShare work_on_chunks(const WorkerInput<double>&, std::size_t, std::size_t, const RunContext&);
+extern template WorkerShare work_on_chunks(const WorkerInput<float>&, std::size_t, std::size_t, const RunContext&);
 
 }  // namespace cloud2csg

@@ -2,6 +2,7 @@
 #define HWY_TARGET_INCLUDE "primitive/field_fast.cpp"
 #include <hwy/foreach_target.h>  // includes this file once per instruction set
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -114,6 +115,33 @@ struct FieldLoop {
   }
 };
 
+struct DistanceLoop {
+  PointsView points;
+  std::span<double> distance;
+
+  template <class Formula>
+  void run(FastTag<double> tag, const Formula& formula) const {
+    const std::size_t lanes = hn::Lanes(tag);
+    const std::size_t whole = points.size() / lanes * lanes;
+    for (std::size_t i = 0; i < whole; i += lanes) {
+      hn::StoreU(formula.at(load_point(points, i)).distance, tag, &distance[i]);
+    }
+    if (whole == points.size()) return;
+    std::array<std::array<double, HWY_MAX_BYTES / sizeof(double)>, 3> rest{};
+    for (std::size_t i = whole; i < points.size(); ++i) {
+      rest[0][i - whole] = points.x[i], rest[1][i - whole] = points.y[i], rest[2][i - whole] = points.z[i];
+    }
+    std::array<double, HWY_MAX_BYTES / sizeof(double)> values{};
+    hn::StoreU(formula.at(load_point(PointsView{rest[0], rest[1], rest[2]}, 0)).distance, tag, values.data());
+    std::copy_n(values.begin(), points.size() - whole, distance.begin() + static_cast<std::ptrdiff_t>(whole));
+  }
+};
+
+void distance_of_shape(const Primitive& primitive, const Placement& placement, PointsView points,
+                       std::span<double> distance) {
+  run_formula(FastTag<double>(), primitive, placement, DistanceLoop{points, distance});
+}
+
 void evaluate_shape(const Primitive& primitive, const Placement& placement, PointsView points, const FieldSpans& out) {
   run_formula(FastTag<double>(), primitive, placement, FieldLoop<double>{points, out});
 }
@@ -141,6 +169,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace cloud2csg {
 
+HWY_EXPORT(distance_of_shape);
 HWY_EXPORT(evaluate_shape);
 HWY_EXPORT(evaluate_shape_in_single);
 HWY_EXPORT(displace);
@@ -156,6 +185,19 @@ void evaluate_field(const Primitive& primitive, PointsView points, const FieldSp
   }
   if (primitive.displacement) {
     HWY_DYNAMIC_DISPATCH(displace)(primitive.displacement->frequency, placement, points, out);
+  }
+}
+
+void evaluate_distance(const Primitive& primitive, PointsView points, std::span<double> out) {
+  assert(out.size() == points.size());
+  if (primitive.displacement) {
+    Points slope(points.size());
+    evaluate_field(primitive, points,
+                   {.distance = out, .gradient_x = slope.x, .gradient_y = slope.y, .gradient_z = slope.z});
+  } else if (std::holds_alternative<Expression>(primitive.shape)) {
+    evaluate_expression(primitive, points, {.distance = out, .gradient_x = {}, .gradient_y = {}, .gradient_z = {}});
+  } else {
+    HWY_DYNAMIC_DISPATCH(distance_of_shape)(primitive, placement_of(primitive.pose), points, out);
   }
 }
 

@@ -22,14 +22,21 @@ double cosine_of_deg(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180.0);
 }
 
-/// |cosine| of the angle between each point's normal and the primitive's gradient there.
-std::vector<double> normal_agreement(const Primitive& primitive, PointsView positions, PointsView normals) {
-  const Points gradients = gradient(primitive, positions);
-  std::vector<double> agreement(positions.size());
+/// How points lie to a primitive: signed distance, and |cosine| of the angle between normal and gradient.
+struct Relation {
+  std::vector<double> distances, agreement;
+};
+
+Relation relation_of(const Primitive& primitive, PointsView positions, PointsView normals) {
+  Relation relation{std::vector<double>(positions.size()), std::vector<double>(positions.size())};
+  Points slopes(positions.size());
+  evaluate_field(
+      primitive, positions,
+      {.distance = relation.distances, .gradient_x = slopes.x, .gradient_y = slopes.y, .gradient_z = slopes.z});
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    agreement[i] = std::abs(gradients[i].dot(normals[i])) / gradients[i].norm();
+    relation.agreement[i] = std::abs(slopes[i].dot(normals[i])) / slopes[i].norm();
   }
-  return agreement;
+  return relation;
 }
 
 struct Sample {
@@ -64,8 +71,7 @@ double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, d
   const double least_cosine = cosine_of_deg(angle_tolerance_deg);
   std::vector<double> nearest(sample.positions.size(), std::numeric_limits<double>::infinity());
   for (const Primitive& primitive : primitives) {
-    const std::vector<double> distances = signed_distance(primitive, sample.positions);
-    const std::vector<double> agreement = normal_agreement(primitive, sample.positions, sample.normals);
+    const auto [distances, agreement] = relation_of(primitive, sample.positions, sample.normals);
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       if (agreement[i] >= least_cosine) nearest[i] = std::min(nearest[i], std::abs(distances[i]));
     }
@@ -93,8 +99,7 @@ Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primiti
   std::vector<bool> assigned(cloud.size(), false);
   for (const Primitive& primitive : primitives) {
     run.throw_if_stopped();
-    const std::vector<double> distances = signed_distance(primitive, cloud.positions);
-    const std::vector<double> agreement = normal_agreement(primitive, cloud.positions, cloud.normals);
+    const auto [distances, agreement] = relation_of(primitive, cloud.positions, cloud.normals);
     std::vector<std::uint32_t>& points = result.points_of.emplace_back();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       if (std::abs(distances[i]) > tolerances.distance || agreement[i] < tolerances.cosine) continue;

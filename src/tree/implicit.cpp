@@ -64,6 +64,7 @@ class ColumnEvaluator {
     const std::size_t columns = used_.size() + most_scratch_columns() + 1;
     block_ = std::clamp<std::size_t>(k_column_budget / columns, 1, k_block);
     leaves_.resize(used_.size() * block_);
+    distances_.resize(block_);
   }
 
   [[nodiscard]] std::size_t block() const { return block_; }
@@ -72,7 +73,8 @@ class ColumnEvaluator {
   std::span<const Element> operator()(PointsView points) {
     count_ = points.size();
     for (std::size_t i = 0; i < used_.size(); ++i) {
-      const std::vector<double> distances = signed_distance(primitives_[used_[i]], points);
+      const std::span<double> distances = std::span(distances_).first(count_);
+      evaluate_distance(primitives_[used_[i]], points, distances);
       Element* column = leaves_.data() + i * block_;
       for (std::size_t p = 0; p < count_; ++p) {
         column[p] = leaf_value<Element>(distances[p], used_[i]);
@@ -165,6 +167,7 @@ class ColumnEvaluator {
   std::size_t block_ = 0;
   std::size_t count_ = 0;
   std::vector<Element> leaves_;  ///< one column of block_ elements for each used primitive
+  std::vector<double> distances_;
   std::vector<std::vector<Element>> scratch_;
   std::size_t scratch_in_use_ = 0;
   std::vector<Operand> stack_;
@@ -216,7 +219,11 @@ Points implicit_gradient(const CsgTree& tree, const PrimitiveSet& primitives, Po
     if (taken[p].points.empty()) continue;
     Points gathered(taken[p].points.size());
     for (std::size_t i = 0; i < gathered.size(); ++i) gathered.set(i, points[taken[p].points[i]]);
-    const Points gradients = gradient(primitives[p], gathered);
+    std::vector<double> distances(gathered.size());
+    Points gradients(gathered.size());
+    evaluate_field(
+        primitives[p], gathered,
+        {.distance = distances, .gradient_x = gradients.x, .gradient_y = gradients.y, .gradient_z = gradients.z});
     for (std::size_t i = 0; i < gathered.size(); ++i) {
       result.set(taken[p].points[i], taken[p].signs[i] * gradients[i]);
     }

@@ -76,6 +76,9 @@ RC_GTEST_PROP(EvaluateField, IsBitForBitThePlainReferenceOnEveryInstructionSet, 
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const ForcedTarget forced(target);
     if (!same_bits(fast_field(primitive, points), plain)) RC_FAIL(std::string(hwy::TargetName(target)));
+    std::vector<double> distance(points.size());
+    evaluate_distance(primitive, points, distance);
+    if (!same_bits(distance, plain.distance)) RC_FAIL(std::string("distance only on ") + hwy::TargetName(target));
   }
 }
 
