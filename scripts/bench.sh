@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mkdir -p out/bench
-for name in evaluation extraction recovery; do
+for name in overlap evaluation extraction recovery; do
   echo
   "build/release/bench/bench_$name" | tee "out/bench/$name.md"
 done
