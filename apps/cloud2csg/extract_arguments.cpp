@@ -13,6 +13,7 @@ namespace cloud2csg::app {
 namespace {
 
 constexpr std::array k_strategies{Strategy::automatic, Strategy::partition, Strategy::baseline};
+constexpr std::array k_precisions{Precision::automatic, Precision::full, Precision::single};
 constexpr std::array k_parallels{Parallel::none, Parallel::population, Parallel::partitions, Parallel::both};
 
 template <typename Value, typename Given>
@@ -107,7 +108,7 @@ void add_genetic_algorithm_arguments(CLI::App& app, ExtractArguments& arguments)
               "Partitions up to this size are solved by listing, 0 to 5 (default: 4, paper: 2)");
   group.fraction("--trust", arguments.trust,
                  "A tree that reaches less than this share of the best score that can be is searched for again "
-                 "(default: 0.9, paper: 0, never)");
+                 "(default: 0.97, paper: 0, never)");
   group.count("--restarts", arguments.restarts, "... so many times at most (default: 3, paper: 0)");
   group.count("--restart-budget", arguments.restart_budget,
               "... and not when so many trees were evaluated for a partition (default: 200000)");
@@ -125,6 +126,12 @@ void add_fit_arguments(CLI::App& app, ExtractArguments& arguments) {
                "... when their normal is within so many degrees (default: 30)");
   group.number("--overlap-tolerance", arguments.overlap_tolerance,
                "Primitives nearer than this overlap (default: the measured noise)");
+  group
+      .add("--precision", arguments.precision, "NAME",
+           "Of distances and angles: full, single, or auto: single where the noise is far above rounding (default: "
+           "auto, "
+           "paper: full)")
+      ->check(one_of(names_of(k_precisions)));
   group.number("--alpha", arguments.alpha, "Cost of a node, in points (default: ln of the points)");
   group.number("--beta", arguments.beta, "Weight of distances (default: 1 / noise, paper: 100)");
   group.number("--gamma", arguments.gamma, "Weight of angles, per radian (default: 18 / pi)");
@@ -163,6 +170,7 @@ ExtractOptions ExtractArguments::options() const {
   ExtractOptions options = preset == "paper" ? paper_options() : ExtractOptions{};
   override_by_name(k_strategies, options.strategy, strategy);
   override_by_name(k_parallels, options.parallel, parallel);
+  override_by_name(k_precisions, options.precision, precision);
   override_with(options.seed, seed);
   override_with(options.time_limit_seconds, time_limit_seconds);
   override_with(options.polish, polish);

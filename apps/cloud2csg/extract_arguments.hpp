@@ -12,7 +12,7 @@ namespace cloud2csg::app {
 /// The options of the extraction as given on the command line; what was not given is as the preset has it.
 struct ExtractArguments {
   std::string preset = "default";
-  std::optional<std::string> strategy, parallel;
+  std::optional<std::string> strategy, parallel, precision;
   std::optional<std::uint64_t> seed;
   std::optional<double> time_limit_seconds;
   std::optional<bool> polish;

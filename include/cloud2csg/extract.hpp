@@ -50,7 +50,7 @@ struct ExtractOptions {
   std::uint64_t seed = 1;
 };
 
-/// As in the paper: its weights, its genetic algorithm, no polish; strategy partition.
+/// As in the paper: its weights, its genetic algorithm, no polish, full precision; strategy partition.
 [[nodiscard]] ExtractOptions paper_options();
 
 /// @throws Error naming the field when an option is out of range.

@@ -114,9 +114,9 @@ void evaluate_field(const Primitive& primitive, PointsView points, const FieldSp
 /// signed_distance().
 void evaluate_distance(const Primitive& primitive, PointsView points, std::span<double> out);
 
-/// Distances and gradients in single precision, about twice as fast: good to a few units in the last place of the largest of the
-/// coordinates, sizes and distances. Points should be given in a frame whose origin is near. Displaced solids and
-/// expressions are evaluated in double precision and rounded. The same bits on every instruction set.
+/// Distances and gradients in single precision, about twice as fast: good to a few units in the last place of the
+/// largest of the coordinates, sizes and distances. Points should be given in a frame whose origin is near. Displaced
+/// solids and expressions are evaluated in double precision and rounded. The same bits on every instruction set.
 void evaluate_field(const Primitive& primitive, BasicPointsView<float> points, const BasicFieldSpans<float>& out);
 
 /// Axis-aligned bounds of the solid in the world; infinite for half-spaces. For displaced solids: enclosing.

@@ -3,6 +3,7 @@
 #include <boost/align/aligned_allocator.hpp>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -110,6 +111,9 @@ enum class Precision {
   full,       ///< double: the ranks, ties included, are those of the reference
   single,     ///< about twice as fast; scores move by less than 1e-5 of themselves for clouds as above
 };
+
+/// "auto", "full", "single".
+[[nodiscard]] std::string_view to_string(Precision precision);
 
 struct PointPassOptions {
   SegmentationTolerances tolerances;

@@ -90,6 +90,7 @@ ExtractOptions paper_options() {
   ExtractOptions options;
   options.strategy = Strategy::partition;
   options.objective.beta = 100.0;
+  options.precision = Precision::full;
   options.search = paper_ga_options();
   options.polish = false;
   return options;
