@@ -27,6 +27,7 @@ struct Command {
 [[nodiscard]] Command add_compare(CLI::App& program);
 [[nodiscard]] Command add_convert(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
+[[nodiscard]] Command add_bench(CLI::App& program);
 
 /// Options that every subcommand with work to do has.
 struct RunOptions {

@@ -8,10 +8,11 @@
 namespace cloud2csg::app {
 namespace {
 
-/// The innermost command that was named on the command line.
-const CLI::App& chosen(const CLI::App& program) {
-  const auto commands = program.get_subcommands();
-  return commands.empty() ? program : *commands.front();
+/// The program and the commands that were named on the command line, each within the one before it.
+std::vector<const CLI::App*> chosen(const CLI::App& program) {
+  std::vector<const CLI::App*> path{&program};
+  while (!path.back()->get_subcommands().empty()) path.push_back(path.back()->get_subcommands().front());
+  return path;
 }
 
 std::vector<std::string> known_names(const CLI::App& app, bool options) {
@@ -87,11 +88,13 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 }
 
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
-  const CLI::App& app = chosen(program);
+  const std::vector<const CLI::App*> path = chosen(program);
+  const CLI::App& app = *path.back();
   // A misspelt option is the cause when a required one is missing too.
   const std::vector<std::string> unknown = app.remaining();
   const std::string what = unknown.empty() ? reworded(error) : unknown_argument(app, unknown.front());
-  const std::string name = &app == &program ? program.get_name() : program.get_name() + " " + app.get_name();
+  std::string name = program.get_name();
+  for (std::size_t i = 1; i < path.size(); ++i) name += ' ' + path[i]->get_name();
   return fmt::format("{} (see '{} --help')", what, name);
 }
 

@@ -19,7 +19,7 @@ TEST_F(Usage, VersionIsAResult) {
 TEST_F(Usage, HelpListsWhatThereIs) {
   const Outcome outcome = run({"--help"});
   EXPECT_EQ(outcome.status, 0);
-  for (const char* command : {"extract", "sample", "compare", "convert", "info"}) {
+  for (const char* command : {"extract", "sample", "compare", "convert", "info", "bench"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
     const Outcome help = run({command, "--help"});
     EXPECT_EQ(help.status, 0);

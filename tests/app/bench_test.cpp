@@ -1,0 +1,74 @@
+#include <nlohmann/json.hpp>
+
+#include "app/program.hpp"
+
+namespace cloud2csg::test {
+namespace {
+
+using nlohmann::json;
+
+class Bench : public ProgramTest {
+ protected:
+  /// The paper's experiment, as small as it goes, with options added.
+  Outcome run_small(const std::vector<std::string>& options = {}) {
+    std::vector<std::string> arguments{
+        "bench", "paper",         "-o",  path("out"), "--only", "m1",       "--low-points",
+        "200",   "--high-points", "400", "--threads", "2",      "--repeats"};
+    arguments.emplace_back("1");
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
+  }
+};
+
+TEST_F(Bench, PaperWritesResultsAndTables) {
+  const Outcome outcome = run_small();
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find("12 runs"), std::string::npos) << outcome.err;
+  const json results = json::parse(read_file(folder() / "out" / "paper.json"));
+  EXPECT_EQ(results["runs"].size(), 12U);
+  EXPECT_EQ(results["options"]["preset"], "paper");
+  const std::string text = read_file(folder() / "out" / "paper.md");
+  EXPECT_NE(text.find("the same tree"), std::string::npos);
+  EXPECT_NE(text.find("| m1    | high     |"), std::string::npos) << text;
+}
+
+TEST_F(Bench, PaperGoesOnWhereItStopped) {
+  ASSERT_EQ(run_small().status, 0);
+  const std::string before = read_file(folder() / "out" / "paper.json");
+  ASSERT_EQ(run_small().status, 0);
+  EXPECT_EQ(read_file(folder() / "out" / "paper.json"), before);
+  expect_failure(run_small({"--seed", "2", "--quiet"}), 1, {"paper.json", "seed 1, not 2", "another folder"});
+}
+
+TEST_F(Bench, PaperTakesModelsOfAFolder) {
+  std::filesystem::create_directory(folder() / "models");
+  std::filesystem::copy(shipped("m1.json"), folder() / "models" / "mine.json");
+  const Outcome outcome = run({"bench", "paper", "--models", path("models"), "-o", path("out"), "--low-points", "200",
+                               "--high-points", "400", "--repeats", "1", "--preset", "default"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json results = json::parse(read_file(folder() / "out" / "paper.json"));
+  EXPECT_EQ(results["options"]["models"], json{"mine"});
+  EXPECT_EQ(results["options"]["preset"], "default");
+}
+
+TEST_F(Bench, WrongUsageIsNamed) {
+  expect_failure(run({"bench"}), 2, {"subcommand", "cloud2csg bench --help"});
+  expect_failure(run({"bench", "ppaer"}), 2, {"unknown command 'ppaer'", "did you mean 'paper'?"});
+  expect_failure(run({"bench", "paper", "--ouput", "x"}), 2,
+                 {"'--ouput'", "did you mean '--output'?", "cloud2csg bench paper --help"});
+  expect_failure(run_small({"--noise", "-1"}), 2, {"--noise", "0 or more"});
+  expect_failure(run({"bench", "paper", "-o", path("out"), "--low-points", "9", "--high-points", "9"}), 2,
+                 {"--high-points", "--low-points"});
+  expect_failure(run({"bench", "paper", "-o", path("out"), "--preset", "papers"}), 2, {"--preset", "default"});
+}
+
+TEST_F(Bench, BadInputIsNamed) {
+  expect_failure(run_small({"--models", path("nowhere")}), 1, {"nowhere"});
+  expect_failure(run({"bench", "paper", "-o", path("out"), "--models", path("nowhere")}), 1, {"nowhere", "--models"});
+  const std::string taken = file("taken", "");
+  expect_failure(run({"bench", "paper", "-o", taken}), 1, {taken, "cannot be made"});
+}
+
+}  // namespace
+}  // namespace cloud2csg::test
