@@ -134,4 +134,46 @@ struct Spread {
 [[nodiscard]] std::vector<std::string> write_paper_report(const std::filesystem::path& folder,
                                                           const PaperResults& results);
 
+enum class Verdict {
+  same,     ///< within the noise, or too small a change to matter
+  better,   ///< faster, smaller
+  worse,    ///< slower, larger
+  unknown,  ///< fewer than two repeats on one side
+};
+/// "same", "better", "worse", "unknown"
+[[nodiscard]] std::string_view to_string(Verdict verdict);
+
+/// One measure of one model, sampling and mode in two results.
+struct Change {
+  std::string model;
+  Sampling sampling = Sampling::low;
+  std::string mode;
+  std::string measure;  ///< "duration, ms", "nodes", "rms distance", "evaluations": of all, less is better
+  Spread before = {}, after = {};
+  double relative = 0;  ///< after / before - 1, of the means
+  Verdict verdict = Verdict::unknown;
+};
+
+struct ResultComparisonOptions {
+  /// A duration that differs by less than this share is the same: between two experiments on a machine, means move by
+  /// more than the spread within one tells.
+  double least_time_change = 0.1;
+  double least_change = 0.02;  ///< the same for what does not depend on the machine: nodes, distance, evaluations
+  /// Chance that any of all the changes is called better or worse by accident (Bonferroni's correction).
+  double error_rate = 0.05;
+};
+
+/// The measures of `after` against those of `before`: durations of all modes, the rest of BST and SST. One is better or
+/// worse when Welch's t-test says that the means differ, and they do by enough to matter.
+/// @throws Error naming the option when the two are not of the same models, points, noise, preset and threads.
+[[nodiscard]] std::vector<Change> compare_paper_results(const PaperResults& before, const PaperResults& after,
+                                                        const ResultComparisonOptions& options = {});
+
+/// Chance that the means of two samples from normal distributions of the same mean, whatever their variances, differ
+/// by as much as these, or more (two-sided). Precondition: two values at least in each.
+[[nodiscard]] double welch_test(const Spread& a, const Spread& b);
+
+/// As a table.
+[[nodiscard]] std::string changes_markdown(std::span<const Change> changes);
+
 }  // namespace cloud2csg

@@ -55,7 +55,8 @@ std::string cliques_of(const PaperResults& results, const std::string& model) {
 
 Table models_table(const PaperResults& results) {
   Table table{.name = "models",
-              .title = "Models: primitives, nodes and depth of the true tree, points, cliques by size (1, 2, 3...)",
+              .title = "Models",
+              .note = "Nodes and depth of the true tree, points of the clouds, cliques by size (1, 2, 3...).",
               .columns = {"model", "primitives", "nodes", "depth", "points, low", "points, high", "cliques"}};
   for (const ModelDetails& model : results.models) {
     table.rows.push_back({model.name, static_cast<double>(model.primitives), static_cast<double>(model.tree.size),
@@ -80,7 +81,10 @@ Table by_cloud(const PaperResults& results, Table table, const AddCells& add_cel
 }
 
 Table durations_table(const PaperResults& results) {
-  Table table{.name = "durations", .title = "Duration of the extraction, milliseconds", .columns = {}};
+  Table table{.name = "durations",
+              .title = "Duration of the extraction, milliseconds",
+              .note = "From cloud and primitives in memory to the simplified tree.",
+              .columns = {}};
   for (const PaperMode& mode : paper_modes()) table.columns.emplace_back(mode.name);
   return by_cloud(results, std::move(table), [&](std::vector<Cell>& row, const ModelDetails& model, Sampling sampling) {
     for (const PaperMode& mode : paper_modes()) {
@@ -91,9 +95,10 @@ Table durations_table(const PaperResults& results) {
 
 Table growth_table(const PaperResults& results) {
   Table table{.name = "growth",
-              .title =
-                  "Growth: (points high / points low) : (duration high / duration low); above 1, time grows slower "
-                  "than the points",
+              .title = "Growth",
+              .note =
+                  "(points high / points low) : (duration high / duration low); above 1, time grows slower than the "
+                  "points.",
               .columns = {"model"}};
   const double points =
       static_cast<double>(results.options.high_points) / static_cast<double>(results.options.low_points);
@@ -126,9 +131,10 @@ Table speed_up_table(const PaperResults& results, Table table, const Measure& va
 
 Table trees_table(const PaperResults& results) {
   Table table{.name = "trees",
-              .title =
-                  "Trees: nodes and depth of the input, the baseline's and the partitioned tree, and how much "
-                  "larger the last is, percent",
+              .title = "Trees",
+              .note =
+                  "Nodes and depth of the input, the baseline's and the partitioned tree; how much larger the last "
+                  "is.",
               .columns = {"input", "baseline", "partitioned", "over input, %", "over baseline, %", "input depth",
                           "baseline depth", "partitioned depth"}};
   return by_cloud(results, std::move(table), [&](std::vector<Cell>& row, const ModelDetails& model, Sampling sampling) {
@@ -169,16 +175,19 @@ Table search_table(const PaperResults& results) {
           return way != to_string(MergeWay::single) && way != to_string(MergeWay::paper);
         }));
       }};
-  return by_strategy(results,
-                     {.name = "search",
-                      .title = "Search: E of the result over all points, its fit, generations and evaluations of all "
-                               "searches, components whose trees went by a fall-back of the merge",
-                      .columns = {"E", "rms distance", "rms angle, deg", "generations", "evaluations", "fall-backs"}},
-                     columns);
+  return by_strategy(
+      results,
+      {.name = "search",
+       .title = "Search",
+       .note = "E of the result over all points and its fit; generations and evaluations of all searches; "
+               "components whose tree came by a fall-back of the merge.",
+       .columns = {"E", "rms distance", "rms angle, deg", "generations", "evaluations", "fall-backs"}},
+      columns);
 }
 
 Table steps_table(const PaperResults& results) {
-  Table table{.name = "steps", .title = "Share of each step in the duration on one thread, percent", .columns = {}};
+  Table table{
+      .name = "steps", .title = "Share of each step, percent", .note = "Of the duration on one thread.", .columns = {}};
   std::vector<Measure> columns;
   for (const Step& step : k_steps) {
     table.columns.emplace_back(step.name);
@@ -211,22 +220,24 @@ Measure share_of(const Step& step) {
 }
 
 std::vector<Table> paper_tables(const PaperResults& results) {
-  return {
-      models_table(results),
-      durations_table(results),
-      speed_up_table(
-          results,
-          {.name = "speed_up", .title = "Speed-up of partitions over the baseline, whole extraction", .columns = {}},
-          milliseconds),
-      speed_up_table(results,
-                     {.name = "speed_up_search",
-                      .title = "Speed-up of partitions over the baseline, search and merge alone",
-                      .columns = {}},
-                     search_milliseconds),
-      growth_table(results),
-      trees_table(results),
-      search_table(results),
-      steps_table(results)};
+  return {models_table(results),
+          durations_table(results),
+          speed_up_table(results,
+                         {.name = "speed_up",
+                          .title = "Speed-up of partitions, whole extraction",
+                          .note = "Duration of the baseline / that of the partitioned mode.",
+                          .columns = {}},
+                         milliseconds),
+          speed_up_table(results,
+                         {.name = "speed_up_search",
+                          .title = "Speed-up of partitions, search and merge alone",
+                          .note = "The same without the pass over the points, which both share.",
+                          .columns = {}},
+                         search_milliseconds),
+          growth_table(results),
+          trees_table(results),
+          search_table(results),
+          steps_table(results)};
 }
 
 Table runs_table(const PaperResults& results) {

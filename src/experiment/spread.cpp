@@ -10,7 +10,10 @@ Spread spread_of(std::span<const double> values) {
   Spread spread{.count = values.size()};
   if (values.empty()) return spread;
   const auto count = static_cast<double>(values.size());
-  for (const double value : values) spread.mean += value / count;
+  // From the first, so that equal values have exactly their mean and no deviation.
+  double differences = 0;
+  for (const double value : values) differences += value - values.front();
+  spread.mean = values.front() + differences / count;
   if (values.size() < 2) return spread;
   double squares = 0;
   for (const double value : values) squares += (value - spread.mean) * (value - spread.mean);

@@ -21,8 +21,10 @@ int decimals_of(double value, int digits) {
 
 std::string to_text(const Spread& spread) {
   if (spread.count == 0) return "-";
-  const int decimals =
-      spread.deviation == 0 ? decimals_of(spread.mean, k_digits) : decimals_of(spread.deviation, k_deviation_digits);
+  const int decimals_of_mean = decimals_of(spread.mean, k_digits);
+  const int decimals = spread.deviation == 0 ? decimals_of_mean
+                                             : std::min(decimals_of(spread.deviation, k_deviation_digits),
+                                                        decimals_of_mean + k_deviation_digits);
   if (spread.count == 1) return fmt::format("{:.{}f} ± ?", spread.mean, decimals);
   return fmt::format("{:.{}f} ± {:.{}f}", spread.mean, decimals, spread.deviation, decimals);
 }
@@ -76,7 +78,7 @@ std::string to_markdown(const Table& table) {
     for (const std::vector<Cell>& row : table.rows)
       widths[column] = std::max(widths[column], width_of(to_text(row[column])));
   }
-  std::string text = fmt::format("## {}\n\n|", table.title);
+  std::string text = fmt::format("## {}\n{}{}\n|", table.title, table.note, table.note.empty() ? "" : "\n");
   for (std::size_t i = 0; i < widths.size(); ++i)
     text += fmt::format(" {} |", padded(table.columns[i], widths[i], false));
   text += "\n|";

@@ -12,8 +12,9 @@ namespace cloud2csg {
 using Cell = std::variant<std::string, double, Spread>;
 
 struct Table {
-  std::string name;   ///< of its file, without the ending
-  std::string title;  ///< a sentence: what is measured, in which unit
+  std::string name;  ///< of its file, without the ending
+  std::string title;
+  std::string note = {};  ///< what is measured, in which unit, where the title does not say it all
   std::vector<std::string> columns;
   std::vector<std::vector<Cell>> rows = {};  ///< each with a cell a column
 };
@@ -22,7 +23,7 @@ struct Table {
 /// of a single value is "?".
 [[nodiscard]] std::string to_text(const Cell& cell);
 
-/// A heading, the columns padded to equal widths.
+/// A heading, the note, the columns padded to equal widths.
 [[nodiscard]] std::string to_markdown(const Table& table);
 
 /// A column with spreads becomes two, NAME and "NAME sd"; full precision. Texts with a comma or a quote are quoted.

@@ -10,11 +10,10 @@ using nlohmann::json;
 class Bench : public ProgramTest {
  protected:
   /// The paper's experiment, as small as it goes, with options added.
-  Outcome run_small(const std::vector<std::string>& options = {}) {
+  Outcome run_small(const std::vector<std::string>& options = {}, const std::string& repeats = "1") {
     std::vector<std::string> arguments{
-        "bench", "paper",         "-o",  path("out"), "--only", "m1",       "--low-points",
-        "200",   "--high-points", "400", "--threads", "2",      "--repeats"};
-    arguments.emplace_back("1");
+        "bench", "paper",         "-o",  path("out"), "--only", "m1",        "--low-points",
+        "200",   "--high-points", "400", "--threads", "2",      "--repeats", repeats};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return run(arguments);
   }
@@ -50,6 +49,35 @@ TEST_F(Bench, PaperTakesModelsOfAFolder) {
   const json results = json::parse(read_file(folder() / "out" / "paper.json"));
   EXPECT_EQ(results["options"]["models"], json{"mine"});
   EXPECT_EQ(results["options"]["preset"], "default");
+}
+
+TEST_F(Bench, CompareTellsWhatGotWorse) {
+  ASSERT_EQ(run_small({}, "3").status, 0);
+  const std::string before = (folder() / "out" / "paper.json").string();
+  const Outcome same = run({"bench", "compare", before, before});
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_EQ(same.out, "24 measures: 0 worse, 0 better, 24 the same within the noise, 0 unknown\n");
+  json results = json::parse(read_file(before));
+  for (json& one : results["runs"]) one["tree"]["size"] = one["tree"]["size"].get<int>() + 100;
+  const std::string after = file("after.json", results.dump());
+  const Outcome worse = run({"bench", "compare", before, after});
+  EXPECT_EQ(worse.status, 1);
+  EXPECT_EQ(worse.err, "cloud2csg: " + after + ": 4 of its measures got worse\n");
+  EXPECT_NE(worse.out.find("| m1    | high     | SST  | nodes "), std::string::npos) << worse.out;
+  EXPECT_EQ(worse.out.find("duration"), std::string::npos) << worse.out;
+  EXPECT_EQ(run({"bench", "compare", after, before}).status, 0);
+}
+
+TEST_F(Bench, CompareRefusesWhatItCannot) {
+  ASSERT_EQ(run_small().status, 0);
+  const std::string before = (folder() / "out" / "paper.json").string();
+  json results = json::parse(read_file(before));
+  results["options"]["preset"] = "default";
+  const std::string other = file("other.json", results.dump());
+  expect_failure(run({"bench", "compare", before, other}), 1, {before, other, "preset", "paper and default"});
+  expect_failure(run({"bench", "compare", before, shipped("m1.json")}), 1, {"m1.json", "no results"});
+  expect_failure(run({"bench", "compare", before}), 2, {"after"});
+  expect_failure(run({"bench", "compare", before, before, "--error-rate", "2"}), 2, {"--error-rate"});
 }
 
 TEST_F(Bench, WrongUsageIsNamed) {

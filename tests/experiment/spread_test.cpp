@@ -23,6 +23,13 @@ TEST(Spread, OfOneAndOfNone) {
   EXPECT_EQ(spread_of({}).count, 0U);
 }
 
+TEST(Spread, EqualValuesHaveNoDeviation) {
+  const double value = 209592.314956 / 3;
+  const Spread spread = spread_of(std::array{value, value, value, value, value, value, value});
+  EXPECT_EQ(spread.mean, value);
+  EXPECT_EQ(spread.deviation, 0);
+}
+
 TEST(Spread, RatioAddsRelativeDeviations) {
   const Spread a{.count = 5, .mean = 12, .deviation = 0.6};  // 5 %
   const Spread b{.count = 4, .mean = 4, .deviation = 0.48};  // 12 %

@@ -8,6 +8,7 @@ namespace {
 Table example() {
   return {.name = "example",
           .title = "An example",
+          .note = "Made up.",
           .columns = {"model", "points", "time"},
           .rows = {{std::string("m0, \"old\""), 1200.0, Spread{.count = 3, .mean = 12.3456, .deviation = 0.0567}},
                    {std::string("m1"), 1.5, Spread{.count = 1, .mean = 7, .deviation = 0}},
@@ -17,6 +18,7 @@ Table example() {
 TEST(Table, AsMarkdown) {
   EXPECT_EQ(to_markdown(example()),
             "## An example\n"
+            "Made up.\n"
             "\n"
             "| model     | points | time           |\n"
             "|-----------|--------|----------------|\n"
@@ -41,6 +43,7 @@ TEST(Table, NumbersKeepFourDigitsAndHaveNoExponent) {
 }
 
 TEST(Table, WholeMeansShowTheirDeviation) {
+  EXPECT_EQ(to_text(Cell(Spread{.count = 2, .mean = 38.5, .deviation = 1e-7})), "38.5000 ± 0.0000");
   EXPECT_EQ(to_text(Cell(Spread{.count = 2, .mean = 38, .deviation = 1.41421356})), "38.0 ± 1.4");
 }
 
