@@ -54,7 +54,7 @@ std::string in_quotes(const std::string& text) {
 
 /// One field, or two in a column of spreads.
 std::string csv_fields(const Cell& cell, bool two) {
-  const std::string second = two ? "," : "";
+  std::string second = two ? "," : "";
   if (const auto* text = std::get_if<std::string>(&cell)) return in_quotes(*text) + second;
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}{}", *number, second);
   const auto& spread = std::get<Spread>(cell);
@@ -66,8 +66,9 @@ std::string csv_fields(const Cell& cell, bool two) {
 
 std::string to_text(const Cell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-  if (const auto* number = std::get_if<double>(&cell))
+  if (const auto* number = std::get_if<double>(&cell)) {
     return fmt::format("{:.{}f}", *number, decimals_of(*number, k_digits));
+  }
   return to_text(std::get<Spread>(cell));
 }
 
