@@ -141,7 +141,23 @@ void add_options(CLI::App& app, PaperCommand& command) {
       ->type_name("NAME")
       ->group("Experiment")
       ->capture_default_str();
+  app.add_option("--evaluator", experiment.evaluator,
+                 "classes; or reference: the paper's steps alone, each tree at each point, thousands of times slower")
+      ->check(one_of({"classes", "reference"}))
+      ->type_name("NAME")
+      ->group("Experiment")
+      ->capture_default_str();
   add_run_options(app, command.running);
+}
+
+/// Values that are each right, but not together. @throws CLI::ValidationError
+void check_together(const PaperOptions& experiment) {
+  if (experiment.low_points >= experiment.high_points) {
+    throw CLI::ValidationError("--high-points", "expected more than --low-points");
+  }
+  if (experiment.evaluator == "reference" && experiment.preset != "paper") {
+    throw CLI::ValidationError("--evaluator", "reference goes with --preset paper only");
+  }
 }
 
 Command add_paper(CLI::App& bench) {
@@ -150,10 +166,7 @@ Command add_paper(CLI::App& bench) {
               example("  cloud2csg bench paper -o out/paper"));
   auto command = std::make_shared<PaperCommand>();
   add_options(*app, *command);
-  app->final_callback([command] {
-    if (command->experiment.low_points < command->experiment.high_points) return;
-    throw CLI::ValidationError("--high-points", "expected more than --low-points");
-  });
+  app->final_callback([command] { check_together(command->experiment); });
   return {.options = app, .run = [command](std::stop_token stop) { command->run(std::move(stop)); }};
 }
 

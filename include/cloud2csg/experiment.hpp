@@ -37,7 +37,10 @@ struct PaperOptions {
   std::size_t repeats = 5;               ///< runs a mode, each with a seed of its own for the search
   std::uint64_t seed = 1;                ///< of the clouds, and of the search of the first repeat
   std::string preset = "paper";          ///< "paper": its weights and search, nothing added; or "default"
-  int threads = 1;                       ///< of the modes that are parallel; no more than the machine has cores
+  /// "classes": extract_csg(); or "reference": the paper's steps alone, each tree evaluated at each point as its
+  /// program does, which is thousands of times slower. The latter needs preset "paper".
+  std::string evaluator = "classes";
+  int threads = 1;  ///< of the modes that are parallel; no more than the machine has cores
 
   friend bool operator==(const PaperOptions&, const PaperOptions&) = default;
 };
@@ -84,6 +87,9 @@ struct PaperRun {
   FitStatistics fit = {};
   std::size_t generations = 0, evaluations = 0;  ///< of all searches, those of the merge included
   std::vector<std::string> merge_ways = {};      ///< one a connected component
+  /// Pairs of trees that share primitives and did not merge. With the evaluator "reference", which has no fall-backs,
+  /// they are united as they are.
+  std::size_t blocked = 0;
 };
 
 struct PaperResults {

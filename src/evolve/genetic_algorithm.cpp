@@ -18,17 +18,20 @@ enum class Stream : std::uint64_t { first_generation = 0x6761'0001, breeding = 0
 
 /// One run. Every child is a pure function of (seed, item, generation, its place), so the population may be bred and
 /// evaluated by any number of threads.
+template <typename TreeEvaluator>
 class GeneticAlgorithm {
  public:
-  GeneticAlgorithm(const RankClasses& table, const GaOptions& options, std::uint64_t item, const RunContext& run)
-      : table_(table),
+  /// `evaluator`: what each thread evaluates trees with.
+  GeneticAlgorithm(std::size_t primitives, const TreeEvaluator& evaluator, const GaOptions& options, std::uint64_t item,
+                   const RunContext& run)
+      : primitives_(primitives),
         options_(options),
         item_(item),
         run_(run),
-        height_limit_(options.height_limit.value_or(default_height_limit(table.primitive_count()))),
+        height_limit_(options.height_limit.value_or(default_height_limit(primitives))),
         population_(static_cast<std::size_t>(options.population)),
         next_(population_.size()),
-        evaluators_([&table] { return Evaluator(table); }) {}
+        evaluators_(evaluator) {}
 
   Evolution run(std::span<const CsgTree> seeds) {
     first_generation(seeds);
@@ -66,7 +69,7 @@ class GeneticAlgorithm {
     for_each_index_in_arena(population_.size(), run_, [&](std::size_t i) {
       RandomStream random = stream(Stream::first_generation, 0, i);
       ScoredTree& individual = population_[i];
-      individual.tree = i < seeds.size() ? seeds[i] : random_tree(table_.primitive_count(), height_limit_, random);
+      individual.tree = i < seeds.size() ? seeds[i] : random_tree(primitives_, height_limit_, random);
       individual.score = evaluators_.local().score(individual.tree);
     });
     rank();
@@ -92,9 +95,8 @@ class GeneticAlgorithm {
 
   void place_child(std::size_t place, CsgTree child, RandomStream& random) {
     if (random.chance(options_.mutation_rate)) {
-      child = random.chance(options_.new_tree_rate)
-                  ? random_tree(table_.primitive_count(), height_limit_, random)
-                  : mutate_subtree(child, table_.primitive_count(), height_limit_, random);
+      child = random.chance(options_.new_tree_rate) ? random_tree(primitives_, height_limit_, random)
+                                                    : mutate_subtree(child, primitives_, height_limit_, random);
     }
     next_[place].score = evaluators_.local().score(child);
     next_[place].tree = std::move(child);
@@ -121,25 +123,30 @@ class GeneticAlgorithm {
 
   [[nodiscard]] std::size_t count_evaluations() const {
     std::size_t count = 0;
-    for (const Evaluator& evaluator : evaluators_) count += evaluator.evaluations();
+    for (const TreeEvaluator& evaluator : evaluators_) count += evaluator.evaluations();
     return count;
   }
 
-  const RankClasses& table_;
+  std::size_t primitives_;
   const GaOptions& options_;
   std::uint64_t item_;
   const RunContext& run_;
   int height_limit_;
   std::vector<ScoredTree> population_, next_;
   std::vector<std::size_t> order_;
-  oneapi::tbb::enumerable_thread_specific<Evaluator> evaluators_;
+  oneapi::tbb::enumerable_thread_specific<TreeEvaluator> evaluators_;
 };
 
 }  // namespace
 
 Evolution run_genetic_algorithm(const RankClasses& table, std::span<const CsgTree> seeds, const GaOptions& options,
                                 std::uint64_t item, const RunContext& run) {
-  return GeneticAlgorithm(table, options, item, run).run(seeds);
+  return GeneticAlgorithm(table.primitive_count(), Evaluator(table), options, item, run).run(seeds);
+}
+
+Evolution run_genetic_algorithm(const TreeObjective& objective, std::span<const CsgTree> seeds,
+                                const GaOptions& options, std::uint64_t item, const RunContext& run) {
+  return GeneticAlgorithm(objective.primitives, ObjectiveEvaluator(objective), options, item, run).run(seeds);
 }
 
 }  // namespace cloud2csg

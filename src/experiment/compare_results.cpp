@@ -38,6 +38,7 @@ void check_comparable(const PaperOptions& a, const PaperOptions& b) {
   require_same("high points", a.high_points, b.high_points);
   require_same("noise", a.noise, b.noise);
   require_same("preset", a.preset, b.preset);
+  require_same("evaluator", a.evaluator, b.evaluator);
   require_same("threads", a.threads, b.threads);
 }
 

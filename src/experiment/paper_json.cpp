@@ -36,7 +36,7 @@ TreeStatistics tree_from(const Json& json) {
 Json options_json(const PaperOptions& o) {
   return {{"models", o.models}, {"low_points", o.low_points}, {"high_points", o.high_points},
           {"noise", o.noise},   {"repeats", o.repeats},       {"seed", o.seed},
-          {"preset", o.preset}, {"threads", o.threads}};
+          {"preset", o.preset}, {"evaluator", o.evaluator},   {"threads", o.threads}};
 }
 
 PaperOptions options_from(const Json& json) {
@@ -47,6 +47,7 @@ PaperOptions options_from(const Json& json) {
           .repeats = json.at("repeats"),
           .seed = json.at("seed"),
           .preset = json.at("preset"),
+          .evaluator = json.at("evaluator"),
           .threads = json.at("threads")};
 }
 
@@ -73,6 +74,7 @@ Json run_json(const PaperRun& run) {
           {"generations", run.generations},
           {"evaluations", run.evaluations},
           {"merge_ways", run.merge_ways},
+          {"blocked", run.blocked},
           {"tree", tree_json(run.tree)},
           {"fit",
            {{"objective", run.fit.objective},
@@ -99,7 +101,8 @@ PaperRun run_from(const Json& json) {
                        .rms_angle_deg = fit.at("rms_angle_deg")},
                .generations = json.at("generations"),
                .evaluations = json.at("evaluations"),
-               .merge_ways = json.at("merge_ways")};
+               .merge_ways = json.at("merge_ways"),
+               .blocked = json.at("blocked")};
   visit_stages(run.seconds, [&json](const char* name, double& value) { value = json.at("seconds").at(name); });
   return run;
 }

@@ -54,6 +54,10 @@ void validate(const PaperOptions& options) {
   require(options.repeats >= 1, "repeats", "expected 1 or more, found 0");
   require(options.preset == "paper" || options.preset == "default", "preset",
           fmt::format("expected paper or default, found '{}'", options.preset));
+  require(options.evaluator == "classes" || options.evaluator == "reference", "evaluator",
+          fmt::format("expected classes or reference, found '{}'", options.evaluator));
+  require(options.evaluator == "classes" || options.preset == "paper", "evaluator",
+          "expected classes, since reference goes with the preset paper only");
   require(options.threads >= 1, "threads", fmt::format("expected 1 or more, found {}", options.threads));
 }
 

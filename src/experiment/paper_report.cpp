@@ -22,10 +22,12 @@ std::string setting(const PaperResults& results) {
                           [](const PaperRun& a, const PaperRun& b) { return a.finished < b.finished; });
   return fmt::format(
       "cloud2csg {}, {}; {}, {} cores; runs from {} to {}.\n"
-      "Preset {}, noise {}, {} repeats with seeds {} to {} for the search, one cloud a model and sampling (seed {}).\n"
+      "Preset {}, evaluator {}, noise {}, {} repeats with seeds {} to {} for the search, one cloud a model and "
+      "sampling (seed {}).\n"
       "Parallel modes use {} threads. Mean ± standard deviation over the repeats.\n",
       machine.version, machine.compiler, machine.cpu, machine.cores, first->finished, last->finished, options.preset,
-      options.noise, options.repeats, options.seed, options.seed + options.repeats - 1, options.seed, options.threads);
+      options.evaluator, options.noise, options.repeats, options.seed, options.seed + options.repeats - 1, options.seed,
+      options.threads);
 }
 
 std::string mode_check(const PaperResults& results) {

@@ -9,6 +9,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/experiment.hpp"
 #include "cloud2csg/sample.hpp"
+#include "experiment/reference_extraction.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -36,7 +37,8 @@ PaperRun measured(const RunName& name, const Extraction& extraction, const Primi
                .formula = to_text(extraction.tree, primitives),
                .fit = statistics.fit,
                .generations = statistics.merge.generations,
-               .evaluations = statistics.merge.evaluations};
+               .evaluations = statistics.merge.evaluations,
+               .blocked = statistics.merge.blocked};
   for (const PartitionStatistics& partition : statistics.partitions) {
     run.generations += partition.generations;
     run.evaluations += partition.evaluations;
@@ -57,8 +59,8 @@ class CloudRuns {
                                .noise = options.noise,
                                .seed = options.seed},
                               run_)) {
-    // Not measured: threads are started and memory is got from the system once.
-    (void)extraction(paper_mode("SMTPGA"), options.seed);
+    // Not measured: threads are started and memory is got from the system once. What takes long is not worth it.
+    if (options.evaluator == "classes") (void)extraction(paper_mode("SMTPGA"), options.seed);
   }
 
   [[nodiscard]] PaperRun make(const RunName& name) const {
@@ -67,7 +69,10 @@ class CloudRuns {
 
  private:
   [[nodiscard]] Extraction extraction(const PaperMode& mode, std::uint64_t seed) const {
-    Extraction result = extract_csg(cloud_, model_.primitives, extract_options(options_, mode, seed), run_);
+    const ExtractOptions extract = extract_options(options_, mode, seed);
+    Extraction result = options_.evaluator == "reference"
+                            ? reference_extraction(cloud_, model_.primitives, extract, run_)
+                            : extract_csg(cloud_, model_.primitives, extract, run_);
     // The best tree so far is no result of the mode.
     if (!result.statistics.complete) throw Cancelled();
     return result;

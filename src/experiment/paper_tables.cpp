@@ -244,14 +244,14 @@ Table runs_table(const PaperResults& results) {
   Table table{.name = "runs",
               .title = "Runs",
               .columns = {"model", "sampling", "mode", "seed", "finished", "points", "generations", "evaluations",
-                          "nodes", "leaves", "depth", "E", "rms distance", "rms angle deg"}};
+                          "nodes", "leaves", "depth", "blocked", "E", "rms distance", "rms angle deg"}};
   for (const Step& step : k_steps) table.columns.push_back(fmt::format("{} s", step.name));
   table.columns.emplace_back("extraction s");
   for (const PaperRun& run : results.runs) {
     std::vector<Cell> row{run.name.model, std::string(to_string(run.name.sampling)), run.name.mode,
                           fmt::format("{}", run.name.seed), run.finished};
     for (const std::size_t count :
-         {run.points, run.generations, run.evaluations, run.tree.size, run.tree.leaves, run.tree.depth}) {
+         {run.points, run.generations, run.evaluations, run.tree.size, run.tree.leaves, run.tree.depth, run.blocked}) {
       row.emplace_back(static_cast<double>(count));
     }
     row.insert(row.end(), {run.fit.objective, run.fit.rms_distance, run.fit.rms_angle_deg});

@@ -65,6 +65,7 @@ void check_same_experiment(const std::filesystem::path& file, const PaperResults
   check.same("repeats", a.repeats, b.repeats);
   check.same("seed", a.seed, b.seed);
   check.same("preset", a.preset, b.preset);
+  check.same("evaluator", a.evaluator, b.evaluator);
   check.same("threads", a.threads, b.threads);
   check.same("version", there.environment.version, now.environment.version);
   check.same("compiler", there.environment.compiler, now.environment.compiler);

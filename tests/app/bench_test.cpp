@@ -88,6 +88,7 @@ TEST_F(Bench, WrongUsageIsNamed) {
   expect_failure(run_small({"--noise", "-1"}), 2, {"--noise", "0 or more"});
   expect_failure(run({"bench", "paper", "-o", path("out"), "--low-points", "9", "--high-points", "9"}), 2,
                  {"--high-points", "--low-points"});
+  expect_failure(run_small({"--evaluator", "reference", "--preset", "default"}), 2, {"--evaluator", "--preset paper"});
   expect_failure(run({"bench", "paper", "-o", path("out"), "--preset", "papers"}), 2, {"--preset", "default"});
 }
 
