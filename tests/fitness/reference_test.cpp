@@ -127,7 +127,7 @@ TEST(SinglePrecision, MovesScoresByLessThanAHundredThousandth) {
     const Eigen::Vector3d offset = test::random_within(100, random);  // the frame's origin is elsewhere
     for (Primitive& primitive : scene.primitives) primitive.pose.position += offset;
     for (std::size_t i = 0; i < scene.cloud.size(); ++i) {
-      const Eigen::Vector3d noise(0.02 * random.normal(), 0.02 * random.normal(), 0.02 * random.normal());
+      const Eigen::Vector3d noise{0.02 * random.normal(), 0.02 * random.normal(), 0.02 * random.normal()};
       scene.cloud.positions.set(i, scene.cloud.positions[i] + offset + noise);
     }
     const RankClasses full = test::whole_table(scene);
