@@ -26,7 +26,7 @@ PrimitiveSet random_solids(std::size_t count, double half_side, RandomStream& ra
          .pose = {
              .position = {coordinate(), coordinate(), coordinate()},
              .orientation =
-                 Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized()}});
+                 Eigen::Quaterniond{random.normal(), random.normal(), random.normal(), random.normal()}.normalized()}});
   }
   return solids;
 }

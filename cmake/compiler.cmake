@@ -12,7 +12,8 @@ endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # g++ 12 reports false positives inside Eigen and the standard library at -O3.
   target_compile_options(cloud2csg_compiler INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds
-                                                      -Wno-stringop-overflow -Wno-stringop-overread)
+                                                      -Wno-stringop-overflow -Wno-stringop-overread
+                                                      -Wno-restrict)
 endif()
 if(CLOUD2CSG_SANITIZERS)
   target_compile_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS}

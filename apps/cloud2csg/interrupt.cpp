@@ -55,11 +55,13 @@ InterruptWatcher::InterruptWatcher() {
   sigemptyset(&action.sa_mask);
   ::sigaction(SIGINT, &action, &old_interrupt_);
   ::sigaction(SIGTERM, &action, &old_terminate_);
+  ::sigaction(SIGHUP, &action, &old_hang_up_);
 }
 
 InterruptWatcher::~InterruptWatcher() {
   ::sigaction(SIGINT, &old_interrupt_, nullptr);
   ::sigaction(SIGTERM, &old_terminate_, nullptr);
+  ::sigaction(SIGHUP, &old_hang_up_, nullptr);
   const int write_end = pipe_write_end.exchange(-1);
   [[maybe_unused]] const ssize_t written = ::write(write_end, &k_byte_quit, 1);
   watcher_.join();

@@ -6,8 +6,8 @@
 
 namespace cloud2csg::app {
 
-/// While it lives, the first SIGINT or SIGTERM requests a stop and the second ends the program at once, with status
-/// 130, less the temporary files that it was writing. At most one at a time.
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP requests a stop and the second ends the program at once, with
+/// status 130, less the temporary files that it was writing. At most one at a time.
 class InterruptWatcher {
  public:
   InterruptWatcher();
@@ -23,6 +23,7 @@ class InterruptWatcher {
   std::stop_source stop_;
   struct sigaction old_interrupt_ = {};
   struct sigaction old_terminate_ = {};
+  struct sigaction old_hang_up_ = {};
   int pipe_read_ = -1;
   std::thread watcher_;
 };

@@ -33,7 +33,7 @@ void describe(CLI::App& program) {
   program.footer(
       "'cloud2csg COMMAND --help' explains a command.\n"
       "Results go to files and standard output, progress and messages to standard error.\n"
-      "Exit status: 0 done, 1 could not do it, 2 wrong usage.");
+      "Exit status: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted twice.");
 }
 
 int run_command(const Command& command) {
@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   using namespace cloud2csg;
   // A limit on the size of files is then an error of writing like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);  // and a reader that went away likewise
   try {
     return app::run(argc, argv);
   } catch (const Cancelled&) {

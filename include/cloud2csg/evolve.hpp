@@ -40,8 +40,8 @@ struct GaOptions {
   /// ... and no more than so many trees were evaluated for the partition.
   std::size_t restart_budget = 200'000;
   bool seeds = true;  ///< the first generation also has the results of local searches from simple trees
-  bool polish =
-      true;  ///< a local search on the best tree at the end; when it finds a better one, the algorithm goes on
+  /// A local search on the best tree at the end; when it finds a better one, the algorithm goes on.
+  bool polish = true;
 
   std::uint64_t seed = 1;
 };

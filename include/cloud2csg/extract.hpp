@@ -102,6 +102,7 @@ struct FitStatistics {
   double rms_distance = 0;   ///< of the points to the surface of the result
   double p95_distance = 0;   ///< 95 % of the points are nearer than this
   double rms_angle_deg = 0;  ///< between normals and the surface's
+  double p95_angle_deg = 0;  ///< 95 % of the normals are nearer than this to the surface's
 };
 
 struct ExtractStatistics {

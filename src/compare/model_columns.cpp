@@ -49,7 +49,7 @@ double estimated_slope(const Primitive& expression) {
   RandomStream random(0);
   Points places;
   for (std::size_t i = 0; i < k_samples; ++i) {
-    const Eigen::Vector3d share(random.uniform(), random.uniform(), random.uniform());
+    const Eigen::Vector3d share{random.uniform(), random.uniform(), random.uniform()};
     places.push_back(box.min() + share.cwiseProduct(box.sizes()));
   }
   const Points gradients = gradient(expression, places);

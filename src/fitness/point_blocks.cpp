@@ -22,7 +22,8 @@ constexpr std::array<std::uint16_t, k_side> k_spread = [] {
 }();
 
 std::uint16_t spread_step(double offset, double cells_a_unit) {
-  return k_spread[static_cast<std::size_t>(std::min(static_cast<int>(offset * cells_a_unit), k_side - 1))];
+  // The lower bound first: whatever the number, the result is an index.
+  return k_spread[static_cast<std::size_t>(std::min(std::max(0.0, offset * cells_a_unit), k_side - 1.0))];
 }
 
 }  // namespace

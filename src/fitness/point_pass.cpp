@@ -9,15 +9,36 @@
 namespace cloud2csg {
 namespace {
 
-/// Rounding of single precision is 6e-8 of the diagonal: a five-thousandth of this.
+/// Rounding of single precision is 6e-8 of the largest length involved: a five-thousandth of this.
 constexpr double k_single_precision_noise = 3e-4;
 
-bool is_single_enough(const AlignedBox& box, const PointPassOptions& options) {
+/// Whether its pose may be moved along its plane, which says nothing of the solid but is rounded.
+bool is_plain_half_space(const Primitive& primitive) {
+  return std::holds_alternative<HalfSpace>(primitive.shape) && !primitive.displacement;
+}
+
+Eigen::Vector3d foot_of_origin(const Pose& pose) {
+  const Eigen::Vector3d normal = pose.orientation * Eigen::Vector3d::UnitZ();
+  return normal * normal.dot(pose.position);
+}
+
+/// The largest length that goes into a primitive's distances, seen from a point.
+double reach_from(const Eigen::Vector3d& centre, const Primitive& primitive) {
+  Pose pose = primitive.pose;
+  pose.position -= centre;
+  if (is_plain_half_space(primitive)) return foot_of_origin(pose).norm();
+  const Eigen::Vector3d half_size = oriented_bounds(primitive).half_size;
+  return pose.position.norm() + (half_size.allFinite() ? 2 * half_size.norm() : 0.0);
+}
+
+bool is_single_enough(const AlignedBox& box, const PrimitiveSet& primitives, const PointPassOptions& options) {
   if (options.precision != Precision::automatic) return options.precision == Precision::single;
   // From the far side, an angle near 180 degrees counts as it is, not its square: its cosine does not tell it in
   // single.
   if (far_side_counts(options.objective.gamma)) return false;
-  return options.noise >= k_single_precision_noise * box.diagonal().norm();
+  double length = box.diagonal().norm();
+  for (const Primitive& primitive : primitives) length = std::max(length, reach_from(box.center(), primitive));
+  return options.noise >= k_single_precision_noise * length;
 }
 
 /// Whether the gradient has length one wherever it is defined: all but what a user's formula or a displacement bends.
@@ -33,6 +54,9 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
       .primitives = primitives, .parameters = {}, .cloud = cloud, .box = box, .roots = plan_roots(requests)};
   for (Primitive& primitive : input.primitives) {
     primitive.pose.position -= PointBlocks<Real>::origin(box);
+    if (sizeof(Real) < sizeof(double) && is_plain_half_space(primitive)) {
+      primitive.pose.position = foot_of_origin(primitive.pose);
+    }
     input.parameters.push_back({scale.beta, scale.gamma, options.tolerances, has_unit_gradient(primitive)});
   }
   return input;
@@ -42,8 +66,7 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
 template <class Real>
 WorkerShare work(const WorkerInput<Real>& input, const RunContext& run) {
   const std::size_t chunks = chunk_count(input.cloud.size());
-  const int threads = run.threads > 0 ? run.threads : usable_threads(run);
-  const std::size_t parts = std::clamp<std::size_t>(chunks, 1, static_cast<std::size_t>(threads));
+  const std::size_t parts = std::clamp<std::size_t>(chunks, 1, static_cast<std::size_t>(usable_threads(run)));
   if (parts == 1) return work_on_chunks(input, 0, chunks, run);
   std::vector<WorkerShare> shares(parts);
   for_each_index(parts, run, [&](std::size_t k) {
@@ -108,8 +131,8 @@ PointPass build_rank_classes(const PointCloud& cloud, const PrimitiveSet& primit
                              const RunContext& run) {
   assert(cloud.has_normals() && cloud.size() > 0);
   const AlignedBox box = bounds_of(cloud.positions);
-  return is_single_enough(box, options) ? pass_over<float>(cloud, box, primitives, requests, options, run)
-                                        : pass_over<double>(cloud, box, primitives, requests, options, run);
+  return is_single_enough(box, primitives, options) ? pass_over<float>(cloud, box, primitives, requests, options, run)
+                                                    : pass_over<double>(cloud, box, primitives, requests, options, run);
 }
 
 }  // namespace cloud2csg

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -34,12 +35,23 @@ void check_primitive(const Primitive& primitive) {
   }
 }
 
+bool is_finite(const Points& points) {
+  const auto all = [](const std::vector<double>& numbers) {
+    return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+  };
+  return all(points.x) && all(points.y) && all(points.z);
+}
+
 void check_input(const PointCloud& cloud, const PrimitiveSet& primitives) {
   const auto refuse = [](const char* expected, const char* remedy) {
     throw Error({.file = {}, .where = {}, .expected = expected, .remedy = remedy});
   };
   if (cloud.size() == 0) refuse("the cloud has no points", "");
-  if (!cloud.has_normals()) {
+  if (!std::isfinite(bounds_of(cloud.positions).diagonal().norm()) || !is_finite(cloud.positions) ||
+      !is_finite(cloud.normals)) {
+    refuse("the cloud has coordinates or normals that are not finite, or too large", "remove these points");
+  }
+  if (!cloud.has_normals() || cloud.normals.size() != cloud.size()) {
     refuse(
         "the cloud has no normals, which tell inside from outside",
         "add them, e.g. in MeshLab (Filters > Point Set > Compute normals), CloudCompare or Open3D, and save as .ply");
@@ -175,6 +187,7 @@ class Extractor {
     for (const PrimitiveIndex p : set) members.push_back(prepared_.primitives[component[p]]);
     RankClassesRequest request;
     request.primitives.resize(set.size());
+    request.stride = stride_for(set.size(), cloud_.size());
     std::iota(request.primitives.begin(), request.primitives.end(), PrimitiveIndex{0});
     RunContext pass_run = search_run();
     pass_run.stop = {};  // a pass is short, and the search after it sees the stop

@@ -42,6 +42,13 @@ double root_mean_square(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// What 95 % are below. Reorders them.
+double quantile_95(std::vector<double>& values) {
+  const auto at_95 = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 95 / 100);
+  std::nth_element(values.begin(), at_95, values.end());
+  return *at_95;
+}
+
 }  // namespace
 
 FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
@@ -54,9 +61,8 @@ FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, c
   }
   fit.rms_distance = root_mean_square(points.distances);
   fit.rms_angle_deg = root_mean_square(points.angles) * 180.0 / std::numbers::pi;
-  const auto at_95 = points.distances.begin() + static_cast<std::ptrdiff_t>(points.distances.size() * 95 / 100);
-  std::nth_element(points.distances.begin(), at_95, points.distances.end());
-  fit.p95_distance = *at_95;
+  fit.p95_distance = quantile_95(points.distances);
+  fit.p95_angle_deg = quantile_95(points.angles) * 180.0 / std::numbers::pi;
   return fit;
 }
 

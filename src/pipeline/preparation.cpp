@@ -79,13 +79,6 @@ void build_partitions(const PointCloud& cloud, const ExtractOptions& options, co
   seconds.partition += watch.lap();
 }
 
-/// Every k-th point for tables over components whose classes may be as many as the points.
-std::size_t component_stride(std::size_t primitives, std::size_t points) {
-  if (primitives <= RankClasses::k_shared_limit) return 1;
-  const std::size_t row_bytes = 2 * sizeof(double) * primitives;
-  return std::max<std::size_t>(1, points * row_bytes / k_component_table_bytes);
-}
-
 /// One table a partition, and one for each component of several partitions.
 std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparation& preparation) {
   std::vector<RankClassesRequest> requests;
@@ -94,13 +87,14 @@ std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparatio
   for (std::size_t k = 0; k < preparation.partitions.size(); ++k) {
     ++partitions_in[preparation.component_of[k]];
     preparation.component_table[preparation.component_of[k]] = k;
-    requests.push_back({.primitives = preparation.partitions[k]});
+    const Clique& partition = preparation.partitions[k];
+    requests.push_back({.primitives = partition, .stride = stride_for(partition.size(), cloud.size())});
   }
   for (std::size_t c = 0; c < preparation.components.size(); ++c) {
     if (partitions_in[c] < 2) continue;
     preparation.component_table[c] = requests.size();
     requests.push_back({.primitives = preparation.components[c],
-                        .stride = component_stride(preparation.components[c].size(), cloud.size())});
+                        .stride = stride_for(preparation.components[c].size(), cloud.size())});
   }
   return requests;
 }
@@ -108,6 +102,7 @@ std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparatio
 void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,
                       Preparation& preparation, StageSeconds& seconds) {
   Stopwatch watch;
+  preparation.pass = {};  // of primitives that were dropped: not two of them in memory
   preparation.pass = build_rank_classes(cloud, preparation.primitives, requests_for(cloud, preparation),
                                         {.tolerances = preparation.tolerances,
                                          .objective = options.objective,
@@ -142,6 +137,12 @@ bool drop_unsupported(Preparation& preparation, ExtractStatistics& statistics) {
 }
 
 }  // namespace
+
+std::size_t stride_for(std::size_t primitives, std::size_t points) {
+  if (primitives <= RankClasses::k_shared_limit) return 1;
+  const std::size_t row_bytes = 2 * sizeof(double) * primitives;
+  return std::max<std::size_t>(1, points * row_bytes / k_table_bytes);
+}
 
 Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
                     const RunContext& run, ExtractStatistics& statistics) {

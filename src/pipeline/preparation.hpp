@@ -28,7 +28,10 @@ struct Preparation {
 [[nodiscard]] Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives,
                                   const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics);
 
-/// How many bytes a table over a whole component may take while it is made; larger ones use every k-th point.
-inline constexpr std::size_t k_component_table_bytes = std::size_t{64} << 20U;
+/// How many bytes a table may take while it is made, when each of its points may be a class of its own.
+inline constexpr std::size_t k_table_bytes = std::size_t{64} << 20U;
+
+/// Tables over sets that are too large for that use every k-th point.
+[[nodiscard]] std::size_t stride_for(std::size_t primitives, std::size_t points);
 
 }  // namespace cloud2csg

@@ -28,6 +28,14 @@ Json seconds_json(const StageSeconds& s) {
           {"total", s.total}};
 }
 
+/// Of each stage in the extraction.
+Json share_json(const StageSeconds& s) {
+  const auto share = [&s](double seconds) { return s.extraction > 0 ? seconds / s.extraction : 0.0; };
+  return {{"segment", share(s.segment)},  {"overlap", share(s.overlap)}, {"partition", share(s.partition)},
+          {"classes", share(s.classes)},  {"search", share(s.search)},   {"merge", share(s.merge)},
+          {"simplify", share(s.simplify)}};
+}
+
 Json search_json(const std::vector<PartitionStatistics>& partitions) {
   std::size_t generations = 0;
   std::size_t evaluations = 0;
@@ -79,6 +87,7 @@ std::string to_json(const ExtractStatistics& s) {
                      {"clique_histogram", s.clique_histogram},
                      {"components", s.components},
                      {"seconds", seconds_json(s.seconds)},
+                     {"share", share_json(s.seconds)},
                      {"search", search_json(s.partitions)},
                      {"merge", merge_json(s.merge)},
                      {"tree_before_simplification", tree_json(s.before_simplification)},
@@ -87,7 +96,8 @@ std::string to_json(const ExtractStatistics& s) {
                       {{"objective", s.fit.objective},
                        {"rms_distance", s.fit.rms_distance},
                        {"p95_distance", s.fit.p95_distance},
-                       {"rms_angle_deg", s.fit.rms_angle_deg}}},
+                       {"rms_angle_deg", s.fit.rms_angle_deg},
+                       {"p95_angle_deg", s.fit.p95_angle_deg}}},
                      {"warnings", s.warnings}};
   return json.dump(2) + "\n";
 }

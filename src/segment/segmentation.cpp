@@ -102,7 +102,7 @@ Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primiti
     const auto [distances, agreement] = relation_of(primitive, cloud.positions, cloud.normals);
     std::vector<std::uint32_t>& points = result.points_of.emplace_back();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (std::abs(distances[i]) > tolerances.distance || agreement[i] < tolerances.cosine) continue;
+      if (std::abs(distances[i]) > tolerances.distance || !(agreement[i] >= tolerances.cosine)) continue;
       points.push_back(static_cast<std::uint32_t>(i));
       assigned[i] = true;
     }

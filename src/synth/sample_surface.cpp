@@ -242,7 +242,7 @@ void add_noise(PointCloud& cloud, const SampleOptions& options) {
   const double tilt_sigma = options.normal_noise_deg * std::numbers::pi / 180.0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     RandomStream random(options.seed, static_cast<std::uint64_t>(Stream::noise), i);
-    const Vector3d shift(random.normal(), random.normal(), random.normal());
+    const Vector3d shift{random.normal(), random.normal(), random.normal()};  // braces: in this order
     cloud.positions.set(i, cloud.positions[i] + options.noise * shift);
     if (tilt_sigma > 0.0) cloud.normals.set(i, tilt(cloud.normals[i], tilt_sigma * random.normal(), random));
   }

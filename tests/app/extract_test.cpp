@@ -48,6 +48,10 @@ TEST_F(Extract, WritesStatistics) {
   EXPECT_EQ(statistics["seed"], 7);
   EXPECT_EQ(statistics["complete"], true);
   EXPECT_EQ(statistics["clique_histogram"], (json{0, 0, 0, 12}));
+  double shares = 0;
+  for (const auto& [stage, share] : statistics["share"].items()) shares += share.get<double>();
+  EXPECT_GT(shares, 0.5);
+  EXPECT_LE(shares, 1.0);
   const json& seconds = statistics["seconds"];
   EXPECT_GT(seconds["read"].get<double>(), 0);
   EXPECT_GT(seconds["write"].get<double>(), 0);
@@ -82,6 +86,19 @@ TEST_F(Extract, PresetsAndStrategiesAreTaken) {
   EXPECT_EQ(strategy_of({}), "auto");
   EXPECT_EQ(strategy_of({"--preset", "paper"}), "partition");
   EXPECT_EQ(strategy_of({"--preset", "paper", "--strategy", "baseline"}), "baseline");
+}
+
+TEST_F(Extract, PrecisionIsTaken) {
+  const std::string cloud = sampled("m1.json", "3000");
+  const auto objective_of = [&](const std::string& precision) {
+    const Outcome outcome = run({"extract", cloud, "--primitives", shipped("m1.json"), "-o", path("m.json"), "--stats",
+                                 path("s.json"), "--precision", precision});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(read_file(path("s.json")))["search"]["partitions"][0]["objective"].get<double>();
+  };
+  EXPECT_NE(objective_of("full"), objective_of("single"));
+  EXPECT_NEAR(objective_of("full"), objective_of("single"), 1e-5 * objective_of("full"));
+  EXPECT_EQ(objective_of("auto"), objective_of("single"));
 }
 
 TEST_F(Extract, SearchOptionsAreTaken) {

@@ -127,7 +127,7 @@ TEST(SinglePrecision, MovesScoresByLessThanAHundredThousandth) {
     const Eigen::Vector3d offset = test::random_within(100, random);  // the frame's origin is elsewhere
     for (Primitive& primitive : scene.primitives) primitive.pose.position += offset;
     for (std::size_t i = 0; i < scene.cloud.size(); ++i) {
-      const Eigen::Vector3d noise(0.02 * random.normal(), 0.02 * random.normal(), 0.02 * random.normal());
+      const Eigen::Vector3d noise{0.02 * random.normal(), 0.02 * random.normal(), 0.02 * random.normal()};
       scene.cloud.positions.set(i, scene.cloud.positions[i] + offset + noise);
     }
     const RankClasses full = test::whole_table(scene);
@@ -155,6 +155,34 @@ TEST(SinglePrecision, IsUsedWhereTheNoiseIsFarAboveRounding) {
   EXPECT_NE(geometry(0.02, Precision::single), geometry(0.02, Precision::full));
   EXPECT_EQ(geometry(1e-5, Precision::automatic), geometry(1e-5, Precision::full));
   EXPECT_NE(geometry(1e-5, Precision::single), geometry(1e-5, Precision::full));
+}
+
+/// A face that is nearly flat because its sphere is large, or a half-space that is placed far away on its own plane.
+TEST(SinglePrecision, IsLeftWhereLengthsAreLarge) {
+  for (const double length : {1.0, 1e2, 1e4, 1e6, 1e8}) {
+    const PrimitiveSet primitives{{.id = "block", .shape = Box{{2, 2, 2}}},
+                                  {.id = "dome", .shape = Sphere{length}, .pose = {.position = {0, 0, 0.8 - length}}},
+                                  {.id = "plane", .shape = HalfSpace{}, .pose = {.position = {length, -length, 0.5}}}};
+    const CsgTree tree = intersect(unite(CsgTree::leaf(0), CsgTree::leaf(1)), CsgTree::leaf(2));
+    RandomStream random(5);
+    test::Scene scene{.primitives = primitives, .cloud = {}};
+    for (int i = 0; i < 4000; ++i) {
+      Eigen::Vector3d point = test::random_within(1, random);
+      point.z() = (i % 2 == 0 ? 0.5 : 0.8) + 0.01 * random.normal();
+      scene.cloud.positions.push_back(point);
+      scene.cloud.normals.push_back(Eigen::Vector3d::UnitZ());
+    }
+    const auto geometry = [&](Precision precision) {
+      const std::vector<RankClassesRequest> requests{{.primitives = {0, 1, 2}, .all_points = true}};
+      const PointPass pass = build_rank_classes(
+          scene.cloud, scene.primitives, requests,
+          {.tolerances = segmentation_tolerances({}, 0.01), .objective = {}, .noise = 0.01, .precision = precision});
+      RankScratch scratch;
+      return pass.tables.front().geometry(tree, scratch);
+    };
+    const double expected = geometry(Precision::full);
+    EXPECT_NEAR(geometry(Precision::automatic), expected, 1e-5 * expected) << length;
+  }
 }
 
 /// Of every k points along the curve one is taken, and each counts as it does among all.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cloud2csg/error.hpp"
+#include "fitness/class_table.hpp"
 #include "support/forced_target.hpp"
 #include "support/scene.hpp"
 
@@ -78,6 +79,63 @@ RC_GTEST_PROP(RankClassesTables, GeometryDoesNotDependOnThreads, (std::uint64_t 
       RC_ASSERT(pass.tables[k].class_count() == expected.tables[k].class_count());
       RC_ASSERT(geometries(pass.tables[k], random.trees) == geometries(expected.tables[k], random.trees));
     }
+  }
+}
+
+/// Several chunks, so that threads have something to share.
+TEST(RankClassesTables, LargeCloudsDoNotDependOnThreads) {
+  RandomStream random(17);
+  const test::Scene scene = test::random_scene(7, 60'000, random);
+  const std::vector<CsgTree> trees = test::random_formulas(7, 10, random);
+  const std::vector<RankClassesRequest> requests{{.primitives = test::all_of(scene.primitives), .all_points = true},
+                                                 {.primitives = {0, 2, 3}},
+                                                 {.primitives = {1, 2, 4, 5, 6}, .stride = 3}};
+  for (const Precision precision : {Precision::full, Precision::single}) {
+    const PointPass expected = test::pass_over(scene, requests, {}, 1, precision);
+    for (const int threads : {2, 3, 8, 0}) {
+      const PointPass pass = test::pass_over(scene, requests, {}, threads, precision);
+      EXPECT_EQ(pass.points_of_primitive, expected.points_of_primitive);
+      EXPECT_EQ(pass.unassigned, expected.unassigned);
+      EXPECT_EQ(geometries(pass.tables[0], trees), geometries(expected.tables[0], trees));
+      for (std::size_t k = 0; k < requests.size(); ++k) {
+        EXPECT_EQ(pass.tables[k].class_count(), expected.tables[k].class_count());
+        EXPECT_EQ(pass.tables[k].point_count(), expected.tables[k].point_count());
+        EXPECT_EQ(pass.tables[k].geometry_bound(), expected.tables[k].geometry_bound());
+      }
+    }
+  }
+}
+
+TEST(ClassTable, AbsorbedTablesAreAsIfFilledAtOnce) {
+  const auto fill = [](ClassTable& table, std::uint64_t seed) {
+    RandomStream random(seed);
+    std::vector<std::uint16_t> points(k_block_points);
+    std::iota(points.begin(), points.end(), std::uint16_t{0});
+    std::vector<std::uint32_t> classes(k_block_points);
+    for (int block = 0; block < 40; ++block) {
+      BlockKeys keys(2);
+      for (std::uint32_t& word : keys.words) word = random.below(60);
+      compute_hashes(keys);
+      table.find_or_insert(keys, points, classes);
+      for (const std::uint32_t c : classes) {
+        table.add_points(c, 1);
+        for (double& sum : table.sums(c)) sum += random.below(1000);
+      }
+    }
+  };
+  ClassTable at_once(3, 2);
+  ClassTable first(3, 2);
+  ClassTable second(3, 2);
+  for (const std::uint64_t seed : {1U, 2U}) fill(at_once, seed);
+  fill(first, 1);
+  fill(second, 2);
+  first.absorb(second);
+  ASSERT_EQ(first.size(), at_once.size());
+  EXPECT_EQ(first.point_count(), 80 * k_block_points);
+  for (std::size_t c = 0; c < first.size(); ++c) {
+    EXPECT_TRUE(std::ranges::equal(first.key(c), at_once.key(c)));
+    EXPECT_TRUE(std::ranges::equal(first.sums(c), at_once.sums(c)));
+    EXPECT_EQ(first.count(c), at_once.count(c));
   }
 }
 

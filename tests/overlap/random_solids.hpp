@@ -14,11 +14,11 @@ inline Eigen::Vector3d random_vector(RandomStream& random, double low, double hi
 }
 
 inline Eigen::Vector3d random_direction(RandomStream& random) {
-  return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  return Eigen::Vector3d{random.normal(), random.normal(), random.normal()}.normalized();
 }
 
 inline Eigen::Quaterniond random_orientation(RandomStream& random) {
-  return Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
+  return Eigen::Quaterniond{random.normal(), random.normal(), random.normal(), random.normal()}.normalized();
 }
 
 /// An octahedron with its corners cut off: eight planes and six.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -43,6 +44,18 @@ TEST(BadInput, NoNormals) {
   const Error::Parts error = error_of(cloud, ball());
   EXPECT_NE(error.expected.find("no normals"), std::string::npos);
   EXPECT_NE(error.remedy.find("Compute normals"), std::string::npos);
+}
+
+TEST(BadInput, NumbersThatAreNotFiniteOrTooLarge) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1.7e308}) {
+    PointCloud cloud = cloud_of_ball();
+    cloud.positions.x[7] = bad;
+    cloud.positions.x[8] = -bad;
+    EXPECT_NE(error_of(cloud, ball()).expected.find("not finite"), std::string::npos) << bad;
+  }
+  PointCloud cloud = cloud_of_ball();
+  cloud.normals.z[3] = std::nan("");
+  EXPECT_NE(error_of(cloud, ball()).expected.find("not finite"), std::string::npos);
 }
 
 TEST(BadInput, NoPrimitives) {

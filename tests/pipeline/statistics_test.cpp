@@ -29,7 +29,7 @@ TEST(StatisticsJson, HasEveryKeyOfTheContract) {
   }
   for (const char* key : {"generations", "evaluations"}) EXPECT_TRUE(json["search"].contains(key)) << key;
   for (const char* key : {"size", "leaves", "depth"}) EXPECT_TRUE(json["tree"].contains(key)) << key;
-  for (const char* key : {"objective", "rms_distance", "p95_distance", "rms_angle_deg"}) {
+  for (const char* key : {"objective", "rms_distance", "p95_distance", "rms_angle_deg", "p95_angle_deg"}) {
     EXPECT_TRUE(json["fit"][key].is_number()) << key;
   }
   EXPECT_EQ(json["strategy"], "auto");
@@ -66,6 +66,8 @@ TEST(Statistics, FitIsThatOfTheNoise) {
   EXPECT_NEAR(fit.rms_distance, 0.01, 0.002);
   EXPECT_NEAR(fit.p95_distance, 0.02, 0.004);
   EXPECT_GT(fit.rms_angle_deg, 0.0);
+  EXPECT_GT(fit.p95_angle_deg, 0.0);
+  EXPECT_LE(fit.p95_angle_deg, 180.0);
   EXPECT_LT(fit.rms_angle_deg, 40.0);  // noise across edges turns normals by a right angle
   EXPECT_GT(fit.objective, 5000.0);
   EXPECT_LT(fit.objective, 10'000.0);
