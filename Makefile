@@ -1,11 +1,14 @@
 # A thin door: CMake presets do the work (cmake --list-presets).
 PREFIX ?= /usr/local
 
-.PHONY: help demo test bench format lint install clean dependencies configure
+# make instructions RECORD=1 writes what it counts to bench/instructions.csv.
+RECORD ?=
+
+.PHONY: help demo test bench instructions format lint install clean dependencies configure
 .DEFAULT_GOAL := help
 
 help: ## What there is to make
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 demo: configure ## Build, and run the main job on a shipped cloud
 	@cmake --build --preset release --target cloud2csg
@@ -18,6 +21,9 @@ test: configure ## Build everything and run all tests
 bench: configure ## Print the figures of speed and recovery (docs/performance.md explains them)
 	@cmake --build --preset release
 	@scripts/bench.sh
+
+instructions: configure ## Count the instructions of each step; fails when one takes many more than recorded
+	@scripts/instructions.sh $(if $(RECORD),record)
 
 format: ## Format all sources in place
 	@scripts/install_dependencies.sh lint

@@ -1,40 +1,15 @@
-// Seconds for the overlap graph and its maximal cliques against the number of primitives, on one core: boxes, cylinders
-// and spheres turned and placed at random in a cube that grows with their number, so that the degree stays the same.
+// Seconds for the overlap graph and its maximal cliques against the number of primitives, on one core.
 
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "base/random.hpp"
-#include "cloud2csg/overlap_graph.hpp"
 #include "measure.hpp"
+#include "random_solids.hpp"
 
 namespace cloud2csg::bench {
 namespace {
 
-PrimitiveSet random_solids(std::size_t count, double half_side, RandomStream& random) {
-  PrimitiveSet solids;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto size = [&random] { return random.uniform(0.5, 1.0); };
-    const Shape shape = i % 3 == 0   ? Shape(Box{.size = {size(), size(), size()}})
-                        : i % 3 == 1 ? Shape(Cylinder{.radius = 0.5 * size(), .height = size()})
-                                     : Shape(Sphere{.radius = 0.5 * size()});
-    const auto coordinate = [&] { return random.uniform(-half_side, half_side); };
-    solids.push_back(
-        {.id = fmt::format("p{}", i),
-         .shape = shape,
-         .pose = {
-             .position = {coordinate(), coordinate(), coordinate()},
-             .orientation =
-                 Eigen::Quaterniond{random.normal(), random.normal(), random.normal(), random.normal()}.normalized()}});
-  }
-  return solids;
-}
-
 void report(std::size_t count, double primitives_a_unit) {
-  RandomStream random(count);
-  const double half_side = 0.5 * std::cbrt(static_cast<double>(count) / primitives_a_unit);
-  const PrimitiveSet solids = random_solids(count, half_side, random);
+  const PrimitiveSet solids = random_solids(count, primitives_a_unit);
   OverlapGraph graph;
   const Timing building = time_runs(5, [&] { graph = build_overlap_graph(solids); });
   std::vector<Clique> cliques;

@@ -6,9 +6,12 @@ packages=(
   g++ make cmake ninja-build pkg-config ccache
   libeigen3-dev libtbb-dev libhwy-dev libboost-dev libboost-graph-dev libccd-dev libmuparser-dev libassimp-dev
   libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libfmt-dev
-  libgtest-dev librapidcheck-dev openscad gnuplot-nox
+  libgtest-dev librapidcheck-dev libbenchmark-dev openscad gnuplot-nox
 )
-[ "${1:-}" = lint ] && packages+=(git clang clang-format clang-tidy)
+case "${1:-}" in
+  lint) packages+=(git clang clang-format clang-tidy python3) ;;
+  instructions) packages+=(valgrind) ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "cloud2csg/primitive.hpp"
+#include "micro/counted.hpp"
+
+namespace cloud2csg::bench {
+
+/// Operations for the signed distance and gradient of a primitive at one point.
+/// Precondition: no Expression, no displacement.
+[[nodiscard]] OperationCount field_operations(const Primitive& primitive);
+
+}  // namespace cloud2csg::bench
