@@ -6,6 +6,7 @@ mapfile -t all < <(git ls-files '*.cpp' '*.hpp')
 [ ${#all[@]} -gt 0 ] || { echo 'lint: git lists no sources' >&2; exit 1; }
 clang-format --dry-run -Werror "${all[@]}"
 mapfile -t sources < <(git ls-files 'src/*.cpp' 'apps/*.cpp' 'bench/*.cpp')
-run-clang-tidy -quiet -p build/release -j "$(nproc)" -extra-arg=-Wno-unknown-warning-option "${sources[@]/#/$PWD/}" >build/lint.log 2>build/lint.err ||
-  { grep -E -A4 'error:|warning:' build/lint.log build/lint.err | head -200; exit 1; }
+scripts/tidy.py build/release "${sources[@]}" >build/lint.log ||
+  { grep -E -A4 'error:|warning:|^tidy:' build/lint.log | head -200; exit 1; }
+tail -1 build/lint.log
 echo "lint: ${#all[@]} files formatted, ${#sources[@]} sources checked, nothing found"
