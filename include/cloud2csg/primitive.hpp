@@ -122,6 +122,10 @@ void evaluate_field(const Primitive& primitive, BasicPointsView<float> points, c
 /// Axis-aligned bounds of the solid in the world; infinite for half-spaces. For displaced solids: enclosing.
 [[nodiscard]] AlignedBox bounds(const Primitive& primitive);
 
+/// Bounds of all points where signed_distance() is at most `distance` >= 0; infinite for half-spaces and expressions,
+/// whose formulas say nothing of how fast they grow.
+[[nodiscard]] AlignedBox reach(const Primitive& primitive, double distance);
+
 /// Oriented bounds, in the primitive's own orientation; infinite for half-spaces. Displaced solids: enclosing.
 [[nodiscard]] OrientedBox oriented_bounds(const Primitive& primitive);
 

@@ -97,11 +97,13 @@ class RankClasses {
 /// A set of primitives to make a table for.
 struct RankClassesRequest {
   std::vector<PrimitiveIndex> primitives = {};  ///< at least one, ascending
+  /// Points are taken that belong to one of these; empty: to one of the primitives, as the paper's partitions do.
+  /// Some of the primitives, ascending.
+  std::vector<PrimitiveIndex> owners = {};
   /// Use every k-th point only (along a curve through some thousands of points at a time, before the choice by
   /// segmentation): bounds memory for large sets.
   std::size_t stride = 1;
-  /// All points, or only those that belong to one of the primitives, as the paper's partitions do.
-  bool all_points = false;
+  bool all_points = false;  ///< also those that belong to none of the primitives
 };
 
 /// In which precision distances and angles are computed. Ranks follow from them; sums are exact in any case.
@@ -132,8 +134,10 @@ struct PointPass {
 
 /// The one pass over the points: signed distances and normals, segmentation, contributions, ranks and classes for
 /// all requested sets at once. Sets that are part of another requested one share its work. The result does not depend
-/// on the number of threads or the instruction set. Primitives that no request names are only segmented. O(points x
-/// (primitives + sum of set sizes^2 / lanes)).
+/// on the number of threads or the instruction set. Primitives that no request names are only segmented. Of many
+/// primitives, only those near a point and those requested together with one that it belongs to are looked at. O(points
+/// x log(points)) then, else O(points x primitives); for each point and each requested set that takes it, O(size^2 /
+/// lanes) more.
 /// @throws Cancelled
 [[nodiscard]] PointPass build_rank_classes(const PointCloud& cloud, const PrimitiveSet& primitives,
                                            std::span<const RankClassesRequest> requests,

@@ -41,8 +41,8 @@ class ClassTable {
   void absorb(const ClassTable& other);
 
  private:
-  static constexpr std::size_t k_first_slots = 1024;
-  static constexpr std::size_t k_page_rows = 256;
+  static constexpr std::size_t k_first_slots = 64;
+  static constexpr std::size_t k_page_rows = 64;
 
   /// The class of the key whose word w is at key[w * stride].
   [[nodiscard]] std::uint32_t find_or_insert(const std::uint32_t* key, std::size_t stride, std::uint32_t hash);

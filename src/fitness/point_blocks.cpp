@@ -26,13 +26,36 @@ std::uint16_t spread_step(double offset, double cells_a_unit) {
   return k_spread[static_cast<std::size_t>(std::min(std::max(0.0, offset * cells_a_unit), k_side - 1.0))];
 }
 
+/// Of some rows of columns x, y and z.
+template <class Columns>
+AlignedBox bounds_of_rows(const Columns& columns, std::size_t begin, std::size_t end) {
+  AlignedBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& values = columns[static_cast<std::size_t>(axis)].values;
+    const auto [least, most] = std::minmax_element(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                   values.begin() + static_cast<std::ptrdiff_t>(end));
+    box.min()[axis] = static_cast<double>(*least);
+    box.max()[axis] = static_cast<double>(*most);
+  }
+  return box;
+}
+
 }  // namespace
 
+ChunkCurve::ChunkCurve(const AlignedBox& box)
+    : corner_(box.min()), cells_a_unit_(k_side / std::max(box.sizes().maxCoeff(), 1e-300)) {}
+
+std::uint16_t ChunkCurve::cell_of(double x, double y, double z) const {
+  return static_cast<std::uint16_t>(spread_step(x - corner_.x(), cells_a_unit_) |
+                                    spread_step(y - corner_.y(), cells_a_unit_) << 1U |
+                                    spread_step(z - corner_.z(), cells_a_unit_) << 2U);
+}
+
 template <class Real>
-PointBlocks<Real>::PointBlocks(const PointCloud& cloud, const AlignedBox& box)
+PointBlocks<Real>::PointBlocks(const PointCloud& cloud, const AlignedBox& box, std::span<const std::uint32_t> order)
     : cloud_(&cloud),
-      corner_(box.min()),
-      cells_a_unit_(k_side / std::max(box.sizes().maxCoeff(), 1e-300)),
+      curve_(box),
+      order_(order),
       origin_(origin(box)),
       columns_(std::make_unique<std::array<Column, 6>>()) {}
 
@@ -42,39 +65,52 @@ Eigen::Vector3d PointBlocks<Real>::origin(const AlignedBox& box) {
 }
 
 template <class Real>
-std::uint16_t PointBlocks<Real>::cell_of(double x, double y, double z) const {
-  return static_cast<std::uint16_t>(spread_step(x - corner_.x(), cells_a_unit_) |
-                                    spread_step(y - corner_.y(), cells_a_unit_) << 1U |
-                                    spread_step(z - corner_.z(), cells_a_unit_) << 2U);
+AlignedBox PointBlocks<Real>::bounds(std::size_t block) const {
+  const std::size_t begin = block * k_block_points;
+  return bounds_of_rows(*columns_, begin, begin + size(block));
+}
+
+template <class Real>
+AlignedBox PointBlocks<Real>::bounds() const {
+  return bounds_of_rows(*columns_, 0, points_);
 }
 
 template <class Real>
 void PointBlocks<Real>::load(std::size_t chunk) {
   const std::size_t begin = chunk * k_chunk_points;
   points_ = std::min(k_chunk_points, cloud_->size() - begin);
+  if (order_.empty()) {
+    sort_points(begin);
+  } else {
+    std::ranges::copy(order_.subspan(begin, points_), sources_.begin());
+  }
+  take_column(0, cloud_->positions.x, origin_.x());
+  take_column(1, cloud_->positions.y, origin_.y());
+  take_column(2, cloud_->positions.z, origin_.z());
+  take_column(3, cloud_->normals.x, 0);
+  take_column(4, cloud_->normals.y, 0);
+  take_column(5, cloud_->normals.z, 0);
+}
+
+/// Counting sort.
+template <class Real>
+void PointBlocks<Real>::sort_points(std::size_t begin) {
   const PointsView positions = cloud_->positions.view().subview(begin, points_);
-  const PointsView normals = cloud_->normals.view().subview(begin, points_);
   std::array<std::uint32_t, k_cells> places{};
   for (std::size_t i = 0; i < points_; ++i) {
-    cells_[i] = cell_of(positions.x[i], positions.y[i], positions.z[i]);
+    cells_[i] = curve_.cell_of(positions.x[i], positions.y[i], positions.z[i]);
     ++places[cells_[i]];
   }
   std::exclusive_scan(places.begin(), places.end(), places.begin(), 0U);
-  std::array<Column, 6>& columns = *columns_;
-  for (std::size_t i = 0; i < points_; ++i) {
-    const std::uint32_t place = places[cells_[i]]++;
-    columns[0].values[place] = static_cast<Real>(positions.x[i] - origin_.x());
-    columns[1].values[place] = static_cast<Real>(positions.y[i] - origin_.y());
-    columns[2].values[place] = static_cast<Real>(positions.z[i] - origin_.z());
-    columns[3].values[place] = static_cast<Real>(normals.x[i]);
-    columns[4].values[place] = static_cast<Real>(normals.y[i]);
-    columns[5].values[place] = static_cast<Real>(normals.z[i]);
-  }
-  for (Column& column : columns) {
-    const auto end = static_cast<std::ptrdiff_t>(count() * k_block_points);
-    std::fill(column.values.begin() + static_cast<std::ptrdiff_t>(points_), column.values.begin() + end,
-              column.values[points_ - 1]);
-  }
+  for (std::size_t i = 0; i < points_; ++i) sources_[places[cells_[i]]++] = static_cast<std::uint32_t>(begin + i);
+}
+
+template <class Real>
+void PointBlocks<Real>::take_column(std::size_t which, const std::vector<double>& from, double origin) {
+  auto& values = (*columns_)[which].values;
+  for (std::size_t i = 0; i < points_; ++i) values[i] = static_cast<Real>(from[sources_[i]] - origin);
+  const auto end = static_cast<std::ptrdiff_t>(count() * k_block_points);
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(points_), values.begin() + end, values[points_ - 1]);
 }
 
 template class PointBlocks<double>;

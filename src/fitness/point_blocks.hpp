@@ -18,14 +18,27 @@ inline constexpr std::size_t k_chunk_points = 16384;
   return (points + k_chunk_points - 1) / k_chunk_points;
 }
 
+/// A coarse cubic grid over a box, its cells numbered along Morton's curve.
+class ChunkCurve {
+ public:
+  explicit ChunkCurve(const AlignedBox& box);
+  [[nodiscard]] std::uint16_t cell_of(double x, double y, double z) const;
+
+ private:
+  Eigen::Vector3d corner_;
+  double cells_a_unit_;
+};
+
 /// One chunk of a cloud after the other, its points in the order of a space-filling curve (Morton's) and cut into
 /// blocks: the points of a block are near each other, so that much of what is computed of them is alike. One a thread.
+/// A chunk is consecutive points of the cloud, or of an order that follows such a curve through the whole cloud.
 /// `Real` is double or float.
 template <class Real>
 class PointBlocks {
  public:
-  /// `box` is the cloud's bounds. Precondition: the cloud has normals and outlives this.
-  PointBlocks(const PointCloud& cloud, const AlignedBox& box);
+  /// `box` is the cloud's bounds; `order` all its indices, or empty. Precondition: the cloud has normals; it and the
+  /// order outlive this.
+  PointBlocks(const PointCloud& cloud, const AlignedBox& box, std::span<const std::uint32_t> order);
 
   /// Coordinates are relative to it: for doubles it is zero, so that nothing is rounded.
   [[nodiscard]] static Eigen::Vector3d origin(const AlignedBox& box);
@@ -43,6 +56,9 @@ class PointBlocks {
   [[nodiscard]] BasicPointsView<Real> positions(std::size_t block) const {
     return {column(0, block), column(1, block), column(2, block)};
   }
+  /// Bounds of a block's points, and of the whole chunk's, relative to the origin.
+  [[nodiscard]] AlignedBox bounds(std::size_t block) const;
+  [[nodiscard]] AlignedBox bounds() const;
   [[nodiscard]] BlockNormals<Real> normals(std::size_t block) const {
     return {column(3, block).data(), column(4, block).data(), column(5, block).data()};
   }
@@ -54,16 +70,18 @@ class PointBlocks {
   [[nodiscard]] std::span<const Real> column(std::size_t which, std::size_t block) const {
     return std::span((*columns_)[which].values).subspan(block * k_block_points, k_block_points);
   }
-  /// The cell of a cubic grid that a point is in, numbered along the curve.
-  [[nodiscard]] std::uint16_t cell_of(double x, double y, double z) const;
+  /// Puts the chunk's points into `sources_`, along the curve.
+  void sort_points(std::size_t begin);
+  void take_column(std::size_t which, const std::vector<double>& from, double origin);
 
   const PointCloud* cloud_;
-  Eigen::Vector3d corner_;
-  double cells_a_unit_;
+  ChunkCurve curve_;
+  std::span<const std::uint32_t> order_;
   Eigen::Vector3d origin_;
   std::size_t points_ = 0;
   std::unique_ptr<std::array<Column, 6>> columns_;  ///< coordinates, then normals
   std::array<std::uint16_t, k_chunk_points> cells_{};
+  std::array<std::uint32_t, k_chunk_points> sources_{};  ///< indices into the cloud, in the order of the blocks
 };
 
 extern template class PointBlocks<double>;

@@ -5,6 +5,7 @@
 #include "base/stopwatch.hpp"
 #include "fitness/point_worker.hpp"
 #include "fitness/rank_classes_builder.hpp"
+#include "fitness/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -46,18 +47,48 @@ bool has_unit_gradient(const Primitive& primitive) {
   return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
 }
 
+/// From so many primitives on, a block of points is near few of them, and it pays to find out of which.
+constexpr std::size_t k_many_primitives = 32;
+
+/// Where points may belong to each primitive, with room for what rounding does.
+std::vector<AlignedBox> reach_of(const PrimitiveSet& primitives, const AlignedBox& box, double distance) {
+  const double largest = (box.isEmpty() ? 0.0 : box.diagonal().norm()) + box.center().norm();
+  const double room = 0.01 * distance + 1e-9 * largest;
+  std::vector<AlignedBox> boxes;
+  for (const Primitive& primitive : primitives) boxes.push_back(reach(primitive, distance + room));
+  return boxes;
+}
+
+template <class Real>
+void link_roots(WorkerInput<Real>& input) {
+  input.roots_of.resize(input.primitives.size());
+  for (std::uint32_t k = 0; k < input.roots.size(); ++k) {
+    if (input.roots[k].all_points) {
+      input.roots_of_all_points.push_back(k);
+    } else {
+      for (const PrimitiveIndex p : input.roots[k].owners) input.roots_of[p].push_back(k);
+    }
+  }
+}
+
 template <class Real>
 WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const PrimitiveSet& primitives,
-                           std::span<const RankClassesRequest> requests, const PointPassOptions& options) {
+                           std::span<const RankClassesRequest> requests, const PointPassOptions& options,
+                           const RunContext& run) {
   const Objective scale = resolve(options.objective, cloud.size(), options.noise);
   WorkerInput<Real> input{
       .primitives = primitives, .parameters = {}, .cloud = cloud, .box = box, .roots = plan_roots(requests)};
+  link_roots(input);
   for (Primitive& primitive : input.primitives) {
     primitive.pose.position -= PointBlocks<Real>::origin(box);
     if (sizeof(Real) < sizeof(double) && is_plain_half_space(primitive)) {
       primitive.pose.position = foot_of_origin(primitive.pose);
     }
     input.parameters.push_back({scale.beta, scale.gamma, options.tolerances, has_unit_gradient(primitive)});
+  }
+  if (primitives.size() > k_many_primitives) {
+    input.reach = reach_of(input.primitives, box, options.tolerances.distance);
+    input.order = spatial_order(cloud.positions, box, run);
   }
   return input;
 }
@@ -100,7 +131,7 @@ PointPass pass_over(const PointCloud& cloud, const AlignedBox& box, const Primit
                     std::span<const RankClassesRequest> requests, const PointPassOptions& options,
                     const RunContext& run) {
   Stopwatch watch;
-  const WorkerInput<Real> input = input_of<Real>(cloud, box, primitives, requests, options);
+  const WorkerInput<Real> input = input_of<Real>(cloud, box, primitives, requests, options, run);
   const WorkerShare share = work(input, run);
   watch.lap();
   PointPass pass{.tables = build_tables(requests, input.roots, share.tables, options),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 #include "base/stopwatch.hpp"
 
@@ -33,32 +34,50 @@ std::size_t count_bits(const BlockMask& mask) {
   return count;
 }
 
+/// A primitive that is looked at in a block.
+template <class Real>
+struct ActivePrimitive {
+  PrimitiveIndex primitive = 0;
+  BlockField<Real> field;
+  BlockContributions<Real> contributions;
+  bool has_members = false;  ///< points of the block that belong to it
+};
+
 template <class Real>
 class Worker {
  public:
   explicit Worker(const WorkerInput<Real>& input)
       : input_(input),
-        blocks_(input.cloud, input.box),
-        fields_(input.primitives.size()),
-        contributions_(input.primitives.size()) {
+        blocks_(input.cloud, input.box, input.order),
+        slot_of_(input.primitives.size(), k_none),
+        is_wanted_(input.roots.size(), false) {
     share_.points_of_primitive.resize(input.primitives.size());
     std::size_t most_primitives = 0;
     for (const Root& root : input.roots) {
       share_.tables.emplace_back(root.primitives.size(), root.key_words());
-      keys_.emplace_back(root.key_words());
       most_primitives = std::max(most_primitives, root.primitives.size());
     }
     ranks_.resize(most_primitives);
+    if (input.reach.empty()) {
+      near_chunk_.resize(input.primitives.size());
+      std::iota(near_chunk_.begin(), near_chunk_.end(), PrimitiveIndex{0});
+    }
   }
 
   void process(std::size_t chunk) {
     Stopwatch watch;
     blocks_.load(chunk);
+    if (!input_.reach.empty()) look_around();
     for (std::size_t block = 0; block < blocks_.count(); ++block) {
-      evaluate_fields(block);
+      segment(block);
+      choose_roots();
+      for (const std::uint32_t k : wanted_) {
+        for (const PrimitiveIndex p : input_.roots[k].primitives) evaluate(p, block);
+      }
       share_.segment_seconds += watch.lap();
       const std::size_t begin = chunk * k_chunk_points + block * k_block_points;
-      for (std::size_t k = 0; k < input_.roots.size(); ++k) group(k, block, begin);
+      for (const std::uint32_t k : wanted_) group(k, block, begin);
+      forget_block();
       share_.classes_seconds += watch.lap();
     }
   }
@@ -66,35 +85,87 @@ class Worker {
   [[nodiscard]] WorkerShare& share() { return share_; }
 
  private:
-  void evaluate_fields(std::size_t block) {
+  static constexpr std::uint32_t k_none = static_cast<std::uint32_t>(-1);
+
+  /// Finds the primitives that points of the chunk may belong to.
+  void look_around() {
+    const AlignedBox box = blocks_.bounds();
+    near_chunk_.clear();
+    for (PrimitiveIndex p = 0; p < input_.reach.size(); ++p) {
+      if (input_.reach[p].intersects(box)) near_chunk_.push_back(p);
+    }
+  }
+
+  /// Finds out which points of the block belong to which primitives.
+  void segment(std::size_t block) {
+    const AlignedBox box = input_.reach.empty() ? AlignedBox() : blocks_.bounds(block);
+    for (const PrimitiveIndex p : near_chunk_) {
+      if (input_.reach.empty() || input_.reach[p].intersects(box)) evaluate(p, block);
+    }
     const BlockMask in_block = first_bits(blocks_.size(block));
     BlockMask assigned{};
-    for (std::size_t p = 0; p < input_.primitives.size(); ++p) {
-      BlockField<Real>& field = fields_[p];
-      evaluate_field(input_.primitives[p], blocks_.positions(block),
-                     BasicFieldSpans<Real>{.distance = field.distance,
-                                           .gradient_x = field.gradient_x,
-                                           .gradient_y = field.gradient_y,
-                                           .gradient_z = field.gradient_z});
-      compute_contributions(field, blocks_.normals(block), input_.parameters[p], contributions_[p]);
-      BlockMask& member = contributions_[p].member;
+    for (std::size_t slot = 0; slot < active_count_; ++slot) {
+      BlockMask& member = active_[slot].contributions.member;
       for (std::size_t w = 0; w < member.size(); ++w) {
         member[w] &= in_block[w];
         assigned[w] |= member[w];
       }
-      share_.points_of_primitive[p] += count_bits(member);
+      const std::size_t members = count_bits(member);
+      share_.points_of_primitive[active_[slot].primitive] += members;
+      active_[slot].has_members = members > 0;
     }
     share_.unassigned += blocks_.size(block) - count_bits(assigned);
+    segmented_count_ = active_count_;
   }
 
+  /// Makes the primitive active, unless it is.
+  void evaluate(PrimitiveIndex p, std::size_t block) {
+    if (slot_of_[p] != k_none) return;
+    slot_of_[p] = static_cast<std::uint32_t>(active_count_);
+    if (active_count_ == active_.size()) active_.emplace_back();
+    ActivePrimitive<Real>& active = active_[active_count_++];
+    active.primitive = p;
+    BlockField<Real>& field = active.field;
+    evaluate_field(input_.primitives[p], blocks_.positions(block),
+                   BasicFieldSpans<Real>{.distance = field.distance,
+                                         .gradient_x = field.gradient_x,
+                                         .gradient_y = field.gradient_y,
+                                         .gradient_z = field.gradient_z});
+    compute_contributions(field, blocks_.normals(block), input_.parameters[p], active.contributions);
+  }
+
+  [[nodiscard]] const ActivePrimitive<Real>& active(PrimitiveIndex p) const { return active_[slot_of_[p]]; }
+
+  /// The roots that take points of the block.
+  void choose_roots() {
+    for (const std::uint32_t k : wanted_) is_wanted_[k] = false;
+    wanted_ = input_.roots_of_all_points;
+    for (const std::uint32_t k : wanted_) is_wanted_[k] = true;
+    for (std::size_t slot = 0; slot < segmented_count_; ++slot) {
+      if (!active_[slot].has_members) continue;
+      for (const std::uint32_t k : input_.roots_of[active_[slot].primitive]) {
+        if (!is_wanted_[k]) wanted_.push_back(k);
+        is_wanted_[k] = true;
+      }
+    }
+  }
+
+  void forget_block() {
+    for (std::size_t slot = 0; slot < active_count_; ++slot) slot_of_[active_[slot].primitive] = k_none;
+    active_count_ = 0;
+  }
+
+  /// Those of owners that are not active have no points here.
   [[nodiscard]] BlockMask points_of(const Root& root, std::size_t block, std::size_t begin) const {
     BlockMask chosen = every_kth(begin, blocks_.size(block), root.stride);
     if (root.all_points) return chosen;
-    for (std::size_t w = 0; w < chosen.size(); ++w) {
-      std::uint64_t any = 0;
-      for (const PrimitiveIndex p : root.primitives) any |= contributions_[p].member[w];
-      chosen[w] &= any;
+    BlockMask any{};
+    for (const PrimitiveIndex p : root.owners) {
+      if (slot_of_[p] >= segmented_count_) continue;
+      const BlockMask& member = active(p).contributions.member;
+      for (std::size_t w = 0; w < any.size(); ++w) any[w] |= member[w];
     }
+    for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= any[w];
     return chosen;
   }
 
@@ -114,13 +185,13 @@ class Worker {
     const Root& root = input_.roots[k];
     const std::span<const std::uint16_t> chosen = places_of(points_of(root, block, begin));
     if (chosen.empty()) return;
-    make_keys(root, keys_[k]);
+    make_keys(root);
     ClassTable& table = share_.tables[k];
     const std::span<std::uint32_t> classes = std::span(classes_).first(chosen.size());
-    table.find_or_insert(keys_[k], chosen, classes);
+    table.find_or_insert(keys_, chosen, classes);
     loud_.clear();
     for (std::size_t place = 0; place < root.primitives.size(); ++place) {
-      const BlockContributions<Real>& contributions = contributions_[root.primitives[place]];
+      const BlockContributions<Real>& contributions = active(root.primitives[place]).contributions;
       if (!contributions.is_silent) loud_.push_back({contributions.pairs.data(), 2 * place});
     }
     for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -129,27 +200,29 @@ class Worker {
     }
   }
 
-  void make_keys(const Root& root, BlockKeys& keys) {
+  void make_keys(const Root& root) {
+    keys_.reshape(root.key_words());
     const KeyLayout layout = root.layout();
     if (root.primitives.size() <= RankClasses::k_byte_limit) {
       columns_.clear();
       for (const PrimitiveIndex p : root.primitives) {
-        columns_.push_back({fields_[p].distance.data(), contributions_[p].smallest, contributions_[p].largest});
+        columns_.push_back(
+            {active(p).field.distance.data(), active(p).contributions.smallest, active(p).contributions.largest});
       }
       const std::span<RankColumn> ranks = std::span(ranks_).first(root.primitives.size());
       compute_signed_ranks(columns_, ranks);
-      pack_rank_keys(ranks, layout, keys);
+      pack_rank_keys(ranks, layout, keys_);
     } else {
       std::vector<const Real*> distances;
-      for (const PrimitiveIndex p : root.primitives) distances.push_back(fields_[p].distance.data());
-      sort_rank_keys(distances, layout, keys);
+      for (const PrimitiveIndex p : root.primitives) distances.push_back(active(p).field.distance.data());
+      sort_rank_keys(distances, layout, keys_);
     }
     if (root.has_member_word) {
       members_.clear();
-      for (const PrimitiveIndex p : root.primitives) members_.push_back(&contributions_[p].member);
-      pack_member_word(members_, keys);
+      for (const PrimitiveIndex p : root.primitives) members_.push_back(&active(p).contributions.member);
+      pack_member_word(members_, keys_);
     }
-    compute_hashes(keys);
+    compute_hashes(keys_);
   }
 
   void add_contributions(std::size_t point, std::span<double> sums) const {
@@ -167,15 +240,20 @@ class Worker {
 
   const WorkerInput<Real>& input_;
   PointBlocks<Real> blocks_;
-  std::vector<BlockField<Real>> fields_;
-  std::vector<BlockContributions<Real>> contributions_;
+  std::vector<PrimitiveIndex> near_chunk_;     // of which points of the chunk may be
+  std::vector<ActivePrimitive<Real>> active_;  // the first active_count_ of them
+  std::size_t active_count_ = 0;
+  std::size_t segmented_count_ = 0;     // of the active: the others have no points here
+  std::vector<std::uint32_t> slot_of_;  // by primitive: its place among the active, or k_none
+  std::vector<std::uint32_t> wanted_;   // roots that take points of the block
+  std::vector<bool> is_wanted_;         // by root
   std::vector<DistanceColumn<Real>> columns_;
   std::vector<RankColumn> ranks_;
   std::vector<const BlockMask*> members_;
   std::vector<Loud> loud_;
   std::array<std::uint16_t, k_block_points> places_{};
   std::array<std::uint32_t, k_block_points> classes_{};
-  std::vector<BlockKeys> keys_;  // by root
+  BlockKeys keys_;
   WorkerShare share_;
 };
 

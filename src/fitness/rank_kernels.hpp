@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -46,9 +47,15 @@ struct KeyLayout {
 
 /// Keys of the points of a block.
 struct BlockKeys {
-  explicit BlockKeys(std::size_t key_words) : count(key_words), words(key_words * k_block_points) {}
+  explicit BlockKeys(std::size_t key_words = 0) { reshape(key_words); }
 
-  std::size_t count;                                               ///< words of a key
+  /// For keys of so many words; what was in them is lost.
+  void reshape(std::size_t key_words) {
+    count = key_words;
+    words.resize(std::max(words.size(), key_words * k_block_points));
+  }
+
+  std::size_t count = 0;                                           ///< words of a key
   AlignedVector<std::uint32_t> words;                              ///< word w of point i at [w * k_block_points + i]
   alignas(64) std::array<std::uint32_t, k_block_points> hashes{};  ///< of all words
 };

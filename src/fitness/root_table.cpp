@@ -4,29 +4,32 @@
 #include <array>
 #include <cassert>
 #include <numeric>
+#include <unordered_map>
 
 namespace cloud2csg {
 namespace {
 
 static_assert(RankClasses::k_shared_limit <= 32, "a member word has a bit a primitive");
 
-bool contains(const Root& root, const RankClassesRequest& request) {
-  return std::ranges::includes(root.primitives, request.primitives);
+const std::vector<PrimitiveIndex>& owners_of(const RankClassesRequest& request) {
+  return request.owners.empty() ? request.primitives : request.owners;
 }
 
 /// Whether the root may be grouped by for the request as well.
 bool can_answer(const Root& root, const RankClassesRequest& request) {
   return root.primitives.size() <= RankClasses::k_shared_limit && root.stride == request.stride &&
-         contains(root, request);
+         std::ranges::includes(root.primitives, request.primitives) &&
+         std::ranges::includes(root.owners, owners_of(request));
 }
 
-/// Where in the root's set the request's primitives are.
+/// Where in the root's set a primitive is.
+std::size_t place_in(const Root& root, PrimitiveIndex primitive) {
+  return static_cast<std::size_t>(std::ranges::lower_bound(root.primitives, primitive) - root.primitives.begin());
+}
+
 std::vector<std::size_t> places_in(const Root& root, const RankClassesRequest& request) {
   std::vector<std::size_t> places;
-  for (const PrimitiveIndex p : request.primitives) {
-    const auto found = std::ranges::lower_bound(root.primitives, p);
-    places.push_back(static_cast<std::size_t>(found - root.primitives.begin()));
-  }
+  for (const PrimitiveIndex p : request.primitives) places.push_back(place_in(root, p));
   return places;
 }
 
@@ -45,7 +48,7 @@ class Projection {
         table_(request.primitives.size(), layout_.words) {
     std::iota(in_turn_.begin(), in_turn_.end(), std::uint16_t{0});
     if (root.has_member_word && !request.all_points) {
-      for (const std::size_t place : places_) wanted_ |= std::uint32_t{1} << place;
+      for (const PrimitiveIndex p : owners_of(request)) wanted_ |= std::uint32_t{1} << place_in(root, p);
     }
   }
 
@@ -115,16 +118,22 @@ std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
   std::ranges::stable_sort(largest_first, std::ranges::greater(),
                            [&](std::size_t k) { return requests[k].primitives.size(); });
   std::vector<Root> roots;
+  std::unordered_map<PrimitiveIndex, std::vector<std::size_t>> roots_with;
   for (const std::size_t k : largest_first) {
     const RankClassesRequest& request = requests[k];
     assert(!request.primitives.empty() && request.stride > 0 && std::ranges::is_sorted(request.primitives));
-    auto root = std::ranges::find_if(roots, [&](const Root& other) { return can_answer(other, request); });
-    if (root == roots.end()) {
-      roots.push_back({.primitives = request.primitives, .stride = request.stride});
-      root = roots.end() - 1;
+    assert(std::ranges::includes(request.primitives, owners_of(request)));
+    const std::vector<std::size_t>& nearby = roots_with[request.primitives.front()];
+    const auto found = std::ranges::find_if(nearby, [&](std::size_t r) { return can_answer(roots[r], request); });
+    std::size_t r = roots.size();
+    if (found != nearby.end()) {
+      r = *found;
+    } else {
+      roots.push_back({.primitives = request.primitives, .owners = owners_of(request), .stride = request.stride});
+      for (const PrimitiveIndex p : request.primitives) roots_with[p].push_back(r);
     }
-    root->all_points = root->all_points || request.all_points;
-    root->requests.push_back(k);
+    roots[r].all_points = roots[r].all_points || request.all_points;
+    roots[r].requests.push_back(k);
   }
   for (Root& root : roots) root.has_member_word = root.requests.size() > 1;
   return roots;

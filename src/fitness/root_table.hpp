@@ -13,8 +13,9 @@ namespace cloud2csg {
 /// there are far fewer than points; therefore points of one class also belong to the same primitives of the set.
 struct Root {
   std::vector<PrimitiveIndex> primitives;
+  std::vector<PrimitiveIndex> owners;      ///< points that belong to one of these
   std::size_t stride = 1;                  ///< every k-th point
-  bool all_points = false;                 ///< also those that belong to none of the primitives
+  bool all_points = false;                 ///< also those that belong to none of the owners
   bool has_member_word = false;            ///< whether keys end with a word that tells to whom the points belong
   std::vector<std::size_t> requests = {};  ///< that are answered from it
 
@@ -22,7 +23,8 @@ struct Root {
   [[nodiscard]] std::size_t key_words() const { return layout().words + (has_member_word ? 1 : 0); }
 };
 
-/// The roots for all requests. Each request is answered by one of them.
+/// The roots for all requests. Each request is answered by one of them. O(sum of the set sizes x roots that share a
+/// primitive).
 [[nodiscard]] std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests);
 
 /// Groups the classes of a root by the order of the request's primitives.

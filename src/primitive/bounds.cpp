@@ -66,12 +66,17 @@ AlignedBox shape_bounds(const Shape& shape, const Pose& pose) {
                     shape);
 }
 
-/// Bounds of where the undisplaced distance is below 1: the displacement takes away at most that.
-AlignedBox reach_of_displacement(const Shape& shape, const Pose& pose) {
-  if (const auto* polytope = std::get_if<Polytope>(&shape)) return box_of_corners(grown(*polytope, 1.0), pose);
+/// Bounds of where the undisplaced distance is at most so much.
+AlignedBox reach_of_shape(const Shape& shape, const Pose& pose, double distance) {
+  if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Expression>(shape)) return everywhere();
+  // Outside, near edges and corners, its distance is below the Euclidean one.
+  if (const auto* polytope = std::get_if<Polytope>(&shape)) return box_of_corners(grown(*polytope, distance), pose);
   const AlignedBox box = shape_bounds(shape, pose);
-  return {box.min().array() - 1.0, box.max().array() + 1.0};
+  return {box.min().array() - distance, box.max().array() + distance};
 }
+
+/// The most that a displacement adds to a distance or takes from it.
+constexpr double k_amplitude = 1.0;
 
 }  // namespace
 
@@ -81,7 +86,11 @@ AlignedBox bounds(const Primitive& primitive) {
       std::holds_alternative<Expression>(primitive.shape)) {
     return shape_bounds(primitive.shape, primitive.pose);
   }
-  return displaced_bounds(primitive, reach_of_displacement(primitive.shape, primitive.pose));
+  return displaced_bounds(primitive, reach_of_shape(primitive.shape, primitive.pose, k_amplitude));
+}
+
+AlignedBox reach(const Primitive& primitive, double distance) {
+  return reach_of_shape(primitive.shape, primitive.pose, distance + (primitive.displacement ? k_amplitude : 0.0));
 }
 
 OrientedBox oriented_bounds(const Primitive& primitive) {
