@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/csg_tree.hpp"
+
+namespace cloud2csg {
+
+/// Builds a tree in postfix order, with constants folded away as they come. Constants take no nodes until the end.
+class FoldingTree {
+ public:
+  void leaf(PrimitiveIndex primitive) {
+    stack_.push_back({Kind::tree, nodes_.size()});
+    nodes_.push_back(CsgNode::leaf(primitive));
+  }
+
+  void constant(bool is_full) { stack_.push_back({is_full ? Kind::full : Kind::empty, nodes_.size()}); }
+
+  /// Of the operation's last operands; an operation with an arity above 0.
+  void apply(Operation operation) {
+    if (operation == Operation::complement) {
+      invert(stack_.back());
+      return;
+    }
+    const Value second = stack_.back();
+    stack_.pop_back();
+    Value& first = stack_.back();
+    if (first.kind == Kind::tree && second.kind == Kind::tree) {
+      nodes_.push_back(CsgNode::inner(operation, static_cast<std::uint32_t>(nodes_.size() - first.begin + 1)));
+    } else {
+      fold(operation, first, second);
+    }
+  }
+
+  void replace_last(bool is_full) {
+    nodes_.erase(nodes_.begin() + static_cast<std::ptrdiff_t>(stack_.back().begin), nodes_.end());
+    stack_.back().kind = is_full ? Kind::full : Kind::empty;
+  }
+
+  [[nodiscard]] CsgTree take() {
+    if (stack_.back().kind != Kind::tree) return stack_.back().kind == Kind::full ? CsgTree::full() : CsgTree::empty();
+    return CsgTree(std::move(nodes_));
+  }
+
+ private:
+  enum class Kind : std::uint8_t { empty, full, tree };
+  struct Value {
+    Kind kind;
+    std::size_t begin;  ///< of its nodes, which reach up to those of the next value
+  };
+
+  void invert(Value& value) {
+    if (value.kind != Kind::tree) {
+      value.kind = value.kind == Kind::full ? Kind::empty : Kind::full;
+    } else if (nodes_.back().operation() == Operation::complement) {
+      nodes_.pop_back();
+    } else {
+      const auto length = static_cast<std::uint32_t>(nodes_.size() - value.begin + 1);
+      nodes_.push_back(CsgNode::inner(Operation::complement, length));
+    }
+  }
+
+  /// Of two operands one at least of which is constant; the result takes the place of the first.
+  void fold(Operation operation, Value& first, const Value& second) {
+    const auto becomes = [this, &first](Kind kind) {
+      nodes_.erase(nodes_.begin() + static_cast<std::ptrdiff_t>(first.begin), nodes_.end());
+      first.kind = kind;
+    };
+    const bool is_union = operation == Operation::union_of;
+    const Kind absorbing = is_union ? Kind::full : Kind::empty;
+    if (operation == Operation::difference && second.kind != Kind::tree) {
+      if (second.kind == Kind::full) becomes(Kind::empty);
+    } else if (operation == Operation::difference) {
+      if (first.kind == Kind::empty) return becomes(Kind::empty);
+      first.kind = Kind::tree;  // all of space less the second
+      invert(first);
+    } else if (first.kind == absorbing || second.kind == absorbing) {
+      becomes(absorbing);
+    } else if (first.kind != Kind::tree) {
+      first.kind = second.kind;  // the constant had no nodes: the second's begin where the first would
+    }
+  }
+
+  std::vector<CsgNode> nodes_;
+  std::vector<Value> stack_;
+};
+
+}  // namespace cloud2csg
