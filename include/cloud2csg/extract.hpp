@@ -77,7 +77,8 @@ struct PartitionStatistics {
 enum class MergeWay {
   single,                  ///< there was one partition
   paper,                   ///< the paper's order went through and the result held
-  largest_common_subtree,  ///< the same by largest common subtrees first
+  dominance,               ///< by what primitives are to the partitions' trees: merge_by_dominance()
+  largest_common_subtree,  ///< the paper's by largest common subtrees first
   joint,                   ///< partitions that did not merge were solved together
   search,                  ///< a search over the whole component from the best of these
 };

@@ -13,6 +13,7 @@ namespace cloud2csg {
 enum class MergeOrder {
   paper,                   ///< the head of the list with the next ones; the merged tree is the new head
   largest_common_subtree,  ///< always the two trees with the largest valid common subtree
+  // Long lists are first made short by rounds in which each tree merges with the first that it can.
 };
 
 struct MergeResult {
@@ -37,9 +38,21 @@ struct MergeResult {
 ///
 /// Only formulas are looked at: that the trees agree where they overlap is for the caller to verify, and trees that
 /// stay apart (over disjoint primitives, or blocked by an intersection on the way to all they share) are for the
-/// caller to join. Deterministic. O(merges x (trees + size of the result x log size)), for each blocked pair O(size)
-/// more. A triggered run.stop ends it between two merges: the trees are then as merged so far.
+/// caller to join. Deterministic. Of long lists of trees that share primitives with few others: O(size x log^2 size);
+/// else O(merges x (trees + size of the result x log size)); for each blocked pair O(size) more. A triggered run.stop
+/// ends it between two merges: the trees are then as merged so far.
 [[nodiscard]] MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order = MergeOrder::paper,
                                       const RunContext& run = {});
+
+/// Merges trees by what their primitives are to them, beyond the paper. A primitive that is wholly in the solid in each
+/// tree that has it is united with all the rest, one that is wholly out of it is subtracted from all the rest; both are
+/// then taken out of the trees, which are from now on about what is outside of it, and that uncovers others. What is
+/// left over, such as a & b, is merged as by merge_trees(); then it is put together again, what went first outermost:
+/// each primitive that was taken out appears once.
+///
+/// Right where each tree tells the truth about all of space near its primitives. `trees` of the result is one, unless
+/// some that share primitives are blocked. Deterministic. O(size x log size) for trees that each share primitives with
+/// few others.
+[[nodiscard]] MergeResult merge_by_dominance(std::span<const CsgTree> trees, const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,14 @@
 
 namespace cloud2csg {
 
+/// Points of a component with the primitives that tell what any tree is at them: the whole component, or, where that is
+/// too large for a table, the points of one primitive with it and all that overlap it.
+struct MergeWindow {
+  const RankClasses* table;
+  std::vector<PrimitiveIndex> primitives;     ///< by local index of the table: index in the component; ascending
+  std::optional<PrimitiveIndex> judged = {};  ///< only points nearest to this one count; absent: all
+};
+
 /// What partition trees promise on the points of a whole component, and how far a merged tree falls short of it.
 ///
 /// For each primitive, the promise is the best that a partition tree with that primitive reaches on the points nearest
@@ -15,14 +24,22 @@ namespace cloud2csg {
 /// whole.
 class MergeCheck {
  public:
-  /// `cliques` and `trees` belong together; both index the table's primitives locally. O(trees x classes).
-  MergeCheck(const RankClasses& table, std::span<const Clique> cliques, std::span<const CsgTree> trees);
+  /// `cliques` and `trees` belong together; they index the component's `primitives`. What less than `alpha`, the cost
+  /// of a node, tells is taken for noise. The windows' tables must outlive this. O(sum over the cliques of their
+  /// windows' classes).
+  MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha, std::span<const Clique> cliques,
+             std::span<const CsgTree> trees);
 
-  /// The largest share of a primitive's promise that `merged` does not reach; 0 when it reaches all.
-  [[nodiscard]] double worst_shortfall(const CsgTree& merged) const;
+  struct Verdict {
+    double score;            ///< E(t) over all windows
+    double worst_shortfall;  ///< the largest share of a primitive's promise that the tree does not reach; 0: none
+  };
+  /// O(classes x size of the tree within their window).
+  [[nodiscard]] Verdict judge(const CsgTree& merged) const;
 
  private:
-  const RankClasses& table_;
+  std::vector<MergeWindow> windows_;
+  double alpha_;
   std::vector<double> promised_;  // by primitive
 };
 

@@ -4,6 +4,7 @@
 #include <queue>
 #include <span>
 #include <stop_token>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -147,6 +148,76 @@ class LargestFirst {
   std::stop_token stop_;
 };
 
+/// Lists up to this length are merged in their order alone.
+constexpr std::size_t k_short_list = 64;
+
+/// For long lists: each tree merges with the first later one that it merges with and that has not merged yet, so that
+/// in each round trees become about twice as large. A result that grows by one partition at a time would be copied as
+/// often as there are partitions.
+class PairingRounds {
+ public:
+  PairingRounds(std::vector<MergeCandidate>& list, std::stop_token stop) : list_(list), stop_(std::move(stop)) {}
+
+  /// Until the list is short or nothing merges. Returns the number of merges.
+  std::size_t merge() {
+    std::size_t merges = 0;
+    while (list_.size() > k_short_list && !stop_.stop_requested()) {
+      const std::size_t merged = merge_pairs();
+      if (merged == 0) break;
+      merges += merged;
+    }
+    return merges;
+  }
+
+ private:
+  std::size_t merge_pairs() {
+    index_primitives();
+    std::vector<bool> has_merged(list_.size(), false), is_gone(list_.size(), false);
+    std::size_t merges = 0;
+    for (std::size_t i = 0; i < list_.size() && !stop_.stop_requested(); ++i) {
+      if (has_merged[i]) continue;
+      for (const std::size_t j : later_neighbours(i)) {
+        if (has_merged[j]) continue;
+        const std::optional<MergePlan> plan = plan_merge(list_[i], list_[j]);
+        if (!plan) continue;
+        list_[i] = carry_out(*plan);
+        has_merged[i] = has_merged[j] = is_gone[j] = true;
+        ++merges;
+        break;
+      }
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (!is_gone[i] && kept++ != i) list_[kept - 1] = std::move(list_[i]);
+    }
+    list_.resize(kept);
+    return merges;
+  }
+
+  void index_primitives() {
+    trees_with_.clear();
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      for (const PrimitiveIndex p : list_[i].primitives) trees_with_[p].push_back(i);
+    }
+  }
+
+  /// Later trees that share a primitive with tree i, ascending.
+  [[nodiscard]] std::vector<std::size_t> later_neighbours(std::size_t i) const {
+    std::vector<std::size_t> later;
+    for (const PrimitiveIndex p : list_[i].primitives) {
+      const std::vector<std::size_t>& trees = trees_with_.at(p);
+      later.insert(later.end(), std::ranges::upper_bound(trees, i), trees.end());
+    }
+    std::ranges::sort(later);
+    later.erase(std::ranges::unique(later).begin(), later.end());
+    return later;
+  }
+
+  std::vector<MergeCandidate>& list_;
+  std::unordered_map<PrimitiveIndex, std::vector<std::size_t>> trees_with_;  // as the round began
+  std::stop_token stop_;
+};
+
 std::size_t blocked_pairs(std::span<const MergeCandidate> list) {
   std::size_t blocked = 0;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -160,8 +231,9 @@ std::size_t blocked_pairs(std::span<const MergeCandidate> list) {
 MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order, const RunContext& run) {
   std::vector<MergeCandidate> list = simplified_candidates(trees);
   MergeResult result;
-  result.merges = order == MergeOrder::paper ? merge_in_order_of_the_paper(list, run.stop)
-                                             : LargestFirst(list, run.stop).merge_all();
+  result.merges = PairingRounds(list, run.stop).merge();
+  result.merges += order == MergeOrder::paper ? merge_in_order_of_the_paper(list, run.stop)
+                                              : LargestFirst(list, run.stop).merge_all();
   result.blocked = blocked_pairs(list);
   for (MergeCandidate& candidate : list) result.trees.push_back(std::move(candidate.tree));
   return result;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "cloud2csg/merge.hpp"
 #include "cloud2csg/simplify.hpp"
-#include "merge/merge_check.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -14,6 +14,9 @@ namespace {
 /// A merged tree passes when no primitive's surface loses more than this share of what its partitions reached. Trees
 /// that agree differ by a few per mille, near edges where one partition does not see the other's primitives.
 constexpr double k_tolerated_shortfall = 0.05;
+
+/// Each joint solution is a pass over all points: with more trees than this left over, it takes too long.
+constexpr std::size_t k_joint_limit = 32;
 
 Clique common(const Clique& a, const Clique& b) {
   Clique both;
@@ -29,51 +32,68 @@ class ComponentMerger {
         solve_jointly_(solve_jointly),
         options_(options),
         run_(run),
-        check_(component.table, component.cliques, component.trees) {}
+        check_(component.windows, component.primitives, component.alpha, component.cliques, component.trees) {}
 
   MergedComponent run() {
-    const bool merged = component_.trees.size() == 1
-                            ? consider(MergeWay::single, component_.trees.front(), true)
-                            : merge(MergeWay::paper, component_.trees) ||
-                                  merge(MergeWay::largest_common_subtree, component_.trees) || merge_jointly();
+    const bool merged = component_.trees.size() == 1 ? consider(MergeWay::single, component_.trees.front(), true)
+                                                     : merge_trees_of_partitions();
     if (!merged) search();
-    if (options_.polish) polish();
+    if (options_.polish && has_whole_table()) polish();
     result_.tree = simplify(result_.tree);
-    result_.statistics.worst_shortfall = check_.worst_shortfall(result_.tree);
+    result_.statistics.worst_shortfall = check_.judge(result_.tree).worst_shortfall;
     return std::move(result_);
   }
 
  private:
+  [[nodiscard]] bool has_whole_table() const { return component_.windows.size() == 1; }
+  [[nodiscard]] const RankClasses& whole_table() const { return *component_.windows.front().table; }
+
   /// Keeps the tree when it is the best so far. Whether it is whole and keeps what the partitions promised.
   bool consider(MergeWay way, const CsgTree& found, bool whole) {
     const CsgTree tree = simplify(found);
-    const double score = component_.table.score(tree, scratch_);
+    const auto [score, worst_shortfall] = check_.judge(tree);
     if (score > best_score_) {
       best_score_ = score;
       result_.tree = tree;
       result_.statistics.ways = {way};
     }
     if (!whole) return false;
-    const bool holds = check_.worst_shortfall(tree) <= k_tolerated_shortfall;
+    const bool holds = worst_shortfall <= k_tolerated_shortfall;
     if (!holds) ++result_.statistics.failed_checks;
     // A tree that holds but scores below an earlier one would not be taken: go on looking.
     return holds && score >= best_score_;
   }
 
+  bool merge_trees_of_partitions() {
+    if (has_whole_table()) {
+      return merge(MergeWay::paper) || merge(MergeWay::dominance) || merge(MergeWay::largest_common_subtree) ||
+             merge_jointly();
+    }
+    // In a large component there is always something that the paper's merge does not get right.
+    return merge(MergeWay::dominance) || merge(MergeWay::paper) || merge(MergeWay::largest_common_subtree) ||
+           merge_jointly();
+  }
+
+  bool merge(MergeWay way) { return merge(way, component_.trees); }
+
   bool merge(MergeWay way, std::span<const CsgTree> trees) {
-    const MergeOrder order = way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree;
-    const MergeResult merged = merge_trees(trees, order, run_);
+    const MergeResult merged = merge_result(way, trees);
     result_.statistics.merges += merged.merges;
     result_.statistics.blocked += merged.blocked;
     remaining_ = merged.trees;
     return consider(way, unite_all(merged.trees), merged.trees.size() == 1);
   }
 
+  [[nodiscard]] MergeResult merge_result(MergeWay way, std::span<const CsgTree> trees) const {
+    if (way == MergeWay::dominance) return merge_by_dominance(trees, run_);
+    return merge_trees(trees, way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree, run_);
+  }
+
   /// As long as trees that share primitives are left over, two of them are replaced by one tree for the primitives of
   /// both, found from the points of both.
   bool merge_jointly() {
     std::vector<CsgTree> trees = remaining_;
-    while (trees.size() > 1 && !run_.stop.stop_requested()) {
+    while (trees.size() > 1 && trees.size() <= k_joint_limit && !run_.stop.stop_requested()) {
       const auto [first, second] = most_entangled(trees);
       Clique both;
       std::ranges::set_union(primitives_of(trees[first]), primitives_of(trees[second]), std::back_inserter(both));
@@ -107,15 +127,27 @@ class ComponentMerger {
   }
 
   void search() {
-    const Evolution found = evolve_tree_from(component_.table, result_.tree, options_.search, options_.item, run_);
+    if (!has_whole_table()) {
+      search_anew();
+      return;
+    }
+    const Evolution found = evolve_tree_from(whole_table(), result_.tree, options_.search, options_.item, run_);
     count(found);
     consider(MergeWay::search, found.tree, true);
     result_.statistics.ways = {MergeWay::search};  // it began with the best of the others, which may be the best still
   }
 
+  /// Of a component without a table over all of it.
+  void search_anew() {
+    if (component_.primitives > RankClasses::k_byte_limit || run_.stop.stop_requested()) return;
+    Clique all(component_.primitives);
+    std::iota(all.begin(), all.end(), PrimitiveIndex{0});
+    consider(MergeWay::search, solve_jointly_(all), true);
+  }
+
   /// Redundancy removal on the whole component: nodes go as long as E grows.
   void polish() {
-    const Evolution polished = local_search(component_.table, result_.tree, {.shrink_only = true}, run_);
+    const Evolution polished = local_search(whole_table(), result_.tree, {.shrink_only = true}, run_);
     count(polished);
     result_.tree = polished.tree;
   }
@@ -131,7 +163,6 @@ class ComponentMerger {
   const ComponentOptions& options_;
   const RunContext& run_;
   MergeCheck check_;
-  RankScratch scratch_;
   MergedComponent result_;
   std::vector<CsgTree> remaining_;
   double best_score_ = -std::numeric_limits<double>::infinity();

@@ -6,18 +6,25 @@
 
 #include "cloud2csg/extract.hpp"
 #include "cloud2csg/overlap_graph.hpp"
+#include "merge/merge_check.hpp"
 
 namespace cloud2csg {
 
-/// A connected component of the overlap graph with the trees of its partitions; all indices are local to `table`.
+/// A connected component of the overlap graph with the trees of its partitions; all indices are the component's.
 struct Component {
-  const RankClasses& table;  ///< over all of the component's primitives
-  std::vector<Clique> cliques;
-  std::vector<CsgTree> trees;  ///< one a clique
+  std::size_t primitives = 0;             ///< how many
+  std::vector<MergeWindow> windows = {};  ///< one over all primitives, or one for each
+  double alpha = 0;                       ///< cost of a node
+  std::vector<Clique> cliques = {};
+  std::vector<CsgTree> trees = {};  ///< one a clique
 };
 
-/// Finds the tree of a set of primitives from the points that belong to them; local indices in and out.
+/// Finds the tree of a set of primitives from the points that belong to them; component's indices in and out.
 using SolveJointly = std::function<CsgTree(const Clique&)>;
+
+/// Components of up to so many primitives have one window, and may be searched as a whole. Larger ones have one for
+/// each primitive: the points that belong to it, with all that overlaps it.
+inline constexpr std::size_t k_whole_limit = RankClasses::k_shared_limit;
 
 struct ComponentOptions {
   const GaOptions& search;
@@ -27,7 +34,8 @@ struct ComponentOptions {
 
 /// One tree for the component: the paper's merge, held against what the partitions promised; where it does not go
 /// through or does not hold, by largest common subtrees, by solving partitions that block each other together, by a
-/// search over the whole component. The best tree that was met, so an answer always comes. Fills in `statistics`' way.
+/// search over the whole component if it is not too large. The best tree that was met, so an answer always comes. Fills
+/// in `statistics`' way.
 struct MergedComponent {
   CsgTree tree;
   MergeStatistics statistics;  ///< with one entry in ways

@@ -162,22 +162,36 @@ class Extractor {
   }
 
   CsgTree merge_one(std::size_t c) {
-    const RankClasses& table = prepared_.pass.tables[prepared_.component_table[c]];
-    const std::vector<PrimitiveIndex> local = local_indices(table.primitives(), prepared_.primitives.size());
-    Component component{.table = table, .cliques = {}, .trees = {}};
-    for (std::size_t k = 0; k < prepared_.partitions.size(); ++k) {
-      if (prepared_.component_of[k] != c) continue;
-      const RankClasses& partition = prepared_.pass.tables[k];
-      Clique& clique = component.cliques.emplace_back();
-      for (const PrimitiveIndex p : partition.primitives()) clique.push_back(local[p]);
-      component.trees.push_back(renumber(evolutions_[k].tree, clique));
-    }
-    const SolveJointly solve_jointly = [&](const Clique& both) { return solve_set(both, table.primitives()); };
+    const std::vector<PrimitiveIndex>& primitives = prepared_.components[c];
+    const Component component = make_component(c);
+    const SolveJointly solve_jointly = [&](const Clique& both) { return solve_set(both, primitives); };
     const MergedComponent merged = merge_component(
         component, solve_jointly, {.search = options_.search, .polish = options_.polish, .item = k_component_items + c},
         search_run());
     take_merge_statistics(merged);
-    return renumber(merged.tree, table.primitives());
+    return renumber(merged.tree, primitives);
+  }
+
+  [[nodiscard]] Component make_component(std::size_t c) const {
+    const std::vector<PrimitiveIndex>& primitives = prepared_.components[c];
+    const std::vector<PrimitiveIndex> local = local_indices(primitives, prepared_.primitives.size());
+    Component component{.primitives = primitives.size()};
+    for (const std::size_t k : prepared_.partitions_of[c]) {
+      Clique& clique = component.cliques.emplace_back();
+      for (const PrimitiveIndex p : prepared_.partitions[k]) clique.push_back(local[p]);
+      component.trees.push_back(renumber(evolutions_[k].tree, clique));
+    }
+    const bool is_whole = component.cliques.size() == 1 || primitives.size() <= k_whole_limit;
+    std::size_t points = 0;
+    for (std::size_t w = 0; w < (is_whole ? 1 : primitives.size()); ++w) {
+      const RankClasses& table = prepared_.pass.tables[prepared_.first_window[c] + w];
+      MergeWindow& window = component.windows.emplace_back(MergeWindow{.table = &table, .primitives = {}});
+      for (const PrimitiveIndex p : table.primitives()) window.primitives.push_back(local[p]);
+      if (!is_whole) window.judged = static_cast<PrimitiveIndex>(w);
+      points += table.point_count();
+    }
+    component.alpha = resolve(options_.objective, points, prepared_.noise).alpha;
+    return component;
   }
 
   /// A tree for some primitives of a component, from a pass over the points for just them; component's indices.

@@ -76,6 +76,8 @@ std::string_view to_string(MergeWay way) {
       return "single";
     case MergeWay::paper:
       return "paper";
+    case MergeWay::dominance:
+      return "dominance";
     case MergeWay::largest_common_subtree:
       return "largest_common_subtree";
     case MergeWay::joint:

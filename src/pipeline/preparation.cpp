@@ -7,6 +7,7 @@
 
 #include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
+#include "pipeline/component.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -36,6 +37,13 @@ std::vector<std::optional<OrientedBox>> extents_of_unbounded(const PointCloud& c
   return extents;
 }
 
+/// A primitive and all that overlap it, ascending.
+std::vector<PrimitiveIndex> closed_neighbourhood(const OverlapGraph& graph, PrimitiveIndex p) {
+  std::vector<PrimitiveIndex> set = graph.neighbours[p];
+  set.insert(std::ranges::upper_bound(set, p), p);
+  return set;
+}
+
 void build_partitions(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,
                       Preparation& preparation, StageSeconds& seconds) {
   Stopwatch watch;
@@ -54,6 +62,7 @@ void build_partitions(const PointCloud& cloud, const ExtractOptions& options, co
     preparation.components = {all};
     preparation.partitions = {all};
     preparation.component_of = {0};
+    preparation.partitions_of = {{0}};
     seconds.partition += watch.lap();
     return;
   }
@@ -76,25 +85,32 @@ void build_partitions(const PointCloud& cloud, const ExtractOptions& options, co
     preparation.partitions.push_back(clique);
     preparation.component_of.push_back(component);
   }
+  preparation.partitions_of.assign(preparation.components.size(), {});
+  for (std::size_t k = 0; k < preparation.partitions.size(); ++k) {
+    preparation.partitions_of[preparation.component_of[k]].push_back(k);
+  }
   seconds.partition += watch.lap();
 }
 
-/// One table a partition, and one for each component of several partitions.
+/// One table a partition, and for each component of several partitions those of its windows.
 std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparation& preparation) {
   std::vector<RankClassesRequest> requests;
-  std::vector<std::size_t> partitions_in(preparation.components.size(), 0);
-  preparation.component_table.assign(preparation.components.size(), 0);
-  for (std::size_t k = 0; k < preparation.partitions.size(); ++k) {
-    ++partitions_in[preparation.component_of[k]];
-    preparation.component_table[preparation.component_of[k]] = k;
-    const Clique& partition = preparation.partitions[k];
-    requests.push_back({.primitives = partition, .stride = stride_for(partition.size(), cloud.size())});
-  }
+  const auto request = [&](const std::vector<PrimitiveIndex>& primitives, std::vector<PrimitiveIndex> owners) {
+    requests.push_back(
+        {.primitives = primitives, .owners = std::move(owners), .stride = stride_for(primitives.size(), cloud.size())});
+  };
+  for (const Clique& partition : preparation.partitions) request(partition, {});
+  preparation.first_window.clear();
   for (std::size_t c = 0; c < preparation.components.size(); ++c) {
-    if (partitions_in[c] < 2) continue;
-    preparation.component_table[c] = requests.size();
-    requests.push_back({.primitives = preparation.components[c],
-                        .stride = stride_for(preparation.components[c].size(), cloud.size())});
+    const std::vector<PrimitiveIndex>& component = preparation.components[c];
+    const bool is_one_partition = preparation.partitions_of[c].size() == 1;
+    preparation.first_window.push_back(is_one_partition ? preparation.partitions_of[c].front() : requests.size());
+    if (is_one_partition) continue;
+    if (component.size() <= k_whole_limit) {
+      request(component, {});
+    } else {
+      for (const PrimitiveIndex p : component) request(closed_neighbourhood(preparation.graph, p), {p});
+    }
   }
   return requests;
 }

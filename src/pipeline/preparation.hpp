@@ -16,10 +16,11 @@ struct Preparation {
   OverlapGraph graph;
   std::vector<Clique> cliques;  ///< of the whole graph
   std::vector<std::vector<PrimitiveIndex>> components;
-  std::vector<Clique> partitions;            ///< what is searched for trees: cliques, or whole components
-  std::vector<std::size_t> component_of;     ///< by partition
-  PointPass pass;                            ///< a table a partition, then one for each component that has several
-  std::vector<std::size_t> component_table;  ///< index into pass.tables by component
+  std::vector<Clique> partitions;                       ///< what is searched for trees: cliques, or whole components
+  std::vector<std::size_t> component_of;                ///< by partition
+  std::vector<std::vector<std::size_t>> partitions_of;  ///< by component
+  PointPass pass;                                       ///< a table a partition, then those of the components' windows
+  std::vector<std::size_t> first_window;  ///< by component, index into pass.tables: see Component::windows
 };
 
 /// Noise, overlap graph, partitions and the pass over the points. Primitives without a single point are dropped, with a

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/merge.hpp"
+#include "cloud2csg/simplify.hpp"
+#include "tree/folding.hpp"
+
+namespace cloud2csg {
+namespace {
+
+enum class Role { undecided, added, removed };
+
+/// The tree with one primitive taken for nothing, or for all of space.
+CsgTree substitute(const CsgTree& tree, PrimitiveIndex primitive, bool is_full) {
+  FoldingTree result;
+  for (const CsgNode node : tree.nodes()) {
+    if (!node.is_leaf()) {
+      result.apply(node.operation());
+    } else if (node.operation() != Operation::primitive) {
+      result.constant(node.operation() == Operation::full);
+    } else if (node.primitive() == primitive) {
+      result.constant(is_full);
+    } else {
+      result.leaf(node.primitive());
+    }
+  }
+  return result.take();
+}
+
+bool is_constant(const CsgTree& tree) {
+  return tree.size() == 1 && tree.nodes().front().operation() != Operation::primitive;
+}
+
+/// Primitives of one role, taken out of all trees one after the other.
+struct Layer {
+  Role role;
+  std::vector<PrimitiveIndex> primitives;
+};
+
+class DominanceMerge {
+ public:
+  DominanceMerge(std::span<const CsgTree> trees, const RunContext& run) : run_(run) {
+    for (const CsgTree& tree : trees) add(simplify(tree));
+    for (PrimitiveIndex p = 0; p < trees_with_.size(); ++p) mark_stale(p);
+  }
+
+  MergeResult merge() {
+    while (!(stale_added_.empty() && stale_removed_.empty()) && !run_.stop.stop_requested()) {
+      // What is taken away goes first: differences stand outermost where there is a choice.
+      peel(Role::removed, stale_removed_);
+      peel(Role::added, stale_added_);
+    }
+    MergeResult result = merge_trees(core(), MergeOrder::paper, run_);
+    for (const Layer& layer : layers_) result.merges += layer.primitives.size();
+    if (result.trees.empty()) result.trees = {CsgTree::empty()};
+    if (result.blocked == 0) result.trees = {unite_all(result.trees)};
+    for (CsgTree& tree : result.trees) tree = simplify(with_layers(std::move(tree)));
+    return result;
+  }
+
+ private:
+  void add(CsgTree tree) {
+    if (is_constant(tree)) return;
+    for (const PrimitiveIndex p : primitives_of(tree)) {
+      if (p >= trees_with_.size()) trees_with_.resize(p + std::size_t{1});
+      trees_with_[p].push_back(trees_.size());
+    }
+    trees_.push_back(std::move(tree));
+  }
+
+  void mark_stale(PrimitiveIndex p) {
+    stale_added_.insert(p);
+    stale_removed_.insert(p);
+  }
+
+  /// What the primitive is to all trees that have it, if it is the same to all.
+  [[nodiscard]] Role role_of(PrimitiveIndex p) const {
+    Role common = Role::undecided;
+    for (const std::size_t k : trees_with_[p]) {
+      const CsgTree inside = substitute(trees_[k], p, /*is_full=*/true);
+      if (!is_constant(inside)) return Role::undecided;
+      const Role role = inside == CsgTree::full() ? Role::added : Role::removed;
+      if (common != Role::undecided && role != common) return Role::undecided;
+      common = role;
+    }
+    return common;
+  }
+
+  /// Takes out all primitives of the role, also those that others uncover when they go, in a layer of their own.
+  void peel(Role role, std::set<PrimitiveIndex>& stale) {
+    Layer layer{.role = role, .primitives = {}};
+    while (!stale.empty() && !run_.stop.stop_requested()) {
+      const PrimitiveIndex p = *stale.begin();
+      stale.erase(stale.begin());
+      if (role_of(p) != role) continue;
+      layer.primitives.push_back(p);
+      take_out(p);
+    }
+    if (!layer.primitives.empty()) layers_.push_back(std::move(layer));
+  }
+
+  /// All trees are from now on about what is outside of the primitive.
+  void take_out(PrimitiveIndex p) {
+    for (const std::size_t k : std::exchange(trees_with_[p], {})) {
+      const std::vector<PrimitiveIndex> before = primitives_of(trees_[k]);
+      trees_[k] = simplify(substitute(trees_[k], p, /*is_full=*/false));
+      const std::vector<PrimitiveIndex> after = primitives_of(trees_[k]);
+      for (const PrimitiveIndex q : before) {
+        if (q == p) continue;
+        if (!std::ranges::binary_search(after, q)) std::erase(trees_with_[q], k);
+        mark_stale(q);
+      }
+    }
+  }
+
+  /// What is left of the trees: primitives that are neither wholly in the solid nor wholly out of it.
+  [[nodiscard]] std::vector<CsgTree> core() const {
+    std::vector<CsgTree> left;
+    for (const CsgTree& tree : trees_) {
+      if (!is_constant(tree)) left.push_back(tree);
+    }
+    return left;
+  }
+
+  [[nodiscard]] CsgTree with_layers(CsgTree tree) const {
+    for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
+      std::vector<CsgTree> leaves;
+      for (const PrimitiveIndex p : layer->primitives) leaves.push_back(CsgTree::leaf(p));
+      const CsgTree all = unite_all(leaves);
+      tree = layer->role == Role::removed ? subtract(tree, all) : unite(tree, all);
+    }
+    return tree;
+  }
+
+  const RunContext& run_;
+  std::vector<CsgTree> trees_;
+  std::vector<std::vector<std::size_t>> trees_with_;      ///< by primitive
+  std::set<PrimitiveIndex> stale_added_, stale_removed_;  ///< whose role may have become this one
+  std::vector<Layer> layers_;                             ///< the outermost first
+};
+
+}  // namespace
+
+MergeResult merge_by_dominance(std::span<const CsgTree> trees, const RunContext& run) {
+  return DominanceMerge(trees, run).merge();
+}
+
+}  // namespace cloud2csg
