@@ -41,6 +41,9 @@ struct ExtractOptions {
   GaOptions search = {};                       ///< its seed is not used: see below
   /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
   std::optional<double> overlap_tolerance = {};
+  /// Judge the trees of a partition without the points inside primitives of other partitions, where no tree over its
+  /// own can be right. The paper judges by all points on its primitives.
+  bool without_strangers = true;
   /// Take nodes out of the merged tree as long as E over the whole cloud grows. The paper does not.
   bool polish = true;
   /// Stop the search when so many seconds have passed since the start of the extraction, with the best tree so far. The

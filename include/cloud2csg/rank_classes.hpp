@@ -61,8 +61,10 @@ class RankClasses {
 
   /// Scores by class, for judging where a tree is good: one value a class, what its points add to E(t).
   [[nodiscard]] std::vector<float> class_scores(const CsgTree& tree, RankScratch& scratch) const;
-  /// The local index of the primitive nearest to a class's points.
-  [[nodiscard]] std::span<const std::uint16_t> nearest_primitive() const { return nearest_; }
+  /// The best that any tree can score in each class.
+  [[nodiscard]] std::vector<float> class_bounds() const;
+  /// Values of classes summed by the primitive that is nearest to their points (local indices).
+  [[nodiscard]] std::vector<double> sums_by_nearest(std::span<const float> values) const;
 
   /// Columns of signed ranks, for algorithms that build trees bottom-up and keep the values of their parts: one entry a
   /// class, padded with zeros to padded_count(). Precondition: primitive_count() <= k_byte_limit.
@@ -104,6 +106,9 @@ struct RankClassesRequest {
   /// segmentation): bounds memory for large sets.
   std::size_t stride = 1;
   bool all_points = false;  ///< also those that belong to none of the primitives
+  /// Not those inside a primitive that is not in the set (beyond the paper): there the set does not tell the whole, and
+  /// no tree over it can explain, say, the part of a bore that lies in another block.
+  bool without_strangers = false;
 };
 
 /// In which precision distances and angles are computed. Ranks follow from them; sums are exact in any case.

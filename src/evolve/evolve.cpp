@@ -85,6 +85,19 @@ bool is_believed(const Evolution& best, const RankClasses& table, const GaOption
   return best.geometry >= options.trust * table.geometry_bound();
 }
 
+/// Whether it uses no primitive twice and is believed on the points nearest to each: then hardly a tree is better.
+bool is_believed_everywhere(const Evolution& best, const RankClasses& table, const GaOptions& options) {
+  if (leaf_count(best.tree) > table.primitive_count()) return false;
+  RankScratch scratch;
+  const std::vector<double> reached = table.sums_by_nearest(table.class_scores(best.tree, scratch));
+  const std::vector<double> bounds = table.sums_by_nearest(table.class_bounds());
+  for (std::size_t p = 0; p < bounds.size(); ++p) {
+    // What less than a node's worth of points tell is noise.
+    if (reached[p] < options.trust * bounds[p] && bounds[p] - reached[p] > table.objective().alpha) return false;
+  }
+  return true;
+}
+
 /// A climb from the seeds, then others from random trees only, as long as no tree is believed and the budget lasts.
 void search(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions& options, std::uint64_t item,
             const RunContext& run, Evolution& best) {
@@ -153,7 +166,10 @@ Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::u
     if (is_believed(best, table, options)) return best;
     seeds.push_back(best.tree);
   }
-  if (options.seeds) improve(best, seed_by_local_search(table, run, seeds));
+  if (options.seeds) {
+    improve(best, seed_by_local_search(table, run, seeds));
+    if (is_believed_everywhere(best, table, options) && is_solid(best.tree)) return best;
+  }
   search(table, std::move(seeds), options, item, run, best);
   settle_for_a_solid(table, best);
   return best;

@@ -120,7 +120,8 @@ std::vector<RankClasses> build_tables(std::span<const RankClassesRequest> reques
     if (answered.size() == 1) {
       build(answered.front(), classes[r]);
     } else {
-      for (const std::size_t k : answered) build(k, project(roots[r], classes[r], requests[k]));
+      const std::vector<std::uint32_t> inside = inside_words(roots[r], classes[r]);
+      for (const std::size_t k : answered) build(k, project(roots[r], classes[r], inside, requests[k]));
     }
   }
   return tables;

@@ -34,6 +34,13 @@ std::size_t count_bits(const BlockMask& mask) {
   return count;
 }
 
+template <class Real>
+BlockMask negative_bits(const std::array<Real, k_block_points>& numbers) {
+  BlockMask mask{};
+  for (std::size_t i = 0; i < k_block_points; ++i) mask[i / 64] |= std::uint64_t{numbers[i] < 0} << (i % 64);
+  return mask;
+}
+
 /// A primitive that is looked at in a block.
 template <class Real>
 struct ActivePrimitive {
@@ -41,6 +48,7 @@ struct ActivePrimitive {
   BlockField<Real> field;
   BlockContributions<Real> contributions;
   bool has_members = false;  ///< points of the block that belong to it
+  BlockMask inside{};        ///< points inside of it, if a root asks
 };
 
 template <class Real>
@@ -50,6 +58,7 @@ class Worker {
       : input_(input),
         blocks_(input.cloud, input.box, input.order),
         slot_of_(input.primitives.size(), k_none),
+        some_are_without_strangers_(std::ranges::any_of(input.roots, &Root::without_strangers)),
         is_wanted_(input.roots.size(), false) {
     share_.points_of_primitive.resize(input.primitives.size());
     std::size_t most_primitives = 0;
@@ -113,6 +122,7 @@ class Worker {
       const std::size_t members = count_bits(member);
       share_.points_of_primitive[active_[slot].primitive] += members;
       active_[slot].has_members = members > 0;
+      if (some_are_without_strangers_) active_[slot].inside = negative_bits(active_[slot].field.distance);
     }
     share_.unassigned += blocks_.size(block) - count_bits(assigned);
     segmented_count_ = active_count_;
@@ -158,6 +168,7 @@ class Worker {
   /// Those of owners that are not active have no points here.
   [[nodiscard]] BlockMask points_of(const Root& root, std::size_t block, std::size_t begin) const {
     BlockMask chosen = every_kth(begin, blocks_.size(block), root.stride);
+    if (root.without_strangers) leave_out_strangers(root, chosen);
     if (root.all_points) return chosen;
     BlockMask any{};
     for (const PrimitiveIndex p : root.owners) {
@@ -167,6 +178,15 @@ class Worker {
     }
     for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= any[w];
     return chosen;
+  }
+
+  /// Takes out the points inside a primitive that is not of the root. Of those that are not active, none is.
+  void leave_out_strangers(const Root& root, BlockMask& chosen) const {
+    for (std::size_t slot = 0; slot < segmented_count_; ++slot) {
+      const ActivePrimitive<Real>& other = active_[slot];
+      if (std::ranges::binary_search(root.primitives, other.primitive)) continue;
+      for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= ~other.inside[w];
+    }
   }
 
   /// The places of the bits that are set.
@@ -246,7 +266,8 @@ class Worker {
   std::size_t segmented_count_ = 0;     // of the active: the others have no points here
   std::vector<std::uint32_t> slot_of_;  // by primitive: its place among the active, or k_none
   std::vector<std::uint32_t> wanted_;   // roots that take points of the block
-  std::vector<bool> is_wanted_;         // by root
+  bool some_are_without_strangers_;
+  std::vector<bool> is_wanted_;  // by root
   std::vector<DistanceColumn<Real>> columns_;
   std::vector<RankColumn> ranks_;
   std::vector<const BlockMask*> members_;

@@ -45,6 +45,24 @@ std::vector<float> RankClasses::class_scores(const CsgTree& tree, RankScratch& s
   return scores;
 }
 
+std::vector<float> RankClasses::class_bounds() const {
+  std::vector<float> bounds(class_count_);
+  const auto row = static_cast<std::ptrdiff_t>(2 * primitive_count() + 1);
+  auto scores = scores_.begin();
+  for (float& bound : bounds) {
+    bound = *std::max_element(scores, scores + row);
+    scores += row;
+  }
+  return bounds;
+}
+
+std::vector<double> RankClasses::sums_by_nearest(std::span<const float> values) const {
+  assert(values.size() == class_count_);
+  std::vector<double> sums(primitive_count(), 0.0);
+  for (std::size_t c = 0; c < class_count_; ++c) sums[nearest_[c]] += static_cast<double>(values[c]);
+  return sums;
+}
+
 double RankClasses::reference_geometry(const CsgTree& tree) const {
   if (is_constant(tree)) return 0;
   double sum = 0;

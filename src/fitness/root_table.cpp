@@ -18,6 +18,7 @@ const std::vector<PrimitiveIndex>& owners_of(const RankClassesRequest& request) 
 /// Whether the root may be grouped by for the request as well.
 bool can_answer(const Root& root, const RankClassesRequest& request) {
   return root.primitives.size() <= RankClasses::k_shared_limit && root.stride == request.stride &&
+         (request.without_strangers || !root.without_strangers) &&
          std::ranges::includes(root.primitives, request.primitives) &&
          std::ranges::includes(root.owners, owners_of(request));
 }
@@ -36,8 +37,10 @@ std::vector<std::size_t> places_in(const Root& root, const RankClassesRequest& r
 /// Takes the classes of a root, a block of them at a time, into the table of a subset.
 class Projection {
  public:
-  Projection(const Root& root, const ClassTable& from, const RankClassesRequest& request)
+  Projection(const Root& root, const ClassTable& from, std::span<const std::uint32_t> inside,
+             const RankClassesRequest& request)
       : from_(from),
+        inside_(inside),
         root_layout_(root.layout()),
         root_size_(root.primitives.size()),
         places_(places_in(root, request)),
@@ -47,6 +50,10 @@ class Projection {
         keys_(layout_.words),
         table_(request.primitives.size(), layout_.words) {
     std::iota(in_turn_.begin(), in_turn_.end(), std::uint16_t{0});
+    if (request.without_strangers) {
+      unwanted_ = ~std::uint32_t{0};
+      for (const std::size_t place : places_) unwanted_ &= ~(std::uint32_t{1} << place);
+    }
     if (root.has_member_word && !request.all_points) {
       for (const PrimitiveIndex p : owners_of(request)) wanted_ |= std::uint32_t{1} << place_in(root, p);
     }
@@ -55,6 +62,7 @@ class Projection {
   ClassTable run() {
     for (std::uint32_t c = 0; c < from_.size(); ++c) {
       if (wanted_ != 0 && (from_.key(c).back() & wanted_) == 0) continue;
+      if ((inside_[c] & unwanted_) != 0) continue;
       chosen_[count_++] = c;
       if (count_ == k_block_points) take_block();
     }
@@ -97,10 +105,12 @@ class Projection {
   }
 
   const ClassTable& from_;
+  std::span<const std::uint32_t> inside_;
   KeyLayout root_layout_;
   std::size_t root_size_;
   std::vector<std::size_t> places_;
-  std::uint32_t wanted_ = 0;  // member bits of which a class must have one; 0: takes every class
+  std::uint32_t unwanted_ = 0;  // inside bits of which a class must have none
+  std::uint32_t wanted_ = 0;    // member bits of which a class must have one; 0: takes every class
   KeyLayout layout_;
   std::vector<RankColumn> old_ranks_, new_ranks_;
   BlockKeys keys_;
@@ -129,7 +139,10 @@ std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
     if (found != nearby.end()) {
       r = *found;
     } else {
-      roots.push_back({.primitives = request.primitives, .owners = owners_of(request), .stride = request.stride});
+      roots.push_back({.primitives = request.primitives,
+                       .owners = owners_of(request),
+                       .stride = request.stride,
+                       .without_strangers = request.without_strangers});
       for (const PrimitiveIndex p : request.primitives) roots_with[p].push_back(r);
     }
     roots[r].all_points = roots[r].all_points || request.all_points;
@@ -139,8 +152,23 @@ std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
   return roots;
 }
 
-ClassTable project(const Root& root, const ClassTable& classes, const RankClassesRequest& request) {
-  return Projection(root, classes, request).run();
+std::vector<std::uint32_t> inside_words(const Root& root, const ClassTable& classes) {
+  const KeyLayout layout = root.layout();
+  const std::uint32_t mask = (std::uint32_t{1} << layout.bits) - 1;
+  std::vector<std::uint32_t> words(classes.size(), 0);
+  for (std::size_t c = 0; c < classes.size(); ++c) {
+    const std::span<const std::uint32_t> key = classes.key(c);
+    for (std::size_t place = 0; place < root.primitives.size(); ++place) {
+      const std::uint32_t code = key[layout.word_of(place)] >> layout.shift_of(place) & mask;
+      words[c] |= std::uint32_t{code < root.primitives.size()} << place;
+    }
+  }
+  return words;
+}
+
+ClassTable project(const Root& root, const ClassTable& classes, std::span<const std::uint32_t> inside,
+                   const RankClassesRequest& request) {
+  return Projection(root, classes, inside, request).run();
 }
 
 }  // namespace cloud2csg

@@ -16,6 +16,7 @@ struct Root {
   std::vector<PrimitiveIndex> owners;      ///< points that belong to one of these
   std::size_t stride = 1;                  ///< every k-th point
   bool all_points = false;                 ///< also those that belong to none of the owners
+  bool without_strangers = false;          ///< not those inside of a primitive that is not in the set
   bool has_member_word = false;            ///< whether keys end with a word that tells to whom the points belong
   std::vector<std::size_t> requests = {};  ///< that are answered from it
 
@@ -27,7 +28,11 @@ struct Root {
 /// primitive).
 [[nodiscard]] std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests);
 
-/// Groups the classes of a root by the order of the request's primitives.
-[[nodiscard]] ClassTable project(const Root& root, const ClassTable& classes, const RankClassesRequest& request);
+/// By class of a root, the primitives of its set that the points are inside of: bit k for the k-th.
+[[nodiscard]] std::vector<std::uint32_t> inside_words(const Root& root, const ClassTable& classes);
+
+/// Groups the classes of a root by the order of the request's primitives. `inside`: its inside_words().
+[[nodiscard]] ClassTable project(const Root& root, const ClassTable& classes, std::span<const std::uint32_t> inside,
+                                 const RankClassesRequest& request);
 
 }  // namespace cloud2csg

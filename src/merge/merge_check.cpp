@@ -21,11 +21,10 @@ class WindowScores {
       local_[window.primitives[i]] = static_cast<PrimitiveIndex>(i);
     }
     const CsgTree here = renumber(tree.restrict_to(window.primitives), local_);
-    const std::vector<float> scores = window.table->class_scores(here, scratch_);
-    const std::span<const std::uint16_t> nearest = window.table->nearest_primitive();
-    for (std::size_t c = 0; c < scores.size(); ++c) {
-      const PrimitiveIndex p = window.primitives[nearest[c]];
-      if (window.judged.value_or(p) == p) sums_[p] += static_cast<double>(scores[c]);
+    const std::vector<double> sums = window.table->sums_by_nearest(window.table->class_scores(here, scratch_));
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const PrimitiveIndex p = window.primitives[i];
+      if (window.judged.value_or(p) == p) sums_[p] += sums[i];
     }
   }
 

@@ -94,6 +94,7 @@ ExtractOptions paper_options() {
   options.objective.beta = 100.0;
   options.precision = Precision::full;
   options.search = paper_ga_options();
+  options.without_strangers = false;
   options.polish = false;
   return options;
 }

@@ -93,11 +93,14 @@ void build_partitions(const PointCloud& cloud, const ExtractOptions& options, co
 }
 
 /// One table a partition, and for each component of several partitions those of its windows.
-std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, Preparation& preparation) {
+std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, const ExtractOptions& options,
+                                             Preparation& preparation) {
   std::vector<RankClassesRequest> requests;
   const auto request = [&](const std::vector<PrimitiveIndex>& primitives, std::vector<PrimitiveIndex> owners) {
-    requests.push_back(
-        {.primitives = primitives, .owners = std::move(owners), .stride = stride_for(primitives.size(), cloud.size())});
+    requests.push_back({.primitives = primitives,
+                        .owners = std::move(owners),
+                        .stride = stride_for(primitives.size(), cloud.size()),
+                        .without_strangers = options.without_strangers});
   };
   for (const Clique& partition : preparation.partitions) request(partition, {});
   preparation.first_window.clear();
@@ -119,7 +122,7 @@ void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, co
                       Preparation& preparation, StageSeconds& seconds) {
   Stopwatch watch;
   preparation.pass = {};  // of primitives that were dropped: not two of them in memory
-  preparation.pass = build_rank_classes(cloud, preparation.primitives, requests_for(cloud, preparation),
+  preparation.pass = build_rank_classes(cloud, preparation.primitives, requests_for(cloud, options, preparation),
                                         {.tolerances = preparation.tolerances,
                                          .objective = options.objective,
                                          .noise = preparation.noise,
