@@ -76,7 +76,7 @@ class ReferenceExtractor {
     statistics_.tree = {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree)};
     if (!primitives_of(tree).empty()) {
       const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
-      statistics_.fit = measure_fit(tree, input_, cloud_, objective, run_);
+      statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.noise, run_);
     }
     return {.tree = tree, .statistics = std::move(statistics_)};
   }

@@ -248,7 +248,7 @@ class Extractor {
     const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
     RunContext to_the_end = run;
     to_the_end.stop = {};  // the tree of an interrupted search has a fit, too
-    statistics_.fit = measure_fit(tree, input_, cloud_, objective, to_the_end);
+    statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.noise, to_the_end);
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");

@@ -3,38 +3,117 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "base/parallel.hpp"
+#include "cloud2csg/restrict.hpp"
+#include "fitness/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {
-
-constexpr std::size_t k_chunk = 16'384;
 
 struct PointFit {
   std::vector<double> distances;  // unsigned
   std::vector<double> angles;     // radians
 };
 
-PointFit measure_points(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                        const RunContext& run) {
-  PointFit fit{std::vector<double>(cloud.size()), std::vector<double>(cloud.size())};
-  const auto measure = [&](std::size_t chunk) {
-    const std::size_t begin = chunk * k_chunk;
-    const std::size_t count = std::min(k_chunk, cloud.size() - begin);
-    const PointsView positions = cloud.positions.view().subview(begin, count);
-    const std::vector<double> values = implicit_value(tree, primitives, positions);
-    const Points gradients = implicit_gradient(tree, primitives, positions);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double length = gradients[i].norm();
-      const double cosine = length > 0 ? gradients[i].dot(cloud.normals[begin + i]) / length : 0.0;
-      fit.distances[begin + i] = std::abs(values[i]);
-      fit.angles[begin + i] = std::acos(std::clamp(cosine, -1.0, 1.0));
+/// From so many primitives on, a tree is evaluated by what of it is near.
+constexpr std::size_t k_many_primitives = 32;
+
+/// Measures a tree at points, a block of neighbours at a time. Far from a primitive a tree is as without it: where the
+/// tree without all primitives farther than r has a value below r, the whole tree has the same.
+class FitMeasure {
+ public:
+  FitMeasure(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud, double noise,
+             const RunContext& run)
+      : tree_(tree), restriction_(tree), primitives_(primitives), cloud_(cloud), run_(run) {
+    const AlignedBox box = bounds_of(cloud.positions);
+    order_.resize(cloud.size());
+    std::iota(order_.begin(), order_.end(), 0U);
+    const std::vector<PrimitiveIndex> used = primitives_of(tree);
+    if (used.size() > k_many_primitives) {
+      order_ = spatial_order(cloud.positions, box, run);
+      const double diagonal = box.diagonal().norm();
+      for (double radius = k_first_radius * noise; radius < diagonal; radius *= k_growth) {
+        levels_.push_back(level_of(used, radius));
+      }
     }
+  }
+
+  PointFit measure() {
+    fit_.distances.resize(cloud_.size());
+    fit_.angles.resize(cloud_.size());
+    for_each_index((cloud_.size() + k_block - 1) / k_block, run_, [&](std::size_t block) {
+      const std::size_t begin = block * k_block;
+      measure_block(std::span(order_).subspan(begin, std::min(k_block, cloud_.size() - begin)));
+    });
+    return std::move(fit_);
+  }
+
+ private:
+  static constexpr std::size_t k_block = 1024;
+  static constexpr double k_first_radius = 4;  // of the noise
+  static constexpr double k_growth = 8;
+
+  /// All primitives of the tree, and where they are nearer than a radius.
+  struct Level {
+    double radius;
+    std::vector<PrimitiveIndex> primitives;
+    std::vector<AlignedBox> reach;
   };
-  for_each_index((cloud.size() + k_chunk - 1) / k_chunk, run, measure);
-  return fit;
-}
+
+  [[nodiscard]] Level level_of(const std::vector<PrimitiveIndex>& used, double radius) const {
+    Level level{.radius = radius, .primitives = used, .reach = {}};
+    for (const PrimitiveIndex p : used) level.reach.push_back(reach(primitives_[p], radius));
+    return level;
+  }
+
+  void measure_block(std::span<const std::uint32_t> block) {
+    std::vector<std::uint32_t> points(block.begin(), block.end());
+    for (const Level& level : levels_) {
+      points = measure_near(level, points);
+      if (points.empty()) return;
+    }
+    measure_with(tree_, points);
+  }
+
+  /// Returns the points that the level's radius is too small for.
+  std::vector<std::uint32_t> measure_near(const Level& level, const std::vector<std::uint32_t>& points) {
+    AlignedBox box;
+    for (const std::uint32_t i : points) box.extend(cloud_.positions[i]);
+    std::vector<PrimitiveIndex> near;
+    for (std::size_t k = 0; k < level.primitives.size(); ++k) {
+      if (level.reach[k].intersects(box)) near.push_back(level.primitives[k]);
+    }
+    measure_with(restriction_.restrict_to(near), points);
+    std::vector<std::uint32_t> left;
+    std::ranges::copy_if(points, std::back_inserter(left),
+                         [&](std::uint32_t i) { return !(fit_.distances[i] < level.radius); });
+    return left;
+  }
+
+  void measure_with(const CsgTree& tree, const std::vector<std::uint32_t>& points) {
+    Points positions;
+    for (const std::uint32_t i : points) positions.push_back(cloud_.positions[i]);
+    const std::vector<double> values = implicit_value(tree, primitives_, positions);
+    const Points gradients = implicit_gradient(tree, primitives_, positions);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double length = gradients[k].norm();
+      const double cosine = length > 0 ? gradients[k].dot(cloud_.normals[points[k]]) / length : 0.0;
+      fit_.distances[points[k]] = std::abs(values[k]);
+      fit_.angles[points[k]] = std::acos(std::clamp(cosine, -1.0, 1.0));
+    }
+  }
+
+  const CsgTree& tree_;
+  TreeRestriction restriction_;
+  const PrimitiveSet& primitives_;
+  const PointCloud& cloud_;
+  const RunContext& run_;
+  std::vector<std::uint32_t> order_;  // of the points
+  std::vector<Level> levels_;         // by radius; none where the whole tree is evaluated everywhere
+  PointFit fit_;
+};
 
 double root_mean_square(std::span<const double> values) {
   double sum = 0;
@@ -52,8 +131,8 @@ double quantile_95(std::vector<double>& values) {
 }  // namespace
 
 FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                          const Objective& objective, const RunContext& run) {
-  PointFit points = measure_points(tree, primitives, cloud, run);
+                          const Objective& objective, double noise, const RunContext& run) {
+  PointFit points = FitMeasure(tree, primitives, cloud, noise, run).measure();
   FitStatistics fit;
   fit.objective = -objective.alpha * static_cast<double>(tree.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {

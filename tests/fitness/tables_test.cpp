@@ -210,13 +210,32 @@ TEST(RankClassesTables, RanksAreAPermutationInEveryClass) {
   const test::Scene scene = test::random_scene(11, 2000, random);
   const RankClasses table = test::whole_table(scene);
   ASSERT_GT(table.class_count(), 100U);
+  std::vector<float> values(table.class_count());
+  std::vector<double> by_nearest(11, 0.0);
   for (std::size_t c = 0; c < table.class_count(); ++c) {
     std::vector<int> magnitudes;
     for (PrimitiveIndex p = 0; p < 11; ++p) magnitudes.push_back(std::abs(int{table.column(p)[c]}));
-    EXPECT_EQ(magnitudes[table.nearest_primitive()[c]], 1);
+    values[c] = static_cast<float>(c % 17);
+    by_nearest[static_cast<std::size_t>(std::ranges::find(magnitudes, 1) - magnitudes.begin())] += values[c];
     std::ranges::sort(magnitudes);
     for (int rank = 1; rank <= 11; ++rank) EXPECT_EQ(magnitudes[static_cast<std::size_t>(rank - 1)], rank);
   }
+  EXPECT_EQ(table.sums_by_nearest(values), by_nearest);
+}
+
+TEST(RankClassesTables, NoTreeExceedsTheBoundInAnyClass) {
+  RandomStream random(10);
+  const test::Scene scene = test::random_scene(4, 2000, random);
+  const RankClasses table = test::whole_table(scene);
+  const std::vector<float> bounds = table.class_bounds();
+  std::vector<float> best(table.class_count(), 0);
+  RankScratch scratch;
+  for (const CsgTree& tree : test::random_formulas(4, 3000, random)) {
+    const std::vector<float> scores = table.class_scores(tree, scratch);
+    for (std::size_t c = 0; c < scores.size(); ++c) best[c] = std::max(best[c], scores[c]);
+  }
+  EXPECT_EQ(best, bounds);
+  EXPECT_NEAR(std::accumulate(bounds.begin(), bounds.end(), 0.0), table.geometry_bound(), 1e-6);
 }
 
 TEST(RankClassesTables, PointsThatAreNoMultipleOfTheBlockAllCount) {

@@ -29,6 +29,7 @@ ExtractOptions endless(Strategy strategy) {
   ExtractOptions options;
   options.strategy = strategy;
   options.search.listing_limit = 1;
+  options.search.seeds = false;  // or a local search may find what needs no more
   options.search.idle_generations = 1'000'000;
   options.search.generation_limit = 1'000'000;
   return options;
@@ -126,6 +127,7 @@ TEST(Progress, ASingleSearchTellsItsGenerations) {
                        .threads = 2};
   ExtractOptions options{.strategy = Strategy::baseline};
   options.search.generation_limit = 5;
+  options.search.seeds = false;
   (void)extract_csg(input.cloud, input.model.primitives, options, run);
   ASSERT_GE(generations.size(), 5U);
   EXPECT_EQ(std::vector(generations.begin(), generations.begin() + 5), (std::vector<std::size_t>{0, 1, 2, 3, 4}));

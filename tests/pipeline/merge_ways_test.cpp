@@ -56,8 +56,8 @@ TEST(MergeWays, ThePapersWayIsTakenWhereItGoesThrough) {
 TEST(MergeWays, AnIntersectionOnTheWayIsNotTheEnd) {
   const PrimitiveSet primitives = a_chain();
   const CsgTree truth = parse_tree("((a & b) | c) | d", primitives);
-  const Extraction result =
-      extract_csg(cloud_of("((a & b) | c) | d", primitives), primitives, {.strategy = Strategy::partition});
+  const Extraction result = extract_csg(cloud_of("((a & b) | c) | d", primitives), primitives,
+                                        {.strategy = Strategy::partition, .without_strangers = false});
   EXPECT_NE(result.statistics.merge.ways, std::vector{MergeWay::paper});
   EXPECT_GE(test::membership_iou(result.tree, truth, primitives), 0.999);
   EXPECT_GT(result.statistics.merge.blocked + result.statistics.merge.failed_checks, 0U);
@@ -75,7 +75,11 @@ class HandMade : public ::testing::Test {
 
   [[nodiscard]] MergedComponent merge(const std::vector<Clique>& cliques, const std::vector<const char*>& texts,
                                       const RunContext& run = {}) {
-    Component component{.table = table_, .cliques = cliques, .trees = {}};
+    Component component{.primitives = 4,
+                        .windows = {{.table = &table_, .primitives = {0, 1, 2, 3}}},
+                        .alpha = table_.objective().alpha,
+                        .cliques = cliques,
+                        .trees = {}};
     for (const char* text : texts) component.trees.push_back(parse_tree(text, primitives_));
     const SolveJointly solve_jointly = [this](const Clique& clique) {
       asked_for_.push_back(clique);

@@ -42,12 +42,12 @@ TEST(StatisticsJson, HasEveryKeyOfTheContract) {
 
 TEST(StatisticsJson, NamesTheWaysOfTheMerge) {
   ExtractStatistics statistics;
-  statistics.merge.ways = {MergeWay::single, MergeWay::paper, MergeWay::largest_common_subtree, MergeWay::joint,
-                           MergeWay::search};
+  statistics.merge.ways = {MergeWay::single, MergeWay::paper, MergeWay::dominance, MergeWay::largest_common_subtree,
+                           MergeWay::joint,  MergeWay::search};
   statistics.warnings = {"a \"quoted\" warning"};
   const nlohmann::json json = nlohmann::json::parse(to_json(statistics));
   EXPECT_EQ(json["merge"]["ways"],
-            (std::vector<std::string>{"single", "paper", "largest_common_subtree", "joint", "search"}));
+            (std::vector<std::string>{"single", "paper", "dominance", "largest_common_subtree", "joint", "search"}));
   EXPECT_EQ(json["warnings"], (std::vector<std::string>{"a \"quoted\" warning"}));
 }
 
