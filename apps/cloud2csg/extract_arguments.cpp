@@ -90,6 +90,9 @@ void add_search_arguments(CLI::App& app, ExtractArguments& arguments) {
       ->check(number_not_negative());
   group.either("polish", arguments.polish, "Take nodes out that the whole cloud does not need (default)",
                "Leave them in (paper)");
+  group.either("strangers", arguments.strangers,
+               "Judge a partition's trees also by points inside primitives of others (paper)",
+               "... without them: no tree of the partition explains them (default)");
 }
 
 void add_genetic_algorithm_arguments(CLI::App& app, ExtractArguments& arguments) {
@@ -174,6 +177,7 @@ ExtractOptions ExtractArguments::options() const {
   override_with(options.seed, seed);
   override_with(options.time_limit_seconds, time_limit_seconds);
   override_with(options.polish, polish);
+  if (strangers) options.without_strangers = !*strangers;
   override_search(options.search, *this);
   override_with(options.objective.alpha, alpha);
   override_with(options.objective.beta, beta);

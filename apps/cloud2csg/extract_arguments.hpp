@@ -16,6 +16,7 @@ struct ExtractArguments {
   std::optional<std::uint64_t> seed;
   std::optional<double> time_limit_seconds;
   std::optional<bool> polish;
+  std::optional<bool> strangers;
 
   std::optional<int> population, elites, tournament, height_limit, idle_generations, generation_limit, restarts;
   std::optional<double> crossover_rate, mutation_rate, new_tree_rate, trust;
