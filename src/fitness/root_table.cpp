@@ -18,7 +18,7 @@ const std::vector<PrimitiveIndex>& owners_of(const RankClassesRequest& request) 
 /// Whether the root may be grouped by for the request as well.
 bool can_answer(const Root& root, const RankClassesRequest& request) {
   return root.primitives.size() <= RankClasses::k_shared_limit && root.stride == request.stride &&
-         (request.without_strangers || !root.without_strangers) &&
+         root.without_strangers == request.without_strangers &&
          std::ranges::includes(root.primitives, request.primitives) &&
          std::ranges::includes(root.owners, owners_of(request));
 }

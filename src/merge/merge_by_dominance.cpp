@@ -63,7 +63,7 @@ class DominanceMerge {
 
  private:
   void add(CsgTree tree) {
-    if (is_constant(tree)) return;
+    if (tree == CsgTree::empty()) return;
     for (const PrimitiveIndex p : primitives_of(tree)) {
       if (p >= trees_with_.size()) trees_with_.resize(p + std::size_t{1});
       trees_with_[p].push_back(trees_.size());
@@ -116,8 +116,11 @@ class DominanceMerge {
     }
   }
 
-  /// What is left of the trees: primitives that are neither wholly in the solid nor wholly out of it.
+  /// What is left of the trees: primitives that are neither wholly in the solid nor wholly out of it. All of space, when
+  /// that is what all trees say of what is outside of their primitives.
   [[nodiscard]] std::vector<CsgTree> core() const {
+    const auto is_full = [](const CsgTree& tree) { return tree == CsgTree::full(); };
+    if (!trees_.empty() && std::ranges::all_of(trees_, is_full)) return {CsgTree::full()};
     std::vector<CsgTree> left;
     for (const CsgTree& tree : trees_) {
       if (!is_constant(tree)) left.push_back(tree);
