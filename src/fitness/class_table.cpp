@@ -1,6 +1,7 @@
 #include "fitness/class_table.hpp"
 
 #include <numeric>
+#include <utility>
 
 namespace cloud2csg {
 namespace {
@@ -28,7 +29,7 @@ void ClassTable::find_or_insert(const BlockKeys& keys, std::span<const std::uint
   for (const std::uint16_t i : points) __builtin_prefetch(&slots_[keys.hashes[i] & (slots_.size() - 1)]);
   for (std::size_t k = 0; k < points.size(); ++k) {
     classes[k] = find_or_insert(&keys.words[points[k]], k_block_points, keys.hashes[points[k]]);
-    __builtin_prefetch(sums(classes[k]).data(), 1);
+    __builtin_prefetch(row(classes[k]).data(), 1);
   }
 }
 
@@ -41,9 +42,10 @@ std::uint32_t ClassTable::find_or_insert(const std::uint32_t* key, std::size_t s
   }
   const auto class_index = static_cast<std::uint32_t>(size());
   for (std::size_t w = 0; w < words_; ++w) keys_.push_back(key[w * stride]);
-  if (class_index % k_page_rows == 0) pages_.emplace_back(k_page_rows * row_, 0.0);
+  if (class_index % k_page_rows == 0) pages_.emplace_back(k_page_rows * row_, 0U);
   hashes_.push_back(hash);
-  counts_.push_back(0);
+  pending_.push_back(0);
+  wide_.push_back(0);
   slots_[slot] = class_index + 1;
   return class_index;
 }
@@ -55,17 +57,44 @@ void ClassTable::grow() {
   }
 }
 
+void ClassTable::make_wide(std::size_t class_index) {
+  if (has_wide(class_index)) return;
+  wide_points_.push_back(0);
+  wide_sums_.resize(wide_sums_.size() + row_);
+  wide_[class_index] = static_cast<std::uint32_t>(wide_points_.size());
+}
+
+void ClassTable::widen(std::size_t class_index) {
+  make_wide(class_index);
+  wide_points_[wide_[class_index] - 1] += std::exchange(pending_[class_index], 0U);
+  const std::span<PackedContribution> packed = row(class_index);
+  const std::span<WideContribution> wide = wide_row(class_index);
+  for (std::size_t k = 0; k < row_; ++k) wide[k] += widened(std::exchange(packed[k], 0U));
+}
+
+void ClassTable::add_class(std::size_t class_index, const ClassTable& other, std::size_t other_class,
+                           std::span<const std::size_t> places) {
+  const std::span<const PackedContribution> packed = other.row(other_class);
+  const std::span<PackedContribution> sums = add_points(class_index, other.pending_[other_class]);
+  for (std::size_t k = 0; k < row_; ++k) sums[k] += packed[places[k]];
+  if (!other.has_wide(other_class)) return;
+  make_wide(class_index);
+  wide_points_[wide_[class_index] - 1] += other.wide_points_[other.wide_[other_class] - 1];
+  const std::span<const WideContribution> added = other.wide_row(other_class);
+  const std::span<WideContribution> wide = wide_row(class_index);
+  for (std::size_t k = 0; k < row_; ++k) wide[k] += added[places[k]];
+}
+
 std::size_t ClassTable::point_count() const {
-  return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0});
+  const std::size_t packed = std::accumulate(pending_.begin(), pending_.end(), std::size_t{0});
+  return std::accumulate(wide_points_.begin(), wide_points_.end(), packed);
 }
 
 void ClassTable::absorb(const ClassTable& other) {
+  std::vector<std::size_t> same_places(row_);
+  std::iota(same_places.begin(), same_places.end(), std::size_t{0});
   for (std::size_t c = 0; c < other.size(); ++c) {
-    const std::uint32_t mine = find_or_insert(other.key(c).data(), 1, other.hashes_[c]);
-    counts_[mine] += other.counts_[c];
-    const std::span<const double> added = other.sums(c);
-    const std::span<double> sum = sums(mine);
-    for (std::size_t k = 0; k < row_; ++k) sum[k] += added[k];
+    add_class(find_or_insert(other.key(c).data(), 1, other.hashes_[c]), other, c, same_places);
   }
 }
 

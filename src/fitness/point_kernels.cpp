@@ -1,5 +1,6 @@
 #include "fitness/point_kernels.hpp"
 
+#include <bit>
 #include <limits>
 #include <type_traits>
 
@@ -58,11 +59,19 @@ HWY_INLINE V angle_square_ratio(V u) {
   return p;
 }
 
-/// Rounds 0 <= v <= 2 to a multiple of 2^-22.
+/// 0 <= v <= 2 in units: above 2, the last bit of a float is one.
 template <class V>
-HWY_INLINE V quantised(V v) {
-  const V two = hn::Set(hn::DFromV<V>(), 2.0F);
-  return (v + two) - two;
+HWY_INLINE auto units_of(V v) {
+  const hn::RebindToUnsigned<hn::DFromV<V>> d;
+  return hn::BitCast(d, v + hn::Set(hn::DFromV<V>(), 2.0F)) - hn::Set(d, std::uint32_t{0x4000'0000});
+}
+static_assert(k_unit == 1.0 / (1U << 22U));
+
+/// Plain and complement units of consecutive points, packed. Numbers are stored with their lower half first.
+static_assert(std::endian::native == std::endian::little);
+template <class D, class V>
+HWY_INLINE void store_packed(D d, V plain, V complement, PackedContribution* out) {
+  hn::StoreInterleaved2(plain, complement, d, reinterpret_cast<std::uint32_t*>(out));
 }
 
 /// Eight lanes of doubles at most, so that they fill a vector of floats.
@@ -101,6 +110,7 @@ void compute_exponents(const BlockField<Real>& field, const BlockNormals<Real>& 
   auto smallest = hn::Abs(hn::Load(d, field.distance.data()));
   auto largest = smallest;
   out.member = {};
+  out.inside = {};
   for (std::size_t i = 0; i < k_block_points; i += hn::Lanes(d)) {
     const auto f = hn::Load(d, &field.distance[i]);
     const auto gx = hn::Load(d, &field.gradient_x[i]);
@@ -120,6 +130,7 @@ void compute_exponents(const BlockField<Real>& field, const BlockNormals<Real>& 
     store_single(d, cosine, &exponents.cosine[i]);
     const auto is_member = hn::And(magnitude <= farthest, hn::Abs(cosine) >= least_cosine);
     out.member[i / 64] |= bits_of(d, is_member) << (i % 64);
+    out.inside[i / 64] |= bits_of(d, f < hn::Zero(d)) << (i % 64);
   }
   out.smallest = hn::GetLane(hn::MinOfLanes(d, smallest));
   out.largest = hn::GetLane(hn::MaxOfLanes(d, largest));
@@ -139,15 +150,15 @@ void contributions_of_block(const BlockField<Real>& field, const BlockNormals<Re
   const auto pi = hn::Set(d, 3.14159265F);
   const auto silent = hn::Set(d, k_silent_exponent);
   const bool both_sides_count = far_side_counts(parameters.gamma);
-  auto loudest = hn::Zero(d);
+  const hn::RebindToUnsigned<Floats> du;
+  auto loudest = hn::Zero(du);
   for (std::size_t i = 0; i < k_block_points; i += hn::Lanes(d)) {
     const auto u = hn::Load(d, &exponents.angle_chord[i]);
     const auto distance_exponent = hn::Load(d, &exponents.distance[i]);
     // The square of an angle is at least twice its chord.
     const auto is_silent = hn::And(distance_exponent >= silent, gamma_square * (u + u) >= silent);
     if (hn::AllTrue(d, is_silent)) {
-      hn::Store(hn::Zero(d), d, &out.pairs[2 * i]);
-      hn::Store(hn::Zero(d), d, &out.pairs[2 * i + hn::Lanes(d)]);
+      store_packed(du, hn::Zero(du), hn::Zero(du), &out.packed[i]);
       continue;
     }
     const auto angle_square = (u + u) * angle_square_ratio(u);
@@ -158,14 +169,14 @@ void contributions_of_block(const BlockField<Real>& field, const BlockNormals<Re
       far_side = exp_negative(gamma_square * (far_angle * far_angle));
     }
     const auto at_distance = exp_negative(distance_exponent);
-    const auto near_score = quantised(at_distance + near_side);
-    const auto far_score = quantised(at_distance + far_side);
+    const auto near_score = units_of(at_distance + near_side);
+    const auto far_score = units_of(at_distance + far_side);
     loudest = hn::Max(loudest, near_score);
-    const auto faces_away = hn::Load(d, &exponents.cosine[i]) < hn::Zero(d);
-    hn::StoreInterleaved2(hn::IfThenElse(faces_away, far_score, near_score),
-                          hn::IfThenElse(faces_away, near_score, far_score), d, &out.pairs[2 * i]);
+    const auto faces_away = hn::RebindMask(du, hn::Load(d, &exponents.cosine[i]) < hn::Zero(d));
+    store_packed(du, hn::IfThenElse(faces_away, far_score, near_score),
+                 hn::IfThenElse(faces_away, near_score, far_score), &out.packed[i]);
   }
-  out.is_silent = hn::AllTrue(d, loudest == hn::Zero(d));
+  out.is_silent = hn::AllTrue(du, loudest == hn::Zero(du));
 }
 
 void contributions_in_double(const BlockField<double>& field, const BlockNormals<double>& normals,

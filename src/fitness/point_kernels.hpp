@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "cloud2csg/rank_classes.hpp"
+#include "fitness/contribution_units.hpp"
 
 /// The vectorised inner loop of the pass over the points: what one primitive contributes at each point of a block. Only
 /// operations that IEEE 754 defines to the bit are used, in one order, so that every instruction set gives the same
@@ -32,10 +33,11 @@ struct BlockField {
 /// What a primitive contributes to E(t) at the points of a block, were it the selected one.
 template <class Real>
 struct BlockContributions {
-  /// In turn for each point: as it is, and as its complement, with the opposite gradient.
-  alignas(64) std::array<float, 2 * k_block_points> pairs{};
+  /// A point each: as it is, and as its complement, with the opposite gradient.
+  alignas(64) std::array<PackedContribution, k_block_points> packed{};
   bool is_silent = true;  ///< all of them are zero
   BlockMask member{};     ///< points that belong to the primitive
+  BlockMask inside{};     ///< points with a negative distance
   /// Of all k_block_points: no |distance| is outside.
   Real smallest = 0, largest = 0;
 };
@@ -53,8 +55,8 @@ struct ContributionParameters {
   return gamma * gamma * k_right_angle_square < 20.0;  // exp(-20) rounds to zero
 }
 
-/// Contributions are rounded to multiples of 2^-22, so that their sums in double precision are exact, whatever the
-/// order. `member` is computed for all k_block_points entries; mask off the padding.
+/// Contributions are rounded to whole units, so that their sums are exact, whatever the order. `member` and `inside` are computed for
+/// all k_block_points entries; mask off the padding.
 void compute_contributions(const BlockField<double>& field, const BlockNormals<double>& normals,
                            const ContributionParameters& parameters, BlockContributions<double>& out);
 void compute_contributions(const BlockField<float>& field, const BlockNormals<float>& normals,

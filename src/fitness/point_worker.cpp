@@ -34,13 +34,6 @@ std::size_t count_bits(const BlockMask& mask) {
   return count;
 }
 
-template <class Real>
-BlockMask negative_bits(const std::array<Real, k_block_points>& numbers) {
-  BlockMask mask{};
-  for (std::size_t i = 0; i < k_block_points; ++i) mask[i / 64] |= std::uint64_t{numbers[i] < 0} << (i % 64);
-  return mask;
-}
-
 /// A primitive that is looked at in a block.
 template <class Real>
 struct ActivePrimitive {
@@ -48,7 +41,6 @@ struct ActivePrimitive {
   BlockField<Real> field;
   BlockContributions<Real> contributions;
   bool has_members = false;  ///< points of the block that belong to it
-  BlockMask inside{};        ///< points inside of it, if a root asks
 };
 
 template <class Real>
@@ -58,7 +50,6 @@ class Worker {
       : input_(input),
         blocks_(input.cloud, input.box, input.order),
         slot_of_(input.primitives.size(), k_none),
-        some_are_without_strangers_(std::ranges::any_of(input.roots, &Root::without_strangers)),
         is_wanted_(input.roots.size(), false) {
     share_.points_of_primitive.resize(input.primitives.size());
     std::size_t most_primitives = 0;
@@ -122,7 +113,6 @@ class Worker {
       const std::size_t members = count_bits(member);
       share_.points_of_primitive[active_[slot].primitive] += members;
       active_[slot].has_members = members > 0;
-      if (some_are_without_strangers_) active_[slot].inside = negative_bits(active_[slot].field.distance);
     }
     share_.unassigned += blocks_.size(block) - count_bits(assigned);
     segmented_count_ = active_count_;
@@ -185,7 +175,7 @@ class Worker {
     for (std::size_t slot = 0; slot < segmented_count_; ++slot) {
       const ActivePrimitive<Real>& other = active_[slot];
       if (std::ranges::binary_search(root.primitives, other.primitive)) continue;
-      for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= ~other.inside[w];
+      for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= ~other.contributions.inside[w];
     }
   }
 
@@ -212,11 +202,11 @@ class Worker {
     loud_.clear();
     for (std::size_t place = 0; place < root.primitives.size(); ++place) {
       const BlockContributions<Real>& contributions = active(root.primitives[place]).contributions;
-      if (!contributions.is_silent) loud_.push_back({contributions.pairs.data(), 2 * place});
+      if (!contributions.is_silent) loud_.push_back({contributions.packed.data(), place});
     }
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-      table.add_points(classes[i], 1);
-      add_contributions(chosen[i], table.sums(classes[i]));
+      const std::span<PackedContribution> sums = table.add_points(classes[i], 1);
+      for (const Loud& loud : loud_) sums[loud.place] += loud.contributions[chosen[i]];
     }
   }
 
@@ -245,17 +235,10 @@ class Worker {
     compute_hashes(keys_);
   }
 
-  void add_contributions(std::size_t point, std::span<double> sums) const {
-    for (const Loud& loud : loud_) {
-      sums[loud.at] += static_cast<double>(loud.pairs[2 * point]);
-      sums[loud.at + 1] += static_cast<double>(loud.pairs[2 * point + 1]);
-    }
-  }
-
-  /// A primitive that contributes something in the block, and where its sums are in a class's.
+  /// A primitive that contributes something in the block, and its place in the root's set.
   struct Loud {
-    const float* pairs;
-    std::size_t at;
+    const PackedContribution* contributions;
+    std::size_t place;
   };
 
   const WorkerInput<Real>& input_;
@@ -266,8 +249,7 @@ class Worker {
   std::size_t segmented_count_ = 0;     // of the active: the others have no points here
   std::vector<std::uint32_t> slot_of_;  // by primitive: its place among the active, or k_none
   std::vector<std::uint32_t> wanted_;   // roots that take points of the block
-  bool some_are_without_strangers_;
-  std::vector<bool> is_wanted_;  // by root
+  std::vector<bool> is_wanted_;         // by root
   std::vector<DistanceColumn<Real>> columns_;
   std::vector<RankColumn> ranks_;
   std::vector<const BlockMask*> members_;

@@ -17,14 +17,14 @@ void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, c
   const std::uint32_t mask = (std::uint32_t{1} << layout.bits) - 1;
   for (std::size_t c = 0; c < classes.size(); ++c) {
     const std::span<const std::uint32_t> key = classes.key(c);
-    const std::span<const double> sums = classes.sums(c);
     float* const scores = &result.scores_[c * row];
     for (std::size_t p = 0; p < n; ++p) {
       const auto code = static_cast<std::size_t>(key[layout.word_of(p)] >> layout.shift_of(p) & mask);
       const int rank = static_cast<int>(code) - static_cast<int>(n);
       ranks[p * result.padded_count_ + c] = static_cast<Rank>(rank);
-      scores[code] = static_cast<float>(sums[2 * p]);
-      scores[2 * n - code] = static_cast<float>(sums[2 * p + 1]);
+      const WideContribution sum = classes.sum(c, p);
+      scores[code] = static_cast<float>(static_cast<double>(sum.plain) * k_unit);
+      scores[2 * n - code] = static_cast<float>(static_cast<double>(sum.complement) * k_unit);
       if (std::abs(rank) == 1) result.nearest_[c] = static_cast<std::uint16_t>(p);
     }
     result.geometry_bound_ += static_cast<double>(*std::max_element(scores, scores + row));

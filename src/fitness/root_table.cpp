@@ -80,7 +80,7 @@ class Projection {
     compute_hashes(keys_);
     const std::span<std::uint32_t> classes = std::span(classes_).first(count_);
     table_.find_or_insert(keys_, std::span(in_turn_).first(count_), classes);
-    for (std::size_t i = 0; i < count_; ++i) add(chosen_[i], classes[i]);
+    for (std::size_t i = 0; i < count_; ++i) table_.add_class(classes[i], from_, chosen_[i], places_);
     count_ = 0;
   }
 
@@ -91,16 +91,6 @@ class Projection {
     for (std::size_t i = 0; i < count_; ++i) {
       const std::uint32_t code = from_.key(chosen_[i])[word] >> shift & mask;
       out.ranks[i] = static_cast<std::int8_t>(static_cast<int>(code) - static_cast<int>(root_size_));
-    }
-  }
-
-  void add(std::uint32_t old_class, std::uint32_t new_class) {
-    table_.add_points(new_class, from_.count(old_class));
-    const std::span<const double> added = from_.sums(old_class);
-    const std::span<double> sums = table_.sums(new_class);
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      sums[2 * k] += added[2 * places_[k]];
-      sums[2 * k + 1] += added[2 * places_[k] + 1];
     }
   }
 

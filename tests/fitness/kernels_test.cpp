@@ -256,9 +256,11 @@ void expect_point_scores(std::uint64_t seed, double tolerance, double least_gamm
     compute_contributions(block.field, block.normals(), parameters, out);
     bool is_silent = true;
     for (std::size_t i = 0; i < k_block_points; ++i) {
-      RC_ASSERT(std::abs(static_cast<double>(out.pairs[2 * i]) - score_of(block, i, 1, objective)) <= allowed);
-      RC_ASSERT(std::abs(static_cast<double>(out.pairs[2 * i + 1]) - score_of(block, i, -1, objective)) <= allowed);
-      is_silent = is_silent && out.pairs[2 * i] == 0 && out.pairs[2 * i + 1] == 0;
+      RC_ASSERT(std::abs(k_unit * static_cast<double>(plain_units(out.packed[i])) - score_of(block, i, 1, objective)) <=
+                allowed);
+      RC_ASSERT(std::abs(k_unit * static_cast<double>(complement_units(out.packed[i])) -
+                         score_of(block, i, -1, objective)) <= allowed);
+      is_silent = is_silent && out.packed[i] == 0;
       RC_ASSERT(std::abs(block.field.distance[i]) >= out.smallest && std::abs(block.field.distance[i]) <= out.largest);
     }
     RC_ASSERT(out.is_silent == is_silent);
@@ -282,7 +284,7 @@ void expect_same_bits(std::uint64_t seed) {
     const test::ForcedTarget forced(target);
     BlockContributions<Real> out;
     compute_contributions(block.field, block.normals(), parameters, out);
-    RC_ASSERT(out.pairs == expected.pairs);
+    RC_ASSERT(out.packed == expected.packed);
     RC_ASSERT(out.member == expected.member);
     RC_ASSERT(out.smallest == expected.smallest && out.largest == expected.largest);
   }
@@ -293,15 +295,15 @@ RC_GTEST_PROP(Contributions, AreTheSameBitsOnEveryInstructionSet, (std::uint64_t
   expect_same_bits<float>(seed);
 }
 
-RC_GTEST_PROP(Contributions, AreMultiplesOf2ToTheMinus22SoThatSumsAreExact, (std::uint64_t seed)) {
+RC_GTEST_PROP(Contributions, OfManyPointsFitTheHalvesOfASum, (std::uint64_t seed)) {
   RandomStream random(seed);
   BlockContributions<double> out;
   const Block<double> block = random_block<double>(true, random);
   compute_contributions(block.field, block.normals(), random_parameters(true, random), out);
-  for (const float score : out.pairs) {
-    const double units = std::ldexp(static_cast<double>(score), 22);
-    RC_ASSERT(units == std::round(units));
-    RC_ASSERT(units >= 0 && units <= std::ldexp(2.0, 22));
+  constexpr std::uint64_t k_largest_sum = 0xffff'ffff;
+  for (const PackedContribution packed : out.packed) {
+    RC_ASSERT(plain_units(packed) * k_most_packed_points <= k_largest_sum);
+    RC_ASSERT(complement_units(packed) * k_most_packed_points <= k_largest_sum);
   }
 }
 

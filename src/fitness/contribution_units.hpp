@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+/// Contributions to E(t) in units: integers, whose sums are exact in any order.
+namespace cloud2csg {
+
+/// One unit. A contribution is at most 2: 2^23 units.
+inline constexpr double k_unit = 1.0 / (1U << 22U);
+
+/// What a primitive contributes at a point or some points, as it is (lower half) and as its complement (upper half).
+using PackedContribution = std::uint64_t;
+
+/// The sums over so many points fit the halves.
+inline constexpr std::uint32_t k_most_packed_points = 511;
+
+[[nodiscard]] constexpr std::uint64_t plain_units(PackedContribution packed) {
+  return packed & 0xffffffffU;
+}
+[[nodiscard]] constexpr std::uint64_t complement_units(PackedContribution packed) {
+  return packed >> 32U;
+}
+
+/// Sums over any number of points.
+struct WideContribution {
+  std::uint64_t plain = 0, complement = 0;  ///< units
+
+  WideContribution& operator+=(const WideContribution& other) {
+    plain += other.plain;
+    complement += other.complement;
+    return *this;
+  }
+  friend bool operator==(const WideContribution&, const WideContribution&) = default;
+};
+
+[[nodiscard]] constexpr WideContribution widened(PackedContribution packed) {
+  return {plain_units(packed), complement_units(packed)};
+}
+
+}  // namespace cloud2csg
