@@ -22,21 +22,28 @@ double cosine_of_deg(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180.0);
 }
 
-/// How points lie to a primitive: signed distance, and |cosine| of the angle between normal and gradient.
-struct Relation {
-  std::vector<double> distances, agreement;
+/// A primitive's field at some points.
+struct Field {
+  std::vector<double> distances;
+  Points slopes;
+
+  /// Whether the point's normal is along the slope, or against it, to within an angle with this cosine. False where
+  /// there is no slope.
+  [[nodiscard]] bool agrees(std::size_t point, const Eigen::Vector3d& normal, double least_cosine) const {
+    const Eigen::Vector3d slope = slopes[point];
+    const double length = slope.norm();
+    return length > 0 && std::abs(slope.dot(normal)) / length >= least_cosine;
+  }
 };
 
-Relation relation_of(const Primitive& primitive, PointsView positions, PointsView normals) {
-  Relation relation{std::vector<double>(positions.size()), std::vector<double>(positions.size())};
-  Points slopes(positions.size());
-  evaluate_field(
-      primitive, positions,
-      {.distance = relation.distances, .gradient_x = slopes.x, .gradient_y = slopes.y, .gradient_z = slopes.z});
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    relation.agreement[i] = std::abs(slopes[i].dot(normals[i])) / slopes[i].norm();
-  }
-  return relation;
+Field field_of(const Primitive& primitive, PointsView positions) {
+  Field field{std::vector<double>(positions.size()), Points(positions.size())};
+  evaluate_field(primitive, positions,
+                 {.distance = field.distances,
+                  .gradient_x = field.slopes.x,
+                  .gradient_y = field.slopes.y,
+                  .gradient_z = field.slopes.z});
+  return field;
 }
 
 struct Sample {
@@ -71,9 +78,10 @@ double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, d
   const double least_cosine = cosine_of_deg(angle_tolerance_deg);
   std::vector<double> nearest(sample.positions.size(), std::numeric_limits<double>::infinity());
   for (const Primitive& primitive : primitives) {
-    const auto [distances, agreement] = relation_of(primitive, sample.positions, sample.normals);
+    const Field field = field_of(primitive, sample.positions);
     for (std::size_t i = 0; i < nearest.size(); ++i) {
-      if (agreement[i] >= least_cosine) nearest[i] = std::min(nearest[i], std::abs(distances[i]));
+      const double distance = std::abs(field.distances[i]);
+      if (distance < nearest[i] && field.agrees(i, sample.normals[i], least_cosine)) nearest[i] = distance;
     }
   }
   std::erase_if(nearest, [](double distance) { return !std::isfinite(distance); });
@@ -99,10 +107,11 @@ Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primiti
   std::vector<bool> assigned(cloud.size(), false);
   for (const Primitive& primitive : primitives) {
     run.throw_if_stopped();
-    const auto [distances, agreement] = relation_of(primitive, cloud.positions, cloud.normals);
+    const Field field = field_of(primitive, cloud.positions);
     std::vector<std::uint32_t>& points = result.points_of.emplace_back();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (std::abs(distances[i]) > tolerances.distance || !(agreement[i] >= tolerances.cosine)) continue;
+      const bool is_near = std::abs(field.distances[i]) <= tolerances.distance;
+      if (!is_near || !field.agrees(i, cloud.normals[i], tolerances.cosine)) continue;
       points.push_back(static_cast<std::uint32_t>(i));
       assigned[i] = true;
     }
