@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/overlap_graph.hpp"
 #include "cloud2csg/run_context.hpp"
 
 /// Merging the trees of the partitions into one (section 4 of the paper).
@@ -44,15 +45,17 @@ struct MergeResult {
 [[nodiscard]] MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order = MergeOrder::paper,
                                       const RunContext& run = {});
 
-/// Merges trees by what their primitives are to them, beyond the paper. A primitive that is wholly in the solid in each
-/// tree that has it is united with all the rest, one that is wholly out of it is subtracted from all the rest; both are
-/// then taken out of the trees, which are from now on about what is outside of it, and that uncovers others. What is
+/// Merges trees by what their primitives are to them, beyond the paper. A primitive that is wholly in the solid in the
+/// tree of each clique that has it is united with all the rest, one that is wholly out of it is subtracted from all the
+/// rest; both are then taken out of the trees, which are from now on about what is outside, and that uncovers others. A
+/// tree without the primitive of its clique has something in its place, and that must be taken out first. What is
 /// left over, such as a & b, is merged as by merge_trees(); then it is put together again, what went first outermost:
 /// each primitive that was taken out appears once.
 ///
-/// Right where each tree tells the truth about all of space near its primitives. `trees` of the result is one, unless
-/// some that share primitives are blocked. Deterministic. O(size x log size) for trees that each share primitives with
-/// few others.
-[[nodiscard]] MergeResult merge_by_dominance(std::span<const CsgTree> trees, const RunContext& run = {});
+/// Right where each tree tells the truth about all of space near its primitives. `trees` and `cliques` belong together.
+/// `trees` of the result is one, unless some that share primitives are blocked. Deterministic. O(size x log size) for
+/// trees that each share primitives with few others.
+[[nodiscard]] MergeResult merge_by_dominance(std::span<const CsgTree> trees, std::span<const Clique> cliques,
+                                             const RunContext& run = {});
 
 }  // namespace cloud2csg

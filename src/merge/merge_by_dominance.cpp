@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <set>
 #include <span>
 #include <utility>
@@ -42,8 +43,9 @@ struct Layer {
 
 class DominanceMerge {
  public:
-  DominanceMerge(std::span<const CsgTree> trees, const RunContext& run) : run_(run) {
-    for (const CsgTree& tree : trees) add(simplify(tree));
+  DominanceMerge(std::span<const CsgTree> trees, std::span<const Clique> cliques, const RunContext& run) : run_(run) {
+    assert(trees.size() == cliques.size());
+    for (std::size_t k = 0; k < trees.size(); ++k) add(simplify(trees[k]), cliques[k]);
     for (PrimitiveIndex p = 0; p < trees_with_.size(); ++p) mark_stale(p);
   }
 
@@ -62,13 +64,14 @@ class DominanceMerge {
   }
 
  private:
-  void add(CsgTree tree) {
+  void add(CsgTree tree, const Clique& clique) {
     if (tree == CsgTree::empty()) return;
-    for (const PrimitiveIndex p : primitives_of(tree)) {
+    for (const PrimitiveIndex p : clique) {
       if (p >= trees_with_.size()) trees_with_.resize(p + std::size_t{1});
       trees_with_[p].push_back(trees_.size());
     }
     trees_.push_back(std::move(tree));
+    cliques_.push_back(clique);
   }
 
   void mark_stale(PrimitiveIndex p) {
@@ -76,10 +79,12 @@ class DominanceMerge {
     stale_removed_.insert(p);
   }
 
-  /// What the primitive is to all trees that have it, if it is the same to all.
+  /// What the primitive is to all partitions that have it, if it is the same to all. A tree of which nothing is left
+  /// says nothing. One that has primitives left, but not this one, has something in its place: that must go first.
   [[nodiscard]] Role role_of(PrimitiveIndex p) const {
     Role common = Role::undecided;
     for (const std::size_t k : trees_with_[p]) {
+      if (is_constant(trees_[k])) continue;
       const CsgTree inside = substitute(trees_[k], p, /*is_full=*/true);
       if (!is_constant(inside)) return Role::undecided;
       const Role role = inside == CsgTree::full() ? Role::added : Role::removed;
@@ -105,19 +110,15 @@ class DominanceMerge {
   /// All trees are from now on about what is outside of the primitive.
   void take_out(PrimitiveIndex p) {
     for (const std::size_t k : std::exchange(trees_with_[p], {})) {
-      const std::vector<PrimitiveIndex> before = primitives_of(trees_[k]);
       trees_[k] = simplify(substitute(trees_[k], p, /*is_full=*/false));
-      const std::vector<PrimitiveIndex> after = primitives_of(trees_[k]);
-      for (const PrimitiveIndex q : before) {
-        if (q == p) continue;
-        if (!std::ranges::binary_search(after, q)) std::erase(trees_with_[q], k);
-        mark_stale(q);
+      for (const PrimitiveIndex q : cliques_[k]) {
+        if (!trees_with_[q].empty()) mark_stale(q);
       }
     }
   }
 
-  /// What is left of the trees: primitives that are neither wholly in the solid nor wholly out of it. All of space, when
-  /// that is what all trees say of what is outside of their primitives.
+  /// What is left of the trees: primitives that are neither wholly in the solid nor wholly out of it. All of space,
+  /// when that is what all trees say of what is outside of their primitives.
   [[nodiscard]] std::vector<CsgTree> core() const {
     const auto is_full = [](const CsgTree& tree) { return tree == CsgTree::full(); };
     if (!trees_.empty() && std::ranges::all_of(trees_, is_full)) return {CsgTree::full()};
@@ -140,6 +141,7 @@ class DominanceMerge {
 
   const RunContext& run_;
   std::vector<CsgTree> trees_;
+  std::vector<Clique> cliques_;
   std::vector<std::vector<std::size_t>> trees_with_;      ///< by primitive
   std::set<PrimitiveIndex> stale_added_, stale_removed_;  ///< whose role may have become this one
   std::vector<Layer> layers_;                             ///< the outermost first
@@ -147,8 +149,8 @@ class DominanceMerge {
 
 }  // namespace
 
-MergeResult merge_by_dominance(std::span<const CsgTree> trees, const RunContext& run) {
-  return DominanceMerge(trees, run).merge();
+MergeResult merge_by_dominance(std::span<const CsgTree> trees, std::span<const Clique> cliques, const RunContext& run) {
+  return DominanceMerge(trees, cliques, run).merge();
 }
 
 }  // namespace cloud2csg

@@ -85,7 +85,7 @@ class ComponentMerger {
   }
 
   [[nodiscard]] MergeResult merge_result(MergeWay way, std::span<const CsgTree> trees) const {
-    if (way == MergeWay::dominance) return merge_by_dominance(trees, run_);
+    if (way == MergeWay::dominance) return merge_by_dominance(trees, component_.cliques, run_);
     return merge_trees(trees, way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree, run_);
   }
 
