@@ -10,24 +10,11 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::string_view k_style =
-    R"(set terminal svg size 900,480 font "sans-serif,14" background rgb "white" noenhanced
-set style data histogram
+constexpr std::string_view k_bars =
+    R"(set style data histogram
 set style fill solid 0.85 border -1
 set boxwidth 0.9
-set grid ytics
-set key outside right top
 )";
-
-/// Text in quotes, as gnuplot reads it.
-std::string in_quotes(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
 
 struct Series {
   std::string title;
@@ -37,9 +24,9 @@ struct Series {
 /// The data of a figure: a line a model, two columns a series. What was not measured is left out of the picture.
 std::string data_block(const PaperResults& results, const std::vector<Series>& series) {
   std::string text = "$data << END\nmodel";
-  for (const Series& one : series) text += fmt::format(" {} sd", in_quotes(one.title));
+  for (const Series& one : series) text += fmt::format(" {} sd", in_gnuplot_quotes(one.title));
   for (const ModelDetails& model : results.models) {
-    text += fmt::format("\n{}", in_quotes(model.name));
+    text += fmt::format("\n{}", in_gnuplot_quotes(model.name));
     for (const Series& one : series) {
       const Spread spread = one.value(model);
       text += spread.count == 0 ? std::string(" ? ?") : fmt::format(" {} {}", spread.mean, spread.deviation);
@@ -52,19 +39,20 @@ std::string data_block(const PaperResults& results, const std::vector<Series>& s
 std::string grouped_bars(const PaperResults& results, std::string_view title, std::string_view unit, bool is_log,
                          const std::vector<Series>& series) {
   return fmt::format(
-      "{}set style histogram errorbars gap 1.5 linewidth 1\nset title {}\nset ylabel {}\n{}{}"
+      "{}{}set style histogram errorbars gap 1.5 linewidth 1\nset title {}\nset ylabel {}\n{}{}"
       "plot for [i=2:{}:2] $data using (column(i)):(column(i + 1)):xtic(1) title columnheader(i)\n",
-      k_style, in_quotes(title), in_quotes(unit), is_log ? "set logscale y\n" : "set yrange [0:*]\n",
-      data_block(results, series), 2 * series.size());
+      k_figure_style, k_bars, in_gnuplot_quotes(title), in_gnuplot_quotes(unit),
+      is_log ? "set logscale y\n" : "set yrange [0:*]\n", data_block(results, series), 2 * series.size());
 }
 
 /// Bars on top of each other, one a model.
 std::string stacked_bars(const PaperResults& results, std::string_view title, std::string_view unit,
                          const std::vector<Series>& series) {
   return fmt::format(
-      "{}set style histogram rowstacked\nset boxwidth 0.6\nset title {}\nset ylabel {}\nset yrange [0:*]\n{}"
+      "{}{}set style histogram rowstacked\nset boxwidth 0.6\nset title {}\nset ylabel {}\nset yrange [0:*]\n{}"
       "plot for [i=2:{}:2] $data using (column(i)):xtic(1) title columnheader(i)\n",
-      k_style, in_quotes(title), in_quotes(unit), data_block(results, series), 2 * series.size());
+      k_figure_style, k_bars, in_gnuplot_quotes(title), in_gnuplot_quotes(unit), data_block(results, series),
+      2 * series.size());
 }
 
 Figure durations_figure(const PaperResults& results, Sampling sampling) {

@@ -5,29 +5,25 @@
 
 #include <algorithm>
 
-#include "base/atomic_file.hpp"
-#include "base/output_set.hpp"
 #include "experiment/figures.hpp"
-#include "experiment/gnuplot.hpp"
 #include "experiment/paper_tables.hpp"
+#include "experiment/report_files.hpp"
 
 namespace cloud2csg {
 namespace {
 
 std::string setting(const PaperResults& results) {
   const PaperOptions& options = results.options;
-  const Environment& machine = results.environment;
   const auto [first, last] =
       std::minmax_element(results.runs.begin(), results.runs.end(),
                           [](const PaperRun& a, const PaperRun& b) { return a.finished < b.finished; });
   return fmt::format(
-      "cloud2csg {}, {}; {}, {} cores; runs from {} to {}.\n"
+      "{}; runs from {} to {}.\n"
       "Preset {}, evaluator {}, noise {}, {} repeats with seeds {} to {} for the search, one cloud a model and "
       "sampling (seed {}).\n"
       "Parallel modes use {} threads. Mean ± standard deviation over the repeats.\n",
-      machine.version, machine.compiler, machine.cpu, machine.cores, first->finished, last->finished, options.preset,
-      options.evaluator, options.noise, options.repeats, options.seed, options.seed + options.repeats - 1, options.seed,
-      options.threads);
+      describe(results.environment), first->finished, last->finished, options.preset, options.evaluator, options.noise,
+      options.repeats, options.seed, options.seed + options.repeats - 1, options.seed, options.threads);
 }
 
 std::string mode_check(const PaperResults& results) {
@@ -41,19 +37,12 @@ std::string mode_check(const PaperResults& results) {
                      fmt::join(disagreements, "\n- "));
 }
 
-/// Draws these scripts, which are there already. False when there is no gnuplot.
-bool add_pictures(OutputSet& pictures, const std::filesystem::path& folder, const std::vector<Figure>& figures) {
-  bool is_installed = true;
-  for (const Figure& figure : figures) {
-    pictures.add(folder / (figure.name + ".svg"), [&](const std::filesystem::path& picture) {
-      is_installed = is_installed && run_gnuplot(folder / (figure.name + ".gp"), picture);
-    });
-  }
-  return is_installed;
-}
-
-void add_text(OutputSet& texts, const std::filesystem::path& file, const std::string& text) {
-  texts.add(file, [&text](const std::filesystem::path& path) { write_text_file(path, text); });
+Report report_of(const PaperResults& results) {
+  return {.name = "paper",
+          .introduction = "# The paper's evaluation\n\n" + setting(results) + '\n' + mode_check(results),
+          .tables = paper_tables(results),
+          .details = {runs_table(results)},
+          .figures = paper_figures(results)};
 }
 
 }  // namespace
@@ -74,30 +63,11 @@ std::vector<std::string> mode_disagreements(const PaperResults& results) {
 }
 
 std::string paper_markdown(const PaperResults& results, bool has_pictures) {
-  std::string text = "# The paper's evaluation\n\n" + setting(results) + '\n' + mode_check(results);
-  for (const Table& table : paper_tables(results)) text += '\n' + to_markdown(table);
-  if (!has_pictures) return text;
-  text += "\n## Figures\n\n";
-  for (const Figure& figure : paper_figures(results)) text += fmt::format("![{0}]({0}.svg)\n", figure.name);
-  return text;
+  return to_markdown(report_of(results), has_pictures);
 }
 
 std::vector<std::string> write_paper_report(const std::filesystem::path& folder, const PaperResults& results) {
-  const std::vector<Figure> figures = paper_figures(results);
-  for (const Figure& figure : figures) write_text_file(folder / (figure.name + ".gp"), figure.script);
-  OutputSet pictures;
-  const bool has_pictures = add_pictures(pictures, folder, figures);
-
-  OutputSet texts;
-  for (const Table& table : paper_tables(results)) add_text(texts, folder / (table.name + ".csv"), to_csv(table));
-  add_text(texts, folder / "runs.csv", to_csv(runs_table(results)));
-  add_text(texts, folder / "paper.md", paper_markdown(results, has_pictures));
-  texts.commit();
-  if (has_pictures) {
-    pictures.commit();
-    return {};
-  }
-  return {"gnuplot is not installed: no .svg figures; their scripts are the .gp files (Debian: gnuplot-nox)"};
+  return write_report(folder, report_of(results));
 }
 
 }  // namespace cloud2csg

@@ -1,22 +1,17 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
-#include <ctime>
 #include <optional>
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/experiment.hpp"
 #include "cloud2csg/sample.hpp"
 #include "experiment/reference_extraction.hpp"
+#include "experiment/report_files.hpp"
 
 namespace cloud2csg {
 namespace {
-
-std::string now_utc() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-}
 
 ExtractOptions extract_options(const PaperOptions& options, const PaperMode& mode, std::uint64_t seed) {
   ExtractOptions extract = options.preset == "paper" ? paper_options() : ExtractOptions{};

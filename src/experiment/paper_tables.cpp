@@ -9,13 +9,6 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::array<Step, 7> k_steps{{{"segment", &StageSeconds::segment},
-                                       {"overlap", &StageSeconds::overlap},
-                                       {"partition", &StageSeconds::partition},
-                                       {"classes", &StageSeconds::classes},
-                                       {"search", &StageSeconds::search},
-                                       {"merge", &StageSeconds::merge},
-                                       {"simplify", &StageSeconds::simplify}}};
 constexpr std::array k_samplings{Sampling::low, Sampling::high};
 constexpr std::array<std::string_view, 2> k_single_threaded{"BST", "SST"};
 
@@ -192,7 +185,7 @@ Table steps_table(const PaperResults& results) {
   Table table{
       .name = "steps", .title = "Share of each step, percent", .note = "Of the duration on one thread.", .columns = {}};
   std::vector<Measure> columns;
-  for (const Step& step : k_steps) {
+  for (const Step& step : extraction_steps()) {
     table.columns.emplace_back(step.name);
     columns.push_back(share_of(step));
   }
@@ -200,10 +193,6 @@ Table steps_table(const PaperResults& results) {
 }
 
 }  // namespace
-
-std::span<const Step> extraction_steps() {
-  return k_steps;
-}
 
 Spread measure(const PaperResults& results, std::string_view model, Sampling sampling, std::string_view mode,
                const Measure& value) {
@@ -248,7 +237,7 @@ Table runs_table(const PaperResults& results) {
               .title = "Runs",
               .columns = {"model", "sampling", "mode", "seed", "finished", "points", "generations", "evaluations",
                           "nodes", "leaves", "depth", "blocked", "E", "rms distance", "rms angle deg"}};
-  for (const Step& step : k_steps) table.columns.push_back(fmt::format("{} s", step.name));
+  for (const Step& step : extraction_steps()) table.columns.push_back(fmt::format("{} s", step.name));
   table.columns.emplace_back("extraction s");
   for (const PaperRun& run : results.runs) {
     std::vector<Cell> row{run.name.model, std::string(to_string(run.name.sampling)), run.name.mode,
@@ -258,7 +247,7 @@ Table runs_table(const PaperResults& results) {
       row.emplace_back(static_cast<double>(count));
     }
     row.insert(row.end(), {run.fit.objective, run.fit.rms_distance, run.fit.rms_angle_deg});
-    for (const Step& step : k_steps) row.emplace_back(run.seconds.*step.seconds);
+    for (const Step& step : extraction_steps()) row.emplace_back(run.seconds.*step.seconds);
     row.emplace_back(run.seconds.extraction);
     table.rows.push_back(std::move(row));
   }

@@ -6,16 +6,10 @@
 #include <vector>
 
 #include "cloud2csg/experiment.hpp"
+#include "experiment/step.hpp"
 #include "experiment/table.hpp"
 
 namespace cloud2csg {
-
-/// The steps of the extraction that are timed, in their order.
-struct Step {
-  std::string_view name;
-  double StageSeconds::*seconds;
-};
-[[nodiscard]] std::span<const Step> extraction_steps();
 
 using Measure = std::function<double(const PaperRun&)>;
 

@@ -6,6 +6,7 @@
 #include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/experiment.hpp"
+#include "experiment/resume_check.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -36,24 +37,6 @@ ModelDetails details_of(const std::string& name, const Model& model) {
           .fingerprint = fingerprint(model)};
 }
 
-/// Refuses to put runs together that cannot be compared.
-class ResumeCheck {
- public:
-  explicit ResumeCheck(const std::filesystem::path& file) : file_(file) {}
-
-  template <typename Value>
-  void same(std::string_view what, const Value& there, const Value& now) const {
-    if (there == now) return;
-    throw Error({.file = file_.string(),
-                 .where = {},
-                 .expected = fmt::format("holds results with {} {}, not {}", what, there, now),
-                 .remedy = "choose another folder, or remove this one"});
-  }
-
- private:
-  const std::filesystem::path& file_;
-};
-
 void check_same_experiment(const std::filesystem::path& file, const PaperResults& there, const PaperResults& now) {
   const ResumeCheck check(file);
   const PaperOptions& a = there.options;
@@ -67,10 +50,7 @@ void check_same_experiment(const std::filesystem::path& file, const PaperResults
   check.same("preset", a.preset, b.preset);
   check.same("evaluator", a.evaluator, b.evaluator);
   check.same("threads", a.threads, b.threads);
-  check.same("version", there.environment.version, now.environment.version);
-  check.same("compiler", there.environment.compiler, now.environment.compiler);
-  check.same("cpu", there.environment.cpu, now.environment.cpu);
-  check.same("cores", there.environment.cores, now.environment.cores);
+  check.same_environment(there.environment, now.environment);
   const auto same_model = [](const ModelDetails& x, const ModelDetails& y) { return x.fingerprint == y.fingerprint; };
   if (!std::equal(there.models.begin(), there.models.end(), now.models.begin(), now.models.end(), same_model)) {
     throw Error({.file = file.string(),
