@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "cloud2csg/error.hpp"
 #include "cloud2csg/experiment.hpp"
+#include "experiment/require.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -18,10 +18,6 @@ constexpr std::array<PaperMode, 6> k_modes{{
     {"SMTGA", Strategy::partition, Parallel::population},
     {"SMTPGA", Strategy::partition, Parallel::both},
 }};
-
-void require(bool holds, const char* field, const std::string& expected) {
-  if (!holds) throw Error({.file = {}, .where = field, .expected = expected, .remedy = {}});
-}
 
 }  // namespace
 

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "command.hpp"
+#include "values.hpp"
+
+/// What the experiments of `bench` have in common.
+namespace cloud2csg::app {
+
+// Each adds its subcommand to bench; one file an experiment.
+[[nodiscard]] Command add_bench_paper(CLI::App& bench);
+[[nodiscard]] Command add_bench_compare(CLI::App& bench);
+[[nodiscard]] Command add_bench_scaling(CLI::App& bench);
+
+/// `-o DIR`
+void add_results_folder(CLI::App& app, std::string& folder);
+/// @throws Error
+void make_folder(const std::filesystem::path& folder);
+
+/// The threads that a run with this option uses.
+[[nodiscard]] int threads_of(const RunOptions& running);
+
+/// What `work` returns. When it is interrupted, says how to go on.
+template <typename Work>
+auto resumable(const std::string& folder, Session& session, const Work& work) {
+  try {
+    return work();
+  } catch (const Cancelled&) {
+    session.display().note("finished runs are kept in " + folder + "; the same command makes those that are missing");
+    throw;
+  }
+}
+
+template <typename Value>
+CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Value& value, std::uint64_t least,
+                              const std::string& help) {
+  return app.add_option(name, value, help)
+      ->transform(whole_number_from(least))
+      ->type_name("N")
+      ->group("Experiment")
+      ->capture_default_str();
+}
+
+}  // namespace cloud2csg::app

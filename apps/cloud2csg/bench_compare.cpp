@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <span>
+
+#include "bench_command.hpp"
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/experiment.hpp"
+
+namespace cloud2csg::app {
+namespace {
+
+struct CompareResultsCommand {
+  std::string before;
+  std::string after;
+  ResultComparisonOptions comparing;
+  bool is_all = false;
+
+  void run() const;
+};
+
+std::size_t count_of(std::span<const Change> changes, Verdict verdict) {
+  return static_cast<std::size_t>(std::count_if(changes.begin(), changes.end(),
+                                                [verdict](const Change& change) { return change.verdict == verdict; }));
+}
+
+void CompareResultsCommand::run() const {
+  const PaperResults results_before = read_paper_results(before);
+  const PaperResults results_after = read_paper_results(after);
+  const std::vector<Change> changes = naming(
+      before + " with " + after, [&] { return compare_paper_results(results_before, results_after, comparing); });
+  std::vector<Change> shown;
+  std::copy_if(changes.begin(), changes.end(), std::back_inserter(shown),
+               [this](const Change& change) { return is_all || change.verdict != Verdict::same; });
+  if (!shown.empty()) fmt::print("{}\n", changes_markdown(shown));
+  const Environment& machine_before = results_before.environment;
+  const Environment& machine_after = results_after.environment;
+  if (machine_before.cpu != machine_after.cpu || machine_before.cores != machine_after.cores) {
+    fmt::print("The machines differ ({}, {} cores; {}, {} cores): so do durations.\n", machine_before.cpu,
+               machine_before.cores, machine_after.cpu, machine_after.cores);
+  }
+  const std::size_t worse = count_of(changes, Verdict::worse);
+  fmt::print("{} measures: {} worse, {} better, {} the same within the noise, {} unknown\n", changes.size(), worse,
+             count_of(changes, Verdict::better), count_of(changes, Verdict::same), count_of(changes, Verdict::unknown));
+  if (worse == 0) return;
+  throw Error(
+      {.file = after, .where = {}, .expected = fmt::format("{} of its measures got worse", worse), .remedy = {}});
+}
+
+}  // namespace
+
+Command add_bench_compare(CLI::App& bench) {
+  CLI::App* app = bench.add_subcommand("compare", "What got slower or larger between two results of 'bench paper'");
+  app->footer(
+      "A measure is better or worse when Welch's t-test over the repeats says so and the change is large enough.\n"
+      "Exit status 1 when one got worse.\n\n" +
+      example("  cloud2csg bench compare before/paper.json after/paper.json"));
+  auto command = std::make_shared<CompareResultsCommand>();
+  add_file(*app, "before", command->before, "The paper.json to compare with")->type_name("BEFORE.json");
+  add_file(*app, "after", command->after, "The paper.json to judge")->type_name("AFTER.json");
+  app->add_flag("--all", command->is_all, "Show what stayed the same too")->group("Output");
+  const auto add_share = [app](const std::string& name, double& value, const std::string& help) {
+    app->add_option(name, value, help)->check(share())->type_name("SHARE")->group("Judgement")->capture_default_str();
+  };
+  add_share("--least-time-change", command->comparing.least_time_change, "Durations that differ by less are the same");
+  add_share("--least-change", command->comparing.least_change, "... and nodes, distances and evaluations");
+  add_share("--error-rate", command->comparing.error_rate, "Chance of any wrong verdict at all");
+  return {.options = app, .run = [command](const std::stop_token&) { command->run(); }};
+}
+
+}  // namespace cloud2csg::app
