@@ -33,7 +33,7 @@ Line line_of(const ScalingResults& results, Sweep sweep, Family family, const Qu
 
 /// A title with the fitted exponent behind it.
 std::string with_exponent(const std::string& title, const PowerLaw& law) {
-  return law.count == 0 ? title : fmt::format("{}: {:.2f}", title, law.exponent);
+  return law.count == 0 ? title : fmt::format("{} ~ n^{:.2f}", title, law.exponent);
 }
 
 std::string log_log_script(std::string_view title, std::string_view size, std::string_view value,
