@@ -72,7 +72,7 @@ struct ScalingRun {
   ScalingCase scaling_case;
   std::uint64_t seed = 1;
   std::string finished = {};  ///< date and time, UTC, ISO 8601
-  bool complete = true;  ///< false when the time limit ended the search
+  bool complete = true;       ///< false when the time limit ended the search
   std::size_t partitions = 0, components = 0;
   StageSeconds seconds = {};
   TreeStatistics tree = {}, true_tree = {};

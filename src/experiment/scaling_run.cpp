@@ -125,7 +125,8 @@ ScalingResults measure_scaling(const ScalingOptions& options, const std::filesys
   std::size_t first_of_family = 0;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     run.throw_if_stopped();
-    const auto& [one, seed] = plan[i];
+    const ScalingCase& one = plan[i].first;
+    const std::uint64_t seed = plan[i].second;
     if (one.family != plan[first_of_family].first.family) first_of_family = i;
     const auto of_family = static_cast<std::size_t>(
         std::count_if(plan.begin(), plan.end(), [&](const auto& other) { return other.first.family == one.family; }));

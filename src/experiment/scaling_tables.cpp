@@ -41,9 +41,8 @@ std::vector<Cell> name_cells(const ScalingCase& one) {
   return {std::string(to_string(one.family)), clique, number(one.primitives), number(one.points)};
 }
 
-const std::vector<std::string>& name_columns() {
-  static const std::vector<std::string> columns{"family", "clique", "primitives", "points"};
-  return columns;
+std::vector<std::string> name_columns() {
+  return {"family", "clique", "primitives", "points"};
 }
 
 Table growth_table(const ScalingResults& results, Sweep sweep) {
