@@ -131,10 +131,10 @@ void TreeRestriction::build_shallowest() {
 
 /// For leaves a < b. Between a and b, only the child of the common ancestor that holds a is so near to the root.
 TreeRestriction::NodeIndex TreeRestriction::common_ancestor(NodeIndex a, NodeIndex b) const {
-  const auto level = static_cast<std::size_t>(std::bit_width(b - a) - 1);
-  const std::vector<NodeIndex>& row = shallowest_[level];
+  const auto bits = static_cast<std::size_t>(std::bit_width(b - a));
+  const std::vector<NodeIndex>& row = shallowest_[bits - 1];
   const NodeIndex left = row[a];
-  const NodeIndex right = row[b - (std::size_t{1} << level)];
+  const NodeIndex right = row[b - (std::size_t{1} << bits) / 2];
   return parent_[depth_[left] <= depth_[right] ? left : right];
 }
 
