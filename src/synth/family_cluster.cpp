@@ -17,7 +17,7 @@ constexpr double k_core_radius = 0.65;
 /// All solids of a cluster hold its middle, this far inside: so they overlap.
 constexpr double k_least_depth = 0.06;
 /// Points on a primitive's surface that tell which share of it shows: a word's bits.
-constexpr int k_probes = 64;
+constexpr std::size_t k_probes = 64;
 constexpr int k_least_visible = 5;
 
 /// A solid of the core in the cluster's frame, of any kind.
