@@ -56,6 +56,7 @@ void add_options(CLI::App& app, ScalingCommand& command) {
   constexpr std::uint64_t k_most_clique = 12;
   add_results_folder(app, command.folder);
   std::vector<std::string> names;
+  names.reserve(all_families().size());
   for (const Family family : all_families()) names.emplace_back(to_string(family));
   app.add_option("--family", command.families, "Models of this family: chain, grid, plate, random, nest (default: all)")
       ->check(one_of(names))

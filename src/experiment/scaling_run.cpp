@@ -48,6 +48,7 @@ std::string list_of(const std::vector<std::size_t>& sizes) {
 
 std::string list_of(const std::vector<Family>& families) {
   std::vector<std::string_view> names;
+  names.reserve(families.size());
   for (const Family family : families) names.push_back(to_string(family));
   return fmt::format("{}", fmt::join(names, ", "));
 }

@@ -28,7 +28,8 @@ class PlateBuilder {
 
   void add(Feature feature, std::size_t cell) {
     const double x = k_cell * (static_cast<double>(cell % k_columns) - 0.5 * (k_columns - 1));
-    const double y = k_cell * (static_cast<double>(cell / k_columns) - 0.5 * (k_rows - 1));
+    const std::size_t row = cell / k_columns;
+    const double y = k_cell * (static_cast<double>(row) - 0.5 * (k_rows - 1));
     middle_ = Vector3d(x, y, 0) + random_shift(0.04, random_);
     switch (feature) {
       case Feature::hole:

@@ -95,7 +95,8 @@ void build_grid(FamilyBuilder& builder, const FamilyOptions& options) {
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.primitives))));
   for (std::size_t i = 0; i < options.primitives; ++i) {
     RandomStream random = family_stream(Family::grid, options, i);
-    const Vector3d place(k_spacing * static_cast<double>(i % columns), k_spacing * static_cast<double>(i / columns), 0);
+    const std::size_t row = i / columns;
+    const Vector3d place(k_spacing * static_cast<double>(i % columns), k_spacing * static_cast<double>(row), 0);
     builder.add_part(builder.add(Sphere{.radius = k_radius + random.uniform(-k_displacement, k_displacement)},
                                  {.position = place + random_shift(k_displacement, random)}));
   }
