@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "synth/family_parts.hpp"
 
@@ -18,8 +19,8 @@ constexpr std::array<std::size_t, 4> k_primitives_of{1, 1, 2, 3};
 /// A plate with features on a lattice, in its own frame: z = 0 in the middle of its thickness.
 class PlateBuilder {
  public:
-  PlateBuilder(FamilyBuilder& builder, const Pose& place, RandomStream& random)
-      : builder_(builder), random_(random), frame_(place), top_(random.uniform(0.2, 0.3)) {
+  PlateBuilder(FamilyBuilder& builder, Pose place, RandomStream& random)
+      : builder_(builder), random_(random), frame_(std::move(place)), top_(random.uniform(0.2, 0.3)) {
     frame_.position += random_shift(0.03, random);
     frame_.orientation = frame_.orientation * random_tilt(1, random);
     const double width = random.uniform(2.6, 2.8);

@@ -11,12 +11,19 @@ namespace {
 
 using Pairs = std::vector<std::pair<double, double>>;
 
+/// 10, 20, 40... 10 240.
+std::vector<double> sizes() {
+  std::vector<double> sizes{10};
+  while (sizes.size() < 11) sizes.push_back(2 * sizes.back());
+  return sizes;
+}
+
 RC_GTEST_PROP(PowerLaw, IsFoundWhereThereIsOne, (std::uint64_t seed)) {
   RandomStream random(seed);
   const double factor = std::exp(random.uniform(-9, 9));
   const double exponent = random.uniform(-1, 4);
   Pairs pairs;
-  for (double size = 10; size < 20'000; size *= 3) pairs.emplace_back(size, factor * std::pow(size, exponent));
+  for (const double size : sizes()) pairs.emplace_back(size, factor * std::pow(size, exponent));
   const PowerLaw law = fit_power_law(pairs);
   RC_ASSERT(law.count == pairs.size());
   RC_ASSERT(std::abs(law.exponent - exponent) < 1e-9);
@@ -41,7 +48,7 @@ TEST(PowerLaw, ErrorIsTheSpreadOfTheExponent) {
   for (int i = 0; i < k_experiments; ++i) {
     RandomStream random(1, 2, static_cast<std::uint64_t>(i));
     Pairs pairs;
-    for (double size = 10; size < 20'000; size *= 2) pairs.emplace_back(size, size * std::exp(0.2 * random.normal()));
+    for (const double size : sizes()) pairs.emplace_back(size, size * std::exp(0.2 * random.normal()));
     const PowerLaw law = fit_power_law(pairs);
     squares += (law.exponent - 1) * (law.exponent - 1) / k_experiments;
     error += law.error / k_experiments;
