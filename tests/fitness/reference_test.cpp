@@ -5,26 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "support/scene.hpp"
+#include "support/request_points.hpp"
 
 namespace cloud2csg {
 namespace {
-
-/// The indices of the points that a request's table is judged by, found by plain segmentation.
-std::vector<std::uint32_t> points_of(const RankClassesRequest& request, const test::Scene& scene) {
-  std::vector<bool> chosen(scene.cloud.size(), request.all_points);
-  if (!request.all_points) {
-    const Segmentation segmentation = segment_points(scene.cloud, scene.primitives, test::scene_tolerances());
-    for (const PrimitiveIndex p : request.primitives) {
-      for (const std::uint32_t point : segmentation.points_of[p]) chosen[point] = true;
-    }
-  }
-  std::vector<std::uint32_t> points;
-  for (std::uint32_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i]) points.push_back(i);
-  }
-  return points;
-}
 
 /// Some of the primitives, ascending; at least one.
 std::vector<PrimitiveIndex> random_subset(std::size_t primitives, RandomStream& random) {
@@ -49,23 +33,20 @@ double geometry_of_fields(const CsgTree& tree, const test::Scene& scene, std::sp
   return sum;
 }
 
-/// Holds random trees on one table against the walk over each point. Scores are relative to their sum, not to E(t),
-/// which may cancel; a point is never asked for more than the 2^-22 that contributions are rounded to.
+/// Holds one table against the walk over each point and against whole columns of them.
 void expect_reference(const RankClasses& table, const RankClassesRequest& request, const test::Scene& scene,
                       std::size_t trees, RandomStream& random) {
-  const std::vector<std::uint32_t> points = points_of(request, scene);
-  ASSERT_EQ(table.point_count(), points.size());
+  const std::vector<std::uint32_t> points = test::PlainPoints(scene).of(request);
+  test::expect_scores_of(table, points, scene, trees, random);
   Objective geometry_only = table.objective();
   geometry_only.alpha = 0;
   RankScratch scratch;
   for (const CsgTree& local : test::random_formulas(table.primitive_count(), trees, random)) {
     const CsgTree tree = renumber(local, table.primitives());
-    const double fast = table.geometry(local, scratch);
     const double reference = reference_objective(tree, scene.primitives, scene.cloud, points, geometry_only);
-    const double rounding = std::ldexp(static_cast<double>(points.size()), -22);
-    ASSERT_NEAR(fast, reference, 1e-6 * reference + rounding) << to_text(tree, scene.primitives);
     ASSERT_NEAR(reference, geometry_of_fields(tree, scene, points, geometry_only), 1e-9 * reference + 1e-12);
-    ASSERT_EQ(table.score(local, scratch), fast - table.objective().alpha * static_cast<double>(tree.size()));
+    ASSERT_EQ(table.score(local, scratch),
+              table.geometry(local, scratch) - table.objective().alpha * static_cast<double>(tree.size()));
   }
 }
 
