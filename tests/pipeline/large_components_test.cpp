@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/random.hpp"
+#include "cloud2csg/extract.hpp"
+#include "cloud2csg/simplify.hpp"
+#include "support/known_solids.hpp"
+
+/// Components that are too large for one table.
+namespace cloud2csg {
+namespace {
+
+struct Known {
+  PrimitiveSet primitives;
+  CsgTree truth;
+  PointCloud cloud;
+};
+
+/// Spheres on a jittered lattice, each of which overlaps its neighbours; every fifth is cut away from all the others.
+Known lattice_of_spheres(int columns, int rows, int layers) {
+  Known known;
+  RandomStream random(3);
+  std::vector<CsgTree> added, removed;
+  for (int x = 0; x < columns; ++x) {
+    for (int y = 0; y < rows; ++y) {
+      for (int z = 0; z < layers; ++z) {
+        const auto p = static_cast<PrimitiveIndex>(known.primitives.size());
+        const Eigen::Vector3d jitter(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+        std::string id("s");
+        id += std::to_string(p);
+        known.primitives.push_back(
+            test::placed(id, Sphere{random.uniform(0.58, 0.68)}, Eigen::Vector3d(x, y, z) + jitter));
+        (p % 5 == 2 ? removed : added).push_back(CsgTree::leaf(p));
+      }
+    }
+  }
+  known.truth = subtract(unite_all(added), unite_all(removed));
+  known.cloud = sample_surface(known.truth, known.primitives,
+                               {.count = 500 * known.primitives.size(), .noise = 0.004, .seed = 3});
+  return known;
+}
+
+class Lattice : public ::testing::Test {
+ protected:
+  static const Known& known() {
+    static const Known lattice = lattice_of_spheres(6, 4, 2);
+    return lattice;
+  }
+
+  [[nodiscard]] static Extraction extract(const ExtractOptions& options = {}, const RunContext& run = {}) {
+    return extract_csg(known().cloud, known().primitives, options, run);
+  }
+
+  static void expect_truth(const Extraction& result) {
+    EXPECT_GE(test::membership_iou(result.tree, known().truth, known().primitives, 60), 0.9999);
+    EXPECT_EQ(result.tree.size(), simplify(known().truth).size()) << to_text(result.tree, known().primitives);
+    EXPECT_TRUE(result.statistics.complete);
+  }
+};
+
+TEST_F(Lattice, IsRightAndAsSmallAsTheTruth) {
+  const Extraction result = extract();
+  expect_truth(result);
+  EXPECT_EQ(result.statistics.components, 1U);
+  EXPECT_EQ(result.statistics.merge.ways, std::vector{MergeWay::dominance});
+  EXPECT_LT(result.statistics.merge.worst_shortfall, 0.05);
+  EXPECT_GT(result.statistics.partitions.size(), known().primitives.size());
+}
+
+TEST_F(Lattice, IsTheSameForAnyThreadsAndModes) {
+  const Extraction expected = extract({.parallel = Parallel::none}, {.threads = 1});
+  for (const Parallel parallel : {Parallel::none, Parallel::population, Parallel::partitions, Parallel::both}) {
+    for (const int threads : {1, 2}) {
+      const Extraction result = extract({.parallel = parallel}, {.threads = threads});
+      EXPECT_EQ(result.tree, expected.tree) << to_string(parallel) << threads;
+      EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
+      EXPECT_EQ(result.statistics.merge.worst_shortfall, expected.statistics.merge.worst_shortfall);
+    }
+  }
+}
+
+TEST_F(Lattice, OfPartitionsJudgedByAllTheirPointsGivesATreeThatFits) {
+  const Extraction result = extract({.without_strangers = false});
+  EXPECT_GE(test::membership_iou(result.tree, known().truth, known().primitives), 0.95);
+  EXPECT_TRUE(result.statistics.complete);
+}
+
+TEST_F(Lattice, EndsAtTheTimeLimitWithATree) {
+  const Extraction result = extract({.time_limit_seconds = 1e-6});
+  EXPECT_FALSE(result.statistics.complete);
+  EXPECT_FALSE(primitives_of(result.tree).empty());
+}
+
+/// A row of boxes of which only what two neighbours share is solid: each partition's tree is an intersection, and no
+/// two of them merge.
+Known row_of_intersections(int count) {
+  Known known;
+  std::vector<CsgTree> parts;
+  for (int i = 0; i < count; ++i) {
+    std::string id("b");
+    id += std::to_string(i);
+    // Of different widths, so that the sides of both show.
+    const double width = i % 2 == 0 ? 1.0 : 0.8;
+    known.primitives.push_back(test::placed(id, Box{{1.4, width, width}}, {1.0 * i, 0.15 * (i % 2), 0}));
+    const auto p = static_cast<PrimitiveIndex>(i);
+    if (i > 0) parts.push_back(intersect(CsgTree::leaf(p - 1), CsgTree::leaf(p)));
+  }
+  known.truth = unite_all(parts);
+  known.cloud = sample_surface(known.truth, known.primitives,
+                               {.count = 400 * known.primitives.size(), .noise = 0.003, .seed = 3});
+  return known;
+}
+
+TEST(BlockedComponent, StillGivesATreeInTime) {
+  const Known known = row_of_intersections(30);
+  ExtractOptions options;
+  options.time_limit_seconds = 5;
+  options.search.generation_limit = 3;
+  const Extraction result = extract_csg(known.cloud, known.primitives, options, {.threads = 2});
+  EXPECT_FALSE(primitives_of(result.tree).empty());
+  EXPECT_GT(result.statistics.merge.blocked, 0U);
+  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives), 0.9);
+  ASSERT_EQ(result.statistics.merge.ways.size(), 1U);
+}
+
+TEST(BlockedComponent, EndsAtATimeLimitThatIsShort) {
+  const Known known = row_of_intersections(30);
+  const Extraction result = extract_csg(known.cloud, known.primitives, {.time_limit_seconds = 1e-6});
+  EXPECT_FALSE(result.statistics.complete);
+  EXPECT_FALSE(primitives_of(result.tree).empty());
+}
+
+}  // namespace
+}  // namespace cloud2csg
