@@ -52,9 +52,10 @@ struct MergeResult {
 /// left over, such as a & b, is merged as by merge_trees(); then it is put together again, what went first outermost:
 /// each primitive that was taken out appears once.
 ///
-/// Right where each tree tells the truth about all of space near its primitives. `trees` and `cliques` belong together.
-/// `trees` of the result is one, unless some that share primitives are blocked. Deterministic. O(size x log size) for
-/// trees that each share primitives with few others.
+/// Right where each tree tells the truth about all of space near its primitives, and nothing is left over: of what is,
+/// formulas are all that is looked at. Solids are taken to be bounded. `trees` and `cliques` belong together.
+/// The result is one tree; in it, those of the core that are `blocked` are united as they are. Deterministic. O(size x
+/// log size) for trees that each share primitives with few others.
 [[nodiscard]] MergeResult merge_by_dominance(std::span<const CsgTree> trees, std::span<const Clique> cliques,
                                              const RunContext& run = {});
 

@@ -55,8 +55,8 @@ struct ContributionParameters {
   return gamma * gamma * k_right_angle_square < 20.0;  // exp(-20) rounds to zero
 }
 
-/// Contributions are rounded to whole units, so that their sums are exact, whatever the order. `member` and `inside` are computed for
-/// all k_block_points entries; mask off the padding.
+/// Contributions are rounded to whole units, so that their sums are exact, whatever the order. `member` and `inside`
+/// are computed for all k_block_points entries; mask off the padding.
 void compute_contributions(const BlockField<double>& field, const BlockNormals<double>& normals,
                            const ContributionParameters& parameters, BlockContributions<double>& out);
 void compute_contributions(const BlockField<float>& field, const BlockNormals<float>& normals,

@@ -37,9 +37,9 @@ std::size_t count_bits(const BlockMask& mask) {
 /// A primitive that is looked at in a block.
 template <class Real>
 struct ActivePrimitive {
-  PrimitiveIndex primitive = 0;
-  BlockField<Real> field;
   BlockContributions<Real> contributions;
+  BlockField<Real> field;
+  PrimitiveIndex primitive = 0;
   bool has_members = false;  ///< points of the block that belong to it
 };
 
@@ -241,6 +241,7 @@ class Worker {
     std::size_t place;
   };
 
+  BlockKeys keys_;
   const WorkerInput<Real>& input_;
   PointBlocks<Real> blocks_;
   std::vector<PrimitiveIndex> near_chunk_;     // of which points of the chunk may be
@@ -256,7 +257,6 @@ class Worker {
   std::vector<Loud> loud_;
   std::array<std::uint16_t, k_block_points> places_{};
   std::array<std::uint32_t, k_block_points> classes_{};
-  BlockKeys keys_;
   WorkerShare share_;
 };
 

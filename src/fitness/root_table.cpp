@@ -47,8 +47,8 @@ class Projection {
         layout_(request.primitives.size()),
         old_ranks_(places_.size()),
         new_ranks_(places_.size()),
-        keys_(layout_.words),
         table_(request.primitives.size(), layout_.words) {
+    keys_.reshape(layout_.words);
     std::iota(in_turn_.begin(), in_turn_.end(), std::uint16_t{0});
     if (request.without_strangers) {
       unwanted_ = ~std::uint32_t{0};
@@ -94,6 +94,7 @@ class Projection {
     }
   }
 
+  BlockKeys keys_;
   const ClassTable& from_;
   std::span<const std::uint32_t> inside_;
   KeyLayout root_layout_;
@@ -103,7 +104,6 @@ class Projection {
   std::uint32_t wanted_ = 0;    // member bits of which a class must have one; 0: takes every class
   KeyLayout layout_;
   std::vector<RankColumn> old_ranks_, new_ranks_;
-  BlockKeys keys_;
   std::array<std::uint16_t, k_block_points> in_turn_{};
   std::array<std::uint32_t, k_block_points> chosen_{}, classes_{};
   std::size_t count_ = 0;

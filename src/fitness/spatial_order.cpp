@@ -38,7 +38,7 @@ void sort_keys(std::vector<std::uint64_t>& keys, const RunContext& run) {
 
 std::vector<std::uint32_t> spatial_order(PointsView positions, const AlignedBox& box, const RunContext& run) {
   const double cells_a_unit = k_cells / std::max(box.sizes().maxCoeff(), 1e-300);
-  const Eigen::Vector3d corner = box.min();
+  const Eigen::Vector3d& corner = box.min();
   const std::size_t count = positions.size();
   std::vector<std::uint64_t> keys(count);  // cell, then index
   for_each_index((count + k_chunk - 1) / k_chunk, run, [&](std::size_t chunk) {

@@ -57,9 +57,7 @@ class DominanceMerge {
     }
     MergeResult result = merge_trees(core(), MergeOrder::paper, run_);
     for (const Layer& layer : layers_) result.merges += layer.primitives.size();
-    if (result.trees.empty()) result.trees = {CsgTree::empty()};
-    if (result.blocked == 0) result.trees = {unite_all(result.trees)};
-    for (CsgTree& tree : result.trees) tree = simplify(with_layers(std::move(tree)));
+    result.trees = {simplify(with_layers(unite_all(result.trees)))};
     return result;
   }
 
@@ -130,11 +128,11 @@ class DominanceMerge {
   }
 
   [[nodiscard]] CsgTree with_layers(CsgTree tree) const {
-    for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
+    for (std::size_t k = layers_.size(); k-- > 0;) {
       std::vector<CsgTree> leaves;
-      for (const PrimitiveIndex p : layer->primitives) leaves.push_back(CsgTree::leaf(p));
+      for (const PrimitiveIndex p : layers_[k].primitives) leaves.push_back(CsgTree::leaf(p));
       const CsgTree all = unite_all(leaves);
-      tree = layer->role == Role::removed ? subtract(tree, all) : unite(tree, all);
+      tree = layers_[k].role == Role::removed ? subtract(tree, all) : unite(tree, all);
     }
     return tree;
   }

@@ -58,7 +58,7 @@ MergeCheck::MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives,
     std::vector<std::size_t> seen_in;
     for (const PrimitiveIndex p : cliques[k]) seen_in.push_back(window_of[p]);
     std::ranges::sort(seen_in);
-    seen_in.erase(std::ranges::unique(seen_in).begin(), seen_in.end());
+    seen_in.erase(std::unique(seen_in.begin(), seen_in.end()), seen_in.end());
     for (const std::size_t w : seen_in) scores.add(windows_[w], tree);
     for (const PrimitiveIndex p : cliques[k]) promised_[p] = std::max(promised_[p], scores.sums()[p]);
     std::ranges::fill(scores.sums(), 0.0);

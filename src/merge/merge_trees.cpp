@@ -209,7 +209,7 @@ class PairingRounds {
       later.insert(later.end(), std::ranges::upper_bound(trees, i), trees.end());
     }
     std::ranges::sort(later);
-    later.erase(std::ranges::unique(later).begin(), later.end());
+    later.erase(std::unique(later.begin(), later.end()), later.end());
     return later;
   }
 

@@ -81,7 +81,7 @@ class ComponentMerger {
     result_.statistics.merges += merged.merges;
     result_.statistics.blocked += merged.blocked;
     remaining_ = merged.trees;
-    return consider(way, unite_all(merged.trees), merged.trees.size() == 1);
+    return consider(way, unite_all(merged.trees), merged.trees.size() == 1 && merged.blocked == 0);
   }
 
   [[nodiscard]] MergeResult merge_result(MergeWay way, std::span<const CsgTree> trees) const {

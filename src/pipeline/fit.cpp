@@ -34,7 +34,7 @@ class FitMeasure {
     if (used.size() > k_many_primitives) {
       order_ = spatial_order(cloud.positions, box, run);
       const double diagonal = box.diagonal().norm();
-      for (double radius = k_first_radius * noise; radius < diagonal; radius *= k_growth) {
+      for (double radius = std::max(k_first_radius * noise, 1e-9 * diagonal); radius < diagonal; radius *= k_growth) {
         levels_.push_back(level_of(used, radius));
       }
     }

@@ -78,7 +78,7 @@ std::vector<PrimitiveIndex> primitives_of_all(const std::vector<CsgTree>& trees)
     all.insert(all.end(), some.begin(), some.end());
   }
   std::ranges::sort(all);
-  all.erase(std::ranges::unique(all).begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
