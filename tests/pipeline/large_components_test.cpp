@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -92,6 +92,37 @@ TEST_F(Lattice, EndsAtTheTimeLimitWithATree) {
   const Extraction result = extract({.time_limit_seconds = 1e-6});
   EXPECT_FALSE(result.statistics.complete);
   EXPECT_FALSE(primitives_of(result.tree).empty());
+}
+
+/// Blocks apart from each other, each with a bore that reaches into the next one, which fills it: what is removed here
+/// is hidden there, so that the order counts.
+Known row_of_bores_that_are_filled(int blocks) {
+  Known known;
+  const Eigen::Quaterniond along_x(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
+  for (int i = 0; i < blocks; ++i) {
+    std::string id("b");
+    id += std::to_string(i);
+    const auto p = static_cast<PrimitiveIndex>(known.primitives.size());
+    known.primitives.push_back(test::placed(id, Box{{1, 1, 1}}, {1.2 * i, 0, 0}));
+    known.truth = i == 0 ? CsgTree::leaf(p) : unite(known.truth, CsgTree::leaf(p));
+    if (i + 1 == blocks) break;
+    id[0] = 'c';
+    known.primitives.push_back(test::placed(id, Cylinder{0.25, 0.9}, {1.2 * i + 0.5, 0, 0}));
+    known.primitives.back().pose.orientation = along_x;
+    known.truth = subtract(known.truth, CsgTree::leaf(p + 1));
+  }
+  known.cloud = sample_surface(known.truth, known.primitives,
+                               {.count = 500 * known.primitives.size(), .noise = 0.004, .seed = 3});
+  return known;
+}
+
+TEST(FilledBores, AreCutOnlyWhereTheyShow) {
+  const Known known = row_of_bores_that_are_filled(15);
+  const Extraction result = extract_csg(known.cloud, known.primitives);
+  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 80), 0.9999)
+      << to_text(result.tree, known.primitives);
+  EXPECT_EQ(result.tree.size(), known.truth.size());
+  EXPECT_EQ(result.statistics.merge.ways, std::vector{MergeWay::dominance});
 }
 
 /// A row of boxes of which only what two neighbours share is solid: each partition's tree is an intersection, and no
