@@ -24,8 +24,8 @@ constexpr double k_member_operations = 5;
 constexpr double k_exponent_operations = 2;
 /// Where a contribution is not zero: two exponentials to single precision (argument 6, polynomial 12, scale 3), the
 /// square of the angle from its cosine (18 for a polynomial, 3 around it), their sum for both sides of the surface (3),
-/// and two additions in double precision (twice as wide) to the sums of the point's class.
-constexpr double k_contribution_operations = 2 * 21 + 21 + 3 + 2 * 2;
+/// and one addition of both at once (twice as wide) to the sums of the point's class.
+constexpr double k_contribution_operations = 2 * 21 + 21 + 3 + 2;
 
 /// Points in single precision, from the cloud's middle.
 struct SinglePoints {
