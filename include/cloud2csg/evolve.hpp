@@ -33,7 +33,8 @@ struct GaOptions {
   std::size_t listing_limit = 4;
   /// A tree is believed when it reaches this share of what no tree can exceed (RankClasses::geometry_bound). Where a
   /// listed tree does not, the genetic algorithm looks for one that uses a primitive more than once; where its tree
-  /// does not either, it is run anew. 0: every tree is believed (paper).
+  /// does not either, it is run anew; where a local search's does on the points nearest to each primitive, it is not
+  /// run at all. 0: every listed tree is believed, and of larger partitions none before the algorithm has run (paper).
   double trust = 0.97;
   /// New runs from other random trees, at most, while the best tree is not believed ...
   int restarts = 3;

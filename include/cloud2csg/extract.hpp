@@ -44,7 +44,8 @@ struct ExtractOptions {
   /// Judge the trees of a partition without the points inside primitives of other partitions, where no tree over its
   /// own can be right. The paper judges by all points on its primitives.
   bool without_strangers = true;
-  /// Take nodes out of the merged tree as long as E over the whole cloud grows. The paper does not.
+  /// Take nodes out of the merged tree of a component as long as its E grows; of up to 24 primitives. The paper does
+  /// not.
   bool polish = true;
   /// Stop the search when so many seconds have passed since the start of the extraction, with the best tree so far. The
   /// pass over the points, without which there is no tree, is always completed. The one option that makes a result
@@ -83,7 +84,7 @@ enum class MergeWay {
   dominance,               ///< by what primitives are to the partitions' trees: merge_by_dominance()
   largest_common_subtree,  ///< the paper's by largest common subtrees first
   joint,                   ///< partitions that did not merge were solved together
-  search,                  ///< a search over the whole component from the best of these
+  search,  ///< a search over the whole component: up to 24 primitives from the best of these, up to 127 anew
 };
 [[nodiscard]] std::string_view to_string(MergeWay way);
 

@@ -102,7 +102,7 @@ struct RankClassesRequest {
   /// Points are taken that belong to one of these; empty: to one of the primitives, as the paper's partitions do.
   /// Some of the primitives, ascending.
   std::vector<PrimitiveIndex> owners = {};
-  /// Use every k-th point only (along a curve through some thousands of points at a time, before the choice by
+  /// Use every k-th point only (along a curve through the cloud or some thousands of its points, before the choice by
   /// segmentation): bounds memory for large sets.
   std::size_t stride = 1;
   bool all_points = false;  ///< also those that belong to none of the primitives

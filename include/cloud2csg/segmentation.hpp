@@ -22,11 +22,11 @@ struct SegmentationOptions {
 /// The standard deviation of the points' distances from the primitives, robust: 1.4826 times the median distance to the
 /// nearest primitive whose normal agrees, over a subsample of at most 4096 points, taken again without the points that
 /// are five times as far. Never below 1e-5 of the cloud's diagonal, so that a perfect cloud has a usable scale, and
-/// never above a tenth of it, so that a cloud that lies elsewhere is not taken for a noisy one. O(1) in the number of
-/// points.
+/// never above a tenth of it, so that a cloud that lies elsewhere is not taken for a noisy one. O(primitives).
 /// Precondition: the cloud has normals.
 [[nodiscard]] double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                    double angle_tolerance_deg = SegmentationOptions{}.angle_tolerance_deg);
+                                    double angle_tolerance_deg = SegmentationOptions{}.angle_tolerance_deg,
+                                    const RunContext& run = {});
 
 /// The tolerances in force: options with what was absent filled in from the measured noise.
 struct SegmentationTolerances {

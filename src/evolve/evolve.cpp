@@ -85,9 +85,10 @@ bool is_believed(const Evolution& best, const RankClasses& table, const GaOption
   return best.geometry >= options.trust * table.geometry_bound();
 }
 
-/// Whether it uses no primitive twice and is believed on the points nearest to each: then hardly a tree is better.
+/// Whether it has no more leaves than there are primitives and is believed on the points nearest to each: then hardly a
+/// tree is better.
 bool is_believed_everywhere(const Evolution& best, const RankClasses& table, const GaOptions& options) {
-  if (leaf_count(best.tree) > table.primitive_count()) return false;
+  if (options.trust <= 0 || leaf_count(best.tree) > table.primitive_count()) return false;
   RankScratch scratch;
   const std::vector<double> reached = table.sums_by_nearest(table.class_scores(best.tree, scratch));
   const std::vector<double> bounds = table.sums_by_nearest(table.class_bounds());
@@ -188,7 +189,7 @@ Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const
 
 CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, const Clique& clique,
                     const GaOptions& options, const RunContext& run) {
-  const double noise = estimate_noise(cloud, primitives);
+  const double noise = estimate_noise(cloud, primitives, SegmentationOptions{}.angle_tolerance_deg, run);
   const std::vector<RankClassesRequest> requests{{.primitives = clique}};
   const PointPass pass = build_rank_classes(cloud, primitives, requests,
                                             {.tolerances = segmentation_tolerances({}, noise), .noise = noise}, run);

@@ -25,11 +25,11 @@ class Neighbourhood {
       : evaluator_(evaluator), centre_(centre), options_(options), stop_(std::move(stop)), best_(centre) {}
 
   ScoredTree best() {
-    for (std::size_t node = 0; node < centre_.tree.size(); ++node) {
+    for (std::size_t node = 0; node < centre_.tree.size() && !is_at_end(); ++node) {
       shrink(node);
       if (options_.shrink_only) continue;
       change_operation(node);
-      for (PrimitiveIndex p = 0; p < evaluator_.table().primitive_count(); ++p) {
+      for (PrimitiveIndex p = 0; p < evaluator_.table().primitive_count() && !is_at_end(); ++p) {
         insert(node, CsgTree::leaf(p));
         if (!centre_.tree.nodes()[node].is_leaf() || centre_.tree.nodes()[node].primitive() != p) {
           consider(node, CsgTree::leaf(p));
@@ -40,8 +40,10 @@ class Neighbourhood {
   }
 
  private:
+  [[nodiscard]] bool is_at_end() const { return is_spent(evaluator_, options_) || stop_.stop_requested(); }
+
   void consider(std::size_t node, const CsgTree& replacement) {
-    if (is_spent(evaluator_, options_) || stop_.stop_requested()) return;
+    if (is_at_end()) return;
     ScoredTree neighbour{centre_.tree};
     neighbour.tree.replace(node, replacement.nodes());
     neighbour.score = evaluator_.score(neighbour.tree);

@@ -103,27 +103,35 @@ WorkerShare work(const WorkerInput<Real>& input, const RunContext& run) {
   for_each_index(parts, run, [&](std::size_t k) {
     shares[k] = work_on_chunks(input, chunks * k / parts, chunks * (k + 1) / parts, run);
   });
-  for (std::size_t k = 1; k < parts; ++k) shares.front().absorb(shares[k]);
-  return std::move(shares.front());
+  WorkerShare& sum = shares.front();
+  for (std::size_t k = 1; k < parts; ++k) sum.absorb_counts(shares[k]);
+  for_each_index(sum.tables.size(), run, [&](std::size_t r) {
+    for (std::size_t k = 1; k < parts; ++k) sum.tables[r].absorb(shares[k].tables[r]);
+  });
+  return std::move(sum);
 }
 
 std::vector<RankClasses> build_tables(std::span<const RankClassesRequest> requests, std::span<const Root> roots,
-                                      std::span<const ClassTable> classes, const PointPassOptions& options) {
+                                      std::span<const ClassTable> classes, const PointPassOptions& options,
+                                      const RunContext& run) {
   std::vector<RankClasses> tables(requests.size());
   const auto build = [&](std::size_t k, const ClassTable& grouped) {
     const std::vector<PrimitiveIndex>& primitives = requests[k].primitives;
     tables[k] = RankClassesBuilder::build(primitives, grouped,
                                           resolve(options.objective, grouped.point_count(), options.noise));
   };
-  for (std::size_t r = 0; r < roots.size(); ++r) {
+  for_each_index(roots.size(), run, [&](std::size_t r) {
     const std::vector<std::size_t>& answered = roots[r].requests;
     if (answered.size() == 1) {
       build(answered.front(), classes[r]);
-    } else {
-      const std::vector<std::uint32_t> inside = inside_words(roots[r], classes[r]);
-      for (const std::size_t k : answered) build(k, project(roots[r], classes[r], inside, requests[k]));
+      return;
     }
-  }
+    const std::vector<std::uint32_t> inside = inside_words(roots[r], classes[r]);
+    for_each_index_in_arena(answered.size(), run, [&](std::size_t i) {
+      const std::size_t k = answered[i];
+      build(k, project(roots[r], classes[r], inside, requests[k]));
+    });
+  });
   return tables;
 }
 
@@ -135,7 +143,7 @@ PointPass pass_over(const PointCloud& cloud, const AlignedBox& box, const Primit
   const WorkerInput<Real> input = input_of<Real>(cloud, box, primitives, requests, options, run);
   const WorkerShare share = work(input, run);
   watch.lap();
-  PointPass pass{.tables = build_tables(requests, input.roots, share.tables, options),
+  PointPass pass{.tables = build_tables(requests, input.roots, share.tables, options, run),
                  .points_of_primitive = share.points_of_primitive,
                  .unassigned = share.unassigned,
                  .segment_seconds = share.segment_seconds,

@@ -262,8 +262,7 @@ class Worker {
 
 }  // namespace
 
-void WorkerShare::absorb(const WorkerShare& other) {
-  for (std::size_t k = 0; k < tables.size(); ++k) tables[k].absorb(other.tables[k]);
+void WorkerShare::absorb_counts(const WorkerShare& other) {
   for (std::size_t p = 0; p < points_of_primitive.size(); ++p) points_of_primitive[p] += other.points_of_primitive[p];
   unassigned += other.unassigned;
   segment_seconds += other.segment_seconds;

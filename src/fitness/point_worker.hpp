@@ -30,7 +30,8 @@ struct WorkerShare {
   double segment_seconds = 0;
   double classes_seconds = 0;
 
-  void absorb(const WorkerShare& other);
+  /// Adds all but the tables.
+  void absorb_counts(const WorkerShare& other);
 };
 
 /// Takes chunks of points through distances, membership, contributions, ranks and classes.

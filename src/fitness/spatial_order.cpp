@@ -51,7 +51,10 @@ std::vector<std::uint32_t> spatial_order(PointsView positions, const AlignedBox&
   });
   sort_keys(keys, run);
   std::vector<std::uint32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::uint32_t>(keys[i]);
+  for_each_index((count + k_chunk - 1) / k_chunk, run, [&](std::size_t chunk) {
+    const std::size_t end = std::min(count, (chunk + 1) * k_chunk);
+    for (std::size_t i = chunk * k_chunk; i < end; ++i) order[i] = static_cast<std::uint32_t>(keys[i]);
+  });
   return order;
 }
 

@@ -11,12 +11,10 @@
 namespace cloud2csg {
 namespace {
 
-/// A merged tree passes when no primitive's surface loses more than this share of what its partitions reached. Trees
-/// that agree differ by a few per mille, near edges where one partition does not see the other's primitives.
-constexpr double k_tolerated_shortfall = 0.05;
-
-/// Each joint solution is a pass over all points: with more trees than this left over, it takes too long.
-constexpr std::size_t k_joint_limit = 32;
+/// Each joint solution is a pass over all points and a search: with more trees than this left over, or for more
+/// primitives, it takes too long.
+constexpr std::size_t k_joint_trees = 32;
+constexpr std::size_t k_joint_primitives = 64;
 
 Clique common(const Clique& a, const Clique& b) {
   Clique both;
@@ -45,6 +43,7 @@ class ComponentMerger {
   }
 
  private:
+  [[nodiscard]] bool has_tree() const { return !result_.statistics.ways.empty(); }
   [[nodiscard]] bool has_whole_table() const { return component_.windows.size() == 1; }
   [[nodiscard]] const RankClasses& whole_table() const { return *component_.windows.front().table; }
 
@@ -77,27 +76,37 @@ class ComponentMerger {
   bool merge(MergeWay way) { return merge(way, component_.trees); }
 
   bool merge(MergeWay way, std::span<const CsgTree> trees) {
+    const bool is_stopped = run_.stop.stop_requested();
+    if (is_stopped) result_.complete = false;
+    if (is_stopped && has_tree()) return false;
     const MergeResult merged = merge_result(way, trees);
     result_.statistics.merges += merged.merges;
     result_.statistics.blocked += merged.blocked;
     remaining_ = merged.trees;
-    return consider(way, unite_all(merged.trees), merged.trees.size() == 1 && merged.blocked == 0);
+    // Somewhere in a large component something is blocked: whether it matters is for the check to say.
+    const bool may_be_blocked = !has_whole_table();
+    return consider(way, unite_all(merged.trees), merged.trees.size() == 1 && (merged.blocked == 0 || may_be_blocked));
   }
 
+  /// The first way is short, and without it there is no tree: it does not stop.
   [[nodiscard]] MergeResult merge_result(MergeWay way, std::span<const CsgTree> trees) const {
-    if (way == MergeWay::dominance) return merge_by_dominance(trees, component_.cliques, run_);
-    return merge_trees(trees, way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree, run_);
+    const bool is_first = way == (has_whole_table() ? MergeWay::paper : MergeWay::dominance);
+    RunContext run = run_;
+    if (is_first) run.stop = {};
+    if (way == MergeWay::dominance) return merge_by_dominance(trees, component_.cliques, run);
+    return merge_trees(trees, way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree, run);
   }
 
   /// As long as trees that share primitives are left over, two of them are replaced by one tree for the primitives of
   /// both, found from the points of both.
   bool merge_jointly() {
     std::vector<CsgTree> trees = remaining_;
-    while (trees.size() > 1 && trees.size() <= k_joint_limit && !run_.stop.stop_requested()) {
+    while (trees.size() > 1 && trees.size() <= k_joint_trees && !run_.stop.stop_requested()) {
       const auto [first, second] = most_entangled(trees);
       Clique both;
       std::ranges::set_union(primitives_of(trees[first]), primitives_of(trees[second]), std::back_inserter(both));
       if (both.empty()) return false;  // trees that contradict themselves: all of space is left of them
+      if (both.size() > k_joint_primitives) return false;
       trees[first] = solve_jointly_(both);
       trees.erase(trees.begin() + static_cast<std::ptrdiff_t>(second));
       ++result_.statistics.joint_solutions;

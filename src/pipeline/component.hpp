@@ -26,6 +26,10 @@ using SolveJointly = std::function<CsgTree(const Clique&)>;
 /// each primitive: the points that belong to it, with all that overlaps it.
 inline constexpr std::size_t k_whole_limit = RankClasses::k_shared_limit;
 
+/// A merged tree passes when no primitive's surface loses more than this share of what its partitions reached. Trees
+/// that agree differ by a few per mille, near edges where one partition does not see the other's primitives.
+inline constexpr double k_tolerated_shortfall = 0.05;
+
 struct ComponentOptions {
   const GaOptions& search;
   bool polish;
@@ -33,9 +37,9 @@ struct ComponentOptions {
 };
 
 /// One tree for the component: the paper's merge, held against what the partitions promised; where it does not go
-/// through or does not hold, by largest common subtrees, by solving partitions that block each other together, by a
-/// search over the whole component if it is not too large. The best tree that was met, so an answer always comes. Fills
-/// in `statistics`' way.
+/// through or does not hold, by dominance, by largest common subtrees, by solving partitions that block each other
+/// together, by a search over the whole component if it is not too large. The best tree that was met, so an answer
+/// always comes. Fills in `statistics`' way.
 struct MergedComponent {
   CsgTree tree;
   MergeStatistics statistics;  ///< with one entry in ways

@@ -176,12 +176,16 @@ class Extractor {
     const std::vector<PrimitiveIndex>& primitives = prepared_.components[c];
     const std::vector<PrimitiveIndex> local = local_indices(primitives, prepared_.primitives.size());
     Component component{.primitives = primitives.size()};
-    for (const std::size_t k : prepared_.partitions_of[c]) {
+    const std::vector<std::size_t>& partitions = prepared_.partitions_of[c];
+    const auto has_points = [&](std::size_t k) { return prepared_.pass.tables[k].point_count() > 0; };
+    const bool some_have_points = std::ranges::any_of(partitions, has_points);
+    for (const std::size_t k : partitions) {
+      if (some_have_points && !has_points(k)) continue;  // without points, any tree is as good as another
       Clique& clique = component.cliques.emplace_back();
       for (const PrimitiveIndex p : prepared_.partitions[k]) clique.push_back(local[p]);
       component.trees.push_back(renumber(evolutions_[k].tree, clique));
     }
-    const bool is_whole = component.cliques.size() == 1 || primitives.size() <= k_whole_limit;
+    const bool is_whole = partitions.size() == 1 || primitives.size() <= k_whole_limit;
     std::size_t points = 0;
     for (std::size_t w = 0; w < (is_whole ? 1 : primitives.size()); ++w) {
       const RankClasses& table = prepared_.pass.tables[prepared_.first_window[c] + w];
@@ -252,6 +256,12 @@ class Extractor {
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
+    }
+    if (statistics_.merge.worst_shortfall > k_tolerated_shortfall) {
+      statistics_.warnings.push_back(
+          fmt::format("the trees of the partitions did not merge well: on one of the primitives, {:.0f} % of what its "
+                      "partition explains is lost",
+                      100 * statistics_.merge.worst_shortfall));
     }
     if (!statistics_.complete) statistics_.warnings.emplace_back("stopped early: this is the best tree so far");
   }

@@ -168,7 +168,7 @@ Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, con
   Preparation preparation;
   take_all(primitives, preparation);
   Stopwatch watch;
-  preparation.noise = estimate_noise(cloud, primitives, options.segmentation.angle_tolerance_deg);
+  preparation.noise = estimate_noise(cloud, primitives, options.segmentation.angle_tolerance_deg, run);
   preparation.tolerances = segmentation_tolerances(options.segmentation, preparation.noise);
   statistics.seconds.segment += watch.lap();
   do {

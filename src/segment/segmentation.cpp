@@ -6,12 +6,14 @@
 #include <limits>
 #include <numbers>
 
+#include "base/parallel.hpp"
 #include "base/random.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_noise_sample = 4096;
+constexpr std::size_t k_noise_block = 1024;
 constexpr double k_noise_floor = 1e-5;  // of the diagonal
 constexpr double k_noise_ceiling = 0.1;
 constexpr double k_outlier_sigmas = 5.0;
@@ -63,6 +65,18 @@ Sample one_of_every_few(const PointCloud& cloud, std::size_t most) {
   return sample;
 }
 
+/// Lowers `nearest` to the distances from the primitives whose slope agrees with the normal.
+void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& primitives, double least_cosine,
+                  std::span<double> nearest) {
+  for (const Primitive& primitive : primitives) {
+    const Field field = field_of(primitive, positions);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const double distance = std::abs(field.distances[i]);
+      if (distance < nearest[i] && field.agrees(i, normals[i], least_cosine)) nearest[i] = distance;
+    }
+  }
+}
+
 /// Standard deviation of a normal distribution from the median of absolute values. Reorders them.
 double robust_deviation(std::vector<double>& absolute_values) {
   const auto middle = absolute_values.begin() + static_cast<std::ptrdiff_t>(absolute_values.size() / 2);
@@ -72,18 +86,17 @@ double robust_deviation(std::vector<double>& absolute_values) {
 
 }  // namespace
 
-double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, double angle_tolerance_deg) {
+double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, double angle_tolerance_deg,
+                      const RunContext& run) {
   assert(cloud.has_normals());
   const Sample sample = one_of_every_few(cloud, k_noise_sample);
-  const double least_cosine = cosine_of_deg(angle_tolerance_deg);
   std::vector<double> nearest(sample.positions.size(), std::numeric_limits<double>::infinity());
-  for (const Primitive& primitive : primitives) {
-    const Field field = field_of(primitive, sample.positions);
-    for (std::size_t i = 0; i < nearest.size(); ++i) {
-      const double distance = std::abs(field.distances[i]);
-      if (distance < nearest[i] && field.agrees(i, sample.normals[i], least_cosine)) nearest[i] = distance;
-    }
-  }
+  for_each_index((nearest.size() + k_noise_block - 1) / k_noise_block, run, [&](std::size_t block) {
+    const std::size_t begin = block * k_noise_block;
+    const std::size_t count = std::min(k_noise_block, nearest.size() - begin);
+    find_nearest(sample.positions.view().subview(begin, count), sample.normals.view().subview(begin, count), primitives,
+                 cosine_of_deg(angle_tolerance_deg), std::span(nearest).subspan(begin, count));
+  });
   std::erase_if(nearest, [](double distance) { return !std::isfinite(distance); });
   const AlignedBox box = bounds_of(sample.positions);
   const double diagonal = box.isEmpty() ? 0.0 : box.diagonal().norm();
