@@ -3,73 +3,78 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <set>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "cloud2csg/restrict.hpp"
 
 namespace cloud2csg {
 namespace {
 
-/// Evaluates trees of the component in its windows.
-class WindowScores {
- public:
-  explicit WindowScores(std::size_t primitives) : sums_(primitives, 0.0), local_(primitives, 0) {}
-
-  /// Adds what a tree scores in a window, by nearest primitive.
-  void add(const MergeWindow& window, const TreeRestriction& tree) {
-    for (std::size_t i = 0; i < window.primitives.size(); ++i) {
-      local_[window.primitives[i]] = static_cast<PrimitiveIndex>(i);
-    }
-    const CsgTree here = renumber(tree.restrict_to(window.primitives), local_);
-    const std::vector<double> sums = window.table->sums_by_nearest(window.table->class_scores(here, scratch_));
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      const PrimitiveIndex p = window.primitives[i];
-      if (window.judged.value_or(p) == p) sums_[p] += sums[i];
-    }
+/// A tree over primitives of the component with a window's local indices. Precondition: the window has them.
+CsgTree localised(const CsgTree& tree, const MergeWindow& window) {
+  std::vector<CsgNode> nodes(tree.nodes().begin(), tree.nodes().end());
+  for (CsgNode& node : nodes) {
+    if (node.operation() != Operation::primitive) continue;
+    const auto place = std::ranges::lower_bound(window.primitives, node.primitive());
+    assert(place != window.primitives.end() && *place == node.primitive());
+    node = CsgNode::leaf(static_cast<PrimitiveIndex>(place - window.primitives.begin()));
   }
+  return CsgTree(std::move(nodes));
+}
 
-  [[nodiscard]] std::vector<double>& sums() { return sums_; }
+/// What a tree scores in a window, by nearest primitive (the window's local indices).
+std::vector<double> scores_in(const MergeWindow& window, const CsgTree& tree) {
+  RankScratch scratch;
+  return window.table->sums_by_nearest(window.table->class_scores(localised(tree, window), scratch));
+}
 
- private:
-  std::vector<double> sums_;
-  std::vector<PrimitiveIndex> local_;
-  RankScratch scratch_;
-};
-
-/// By primitive: the window where points nearest to it are judged.
-std::vector<std::size_t> windows_by_primitive(std::span<const MergeWindow> windows, std::size_t primitives) {
-  std::vector<std::size_t> window_of(primitives, 0);
-  for (std::size_t w = 0; w < windows.size(); ++w) {
-    if (windows[w].judged) window_of[*windows[w].judged] = w;
-  }
-  return window_of;
+bool is_judged(const MergeWindow& window, PrimitiveIndex p) {
+  return window.judged.value_or(p) == p;
 }
 
 }  // namespace
 
 MergeCheck::MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha,
-                       std::span<const Clique> cliques, std::span<const CsgTree> trees)
-    : windows_(std::move(windows)), alpha_(alpha), promised_(primitives, 0.0) {
+                       std::span<const Clique> cliques, std::span<const CsgTree> trees, const RunContext& run)
+    : windows_(std::move(windows)), alpha_(alpha), run_(run), promised_(primitives, 0.0) {
   assert(cliques.size() == trees.size());
-  const std::vector<std::size_t> window_of = windows_by_primitive(windows_, primitives);
-  WindowScores scores(primitives);
-  for (std::size_t k = 0; k < trees.size(); ++k) {
-    const TreeRestriction tree(trees[k]);
-    std::vector<std::size_t> seen_in;
-    for (const PrimitiveIndex p : cliques[k]) seen_in.push_back(window_of[p]);
-    std::ranges::sort(seen_in);
-    seen_in.erase(std::unique(seen_in.begin(), seen_in.end()), seen_in.end());
-    for (const std::size_t w : seen_in) scores.add(windows_[w], tree);
-    for (const PrimitiveIndex p : cliques[k]) promised_[p] = std::max(promised_[p], scores.sums()[p]);
-    std::ranges::fill(scores.sums(), 0.0);
+  std::vector<std::vector<std::size_t>> cliques_with(primitives);
+  for (std::size_t k = 0; k < cliques.size(); ++k) {
+    for (const PrimitiveIndex p : cliques[k]) cliques_with[p].push_back(k);
   }
+  // Each window promises for primitives of its own, so that windows may be looked at side by side.
+  for_each_index_in_arena(windows_.size(), run_, [&](std::size_t w) {
+    const MergeWindow& window = windows_[w];
+    std::set<std::size_t> seen;
+    for (const PrimitiveIndex p : window.primitives) {
+      if (is_judged(window, p)) seen.insert(cliques_with[p].begin(), cliques_with[p].end());
+    }
+    for (const std::size_t k : seen) {
+      const std::vector<double> scores = scores_in(window, trees[k]);
+      for (std::size_t i = 0; i < scores.size(); ++i) {
+        const PrimitiveIndex p = window.primitives[i];
+        const bool is_of_clique = std::ranges::binary_search(cliques[k], p);
+        if (is_of_clique && is_judged(window, p)) promised_[p] = std::max(promised_[p], scores[i]);
+      }
+    }
+  });
 }
 
 MergeCheck::Verdict MergeCheck::judge(const CsgTree& merged) const {
-  WindowScores scores(promised_.size());
   const TreeRestriction tree(merged);
-  for (const MergeWindow& window : windows_) scores.add(window, tree);
-  const std::vector<double>& reached = scores.sums();
+  std::vector<std::vector<double>> scores(windows_.size());
+  for_each_index_in_arena(windows_.size(), run_, [&](std::size_t w) {
+    scores[w] = scores_in(windows_[w], tree.restrict_to(windows_[w].primitives));
+  });
+  std::vector<double> reached(promised_.size(), 0.0);
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    for (std::size_t i = 0; i < scores[w].size(); ++i) {
+      const PrimitiveIndex p = windows_[w].primitives[i];
+      if (is_judged(windows_[w], p)) reached[p] += scores[w][i];
+    }
+  }
   double worst = 0;
   for (std::size_t p = 0; p < promised_.size(); ++p) {
     const double missing = promised_[p] - reached[p];

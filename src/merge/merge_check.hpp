@@ -25,10 +25,11 @@ struct MergeWindow {
 class MergeCheck {
  public:
   /// `cliques` and `trees` belong together; they index the component's `primitives`. What less than `alpha`, the cost
-  /// of a node, tells is taken for noise. The windows' tables must outlive this. O(sum over the cliques of their
-  /// windows' classes).
+  /// of a node, tells is taken for noise. A primitive is judged in one window. Works on the threads of the task arena
+  /// that the caller is in, unless run.threads == 1. The windows' tables must outlive this. O(sum over the cliques of
+  /// their windows' classes).
   MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha, std::span<const Clique> cliques,
-             std::span<const CsgTree> trees);
+             std::span<const CsgTree> trees, const RunContext& run = {.threads = 1});
 
   struct Verdict {
     double score;            ///< E(t) over all windows
@@ -40,6 +41,7 @@ class MergeCheck {
  private:
   std::vector<MergeWindow> windows_;
   double alpha_;
+  RunContext run_;
   std::vector<double> promised_;  // by primitive
 };
 

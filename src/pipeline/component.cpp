@@ -30,7 +30,7 @@ class ComponentMerger {
         solve_jointly_(solve_jointly),
         options_(options),
         run_(run),
-        check_(component.windows, component.primitives, component.alpha, component.cliques, component.trees) {}
+        check_(component.windows, component.primitives, component.alpha, component.cliques, component.trees, run) {}
 
   MergedComponent run() {
     const bool merged = component_.trees.size() == 1 ? consider(MergeWay::single, component_.trees.front(), true)
