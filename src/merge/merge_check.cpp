@@ -37,8 +37,8 @@ bool is_judged(const MergeWindow& window, PrimitiveIndex p) {
 }  // namespace
 
 MergeCheck::MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha,
-                       std::span<const Clique> cliques, std::span<const CsgTree> trees, const RunContext& run)
-    : windows_(std::move(windows)), alpha_(alpha), run_(run), promised_(primitives, 0.0) {
+                       std::span<const Clique> cliques, std::span<const CsgTree> trees, RunContext run)
+    : windows_(std::move(windows)), alpha_(alpha), run_(std::move(run)), promised_(primitives, 0.0) {
   assert(cliques.size() == trees.size());
   std::vector<std::vector<std::size_t>> cliques_with(primitives);
   for (std::size_t k = 0; k < cliques.size(); ++k) {

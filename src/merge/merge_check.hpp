@@ -29,7 +29,7 @@ class MergeCheck {
   /// that the caller is in, unless run.threads == 1. The windows' tables must outlive this. O(sum over the cliques of
   /// their windows' classes).
   MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha, std::span<const Clique> cliques,
-             std::span<const CsgTree> trees, const RunContext& run = {.threads = 1});
+             std::span<const CsgTree> trees, RunContext run = {.threads = 1});
 
   struct Verdict {
     double score;            ///< E(t) over all windows

@@ -34,8 +34,10 @@ class FitMeasure {
     if (used.size() > k_many_primitives) {
       order_ = spatial_order(cloud.positions, box, run);
       const double diagonal = box.diagonal().norm();
-      for (double radius = std::max(k_first_radius * noise, 1e-9 * diagonal); radius < diagonal; radius *= k_growth) {
+      double radius = std::max(k_first_radius * noise, 1e-9 * diagonal);
+      while (radius < diagonal) {
         levels_.push_back(level_of(used, radius));
+        radius *= k_growth;
       }
     }
   }
