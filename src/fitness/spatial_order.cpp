@@ -1,7 +1,5 @@
 #include "fitness/spatial_order.hpp"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 
 #include "base/parallel.hpp"
@@ -25,15 +23,6 @@ std::uint32_t step(double offset, double cells_a_unit) {
   return spread(static_cast<std::uint32_t>(std::min(std::max(0.0, offset * cells_a_unit), k_cells - 1)));
 }
 
-void sort_keys(std::vector<std::uint64_t>& keys, const RunContext& run) {
-  if (run.threads == 1) {
-    std::ranges::sort(keys);
-    return;
-  }
-  oneapi::tbb::task_arena arena(usable_threads(run));
-  arena.execute([&] { oneapi::tbb::parallel_sort(keys); });
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> spatial_order(PointsView positions, const AlignedBox& box, const RunContext& run) {
@@ -49,7 +38,7 @@ std::vector<std::uint32_t> spatial_order(PointsView positions, const AlignedBox&
       keys[i] = std::uint64_t{cell} << 32U | i;
     }
   });
-  sort_keys(keys, run);
+  sort_values(keys, run);
   std::vector<std::uint32_t> order(count);
   for_each_index((count + k_chunk - 1) / k_chunk, run, [&](std::size_t chunk) {
     const std::size_t end = std::min(count, (chunk + 1) * k_chunk);
