@@ -107,8 +107,13 @@ class CsgTree {
 [[nodiscard]] std::size_t leaf_count(const CsgTree& tree);
 /// The primitives that appear, ascending, each once.
 [[nodiscard]] std::vector<PrimitiveIndex> primitives_of(const CsgTree& tree);
+/// Whether the tree is a single node, empty or full.
+[[nodiscard]] bool is_constant(const CsgTree& tree);
 /// The same tree with primitive p renamed to new_index[p].
 [[nodiscard]] CsgTree renumber(const CsgTree& tree, std::span<const PrimitiveIndex> new_index);
+/// The opposite of renumber(tree, members): each primitive is renamed to its place in `members`, which are ascending
+/// and have all of the tree's. O(size x log members).
+[[nodiscard]] CsgTree localised(const CsgTree& tree, std::span<const PrimitiveIndex> members);
 
 /// Equal for trees that differ only by commutation and association of unions and intersections (and, within a
 /// difference, by the order of what is subtracted: (a - b) - c and (a - c) - b). Others differ but for an accident of

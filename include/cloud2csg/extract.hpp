@@ -101,6 +101,7 @@ struct MergeStatistics {
 struct TreeStatistics {
   std::size_t size = 0, leaves = 0, depth = 0;
 };
+[[nodiscard]] TreeStatistics statistics_of(const CsgTree& tree);
 
 struct FitStatistics {
   double objective = 0;      ///< E of the result over all points

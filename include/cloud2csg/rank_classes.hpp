@@ -62,7 +62,7 @@ class RankClasses {
   /// Scores by class, for judging where a tree is good: one value a class, what its points add to E(t).
   [[nodiscard]] std::vector<float> class_scores(const CsgTree& tree, RankScratch& scratch) const;
   /// The best that any tree can score in each class.
-  [[nodiscard]] std::vector<float> class_bounds() const;
+  [[nodiscard]] std::span<const float> class_bounds() const { return bounds_; }
   /// Values of classes summed by the primitive that is nearest to their points (local indices).
   [[nodiscard]] std::vector<double> sums_by_nearest(std::span<const float> values) const;
 
@@ -94,6 +94,7 @@ class RankClasses {
   /// By class, then by signed rank + n: 2 n + 1 entries a class, the middle one (rank 0) unused.
   AlignedVector<float> scores_;
   std::vector<std::uint16_t> nearest_;
+  std::vector<float> bounds_;  ///< by class: the largest of its scores
 };
 
 /// A set of primitives to make a table for.
@@ -133,8 +134,10 @@ struct PointPass {
   std::vector<RankClasses> tables;               ///< one a request
   std::vector<std::size_t> points_of_primitive;  ///< how many points belong to each primitive
   std::size_t unassigned = 0;                    ///< points that belong to no primitive
-  double segment_seconds = 0;                    ///< of all threads: distances, gradients, membership, contributions
-  double classes_seconds = 0;                    ///< of all threads: ranks, classes
+  std::vector<std::uint32_t> order =
+      {};                      ///< all points so that neighbours are near each other; of few primitives: empty
+  double segment_seconds = 0;  ///< of all threads: distances, gradients, membership, contributions
+  double classes_seconds = 0;  ///< of all threads: ranks, classes
 };
 
 /// The one pass over the points: signed distances and normals, segmentation, contributions, ranks and classes for

@@ -4,33 +4,26 @@
 
 #include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
+#include "experiment/step.hpp"
 
 namespace cloud2csg {
 namespace {
 
-template <typename Seconds, typename Visit>
-void visit_stages(Seconds& s, const Visit& visit) {
-  visit("segment", s.segment);
-  visit("overlap", s.overlap);
-  visit("partition", s.partition);
-  visit("classes", s.classes);
-  visit("search", s.search);
-  visit("merge", s.merge);
-  visit("simplify", s.simplify);
-  visit("extraction", s.extraction);
-}
+constexpr std::string_view k_all_steps = "extraction";
 
 }  // namespace
 
 Json stages_json(const StageSeconds& seconds) {
   Json json;
-  visit_stages(seconds, [&json](const char* name, double value) { json[name] = value; });
+  for (const Step& step : extraction_steps()) json[std::string(step.name)] = seconds.*step.seconds;
+  json[std::string(k_all_steps)] = seconds.extraction;
   return json;
 }
 
 StageSeconds stages_from(const Json& json) {
   StageSeconds seconds;
-  visit_stages(seconds, [&json](const char* name, double& value) { value = json.at(name); });
+  for (const Step& step : extraction_steps()) seconds.*step.seconds = json.at(std::string(step.name));
+  seconds.extraction = json.at(std::string(k_all_steps));
   return seconds;
 }
 

@@ -73,7 +73,7 @@ class ReferenceExtractor {
         seconds.segment + seconds.overlap + seconds.partition + seconds.search + seconds.merge + seconds.simplify;
     seconds.total = seconds.extraction;
     statistics_.points = cloud_.size();
-    statistics_.tree = {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree)};
+    statistics_.tree = statistics_of(tree);
     if (!primitives_of(tree).empty()) {
       const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
       statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.noise, run_);

@@ -18,10 +18,6 @@ std::size_t bytes_of(const PointCloud& cloud) {
   return 6 * sizeof(double) * cloud.size();
 }
 
-TreeStatistics measure_tree(const CsgTree& tree) {
-  return {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree)};
-}
-
 void take_statistics(ScalingRun& result, const ExtractStatistics& statistics) {
   result.complete = statistics.complete;
   result.partitions = statistics.partitions.size();
@@ -97,7 +93,7 @@ ScalingRun run_scaling_case(const ScalingCase& scaling_case, std::uint64_t seed,
   // The best tree so far is a result of the time limit, but none of an interrupt.
   run.throw_if_stopped();
   take_statistics(result, extraction.statistics);
-  result.true_tree = measure_tree(*model.tree);
+  result.true_tree = statistics_of(*model.tree);
   result.fingerprint = fmt::format("{:016x}", structural_hash(extraction.tree));
   // Beyond the noise, so that a place tells which side of the surface it is on.
   constexpr double k_offset_in_noise = 4;

@@ -5,26 +5,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Cells along an axis, a power of two: with a chunk of points on a surface, some tens in a cell.
-constexpr int k_bits = 3;
-constexpr int k_side = 1 << k_bits;
-constexpr std::size_t k_cells = std::size_t{k_side} * k_side * k_side;
-
-/// Spreads k_bits bits three apart.
-constexpr std::array<std::uint16_t, k_side> k_spread = [] {
-  std::array<std::uint16_t, k_side> spread{};
-  for (unsigned value = 0; value < k_side; ++value) {
-    for (unsigned bit = 0; bit < k_bits; ++bit) {
-      spread[value] = static_cast<std::uint16_t>(spread[value] | (value >> bit & 1U) << (3 * bit));
-    }
-  }
-  return spread;
-}();
-
-std::uint16_t spread_step(double offset, double cells_a_unit) {
-  // The lower bound first: whatever the number, the result is an index.
-  return k_spread[static_cast<std::size_t>(std::min(std::max(0.0, offset * cells_a_unit), k_side - 1.0))];
-}
+constexpr std::size_t k_cells = std::size_t{1} << (3 * k_chunk_curve_bits);
 
 /// Of some rows of columns x, y and z.
 template <class Columns>
@@ -42,19 +23,10 @@ AlignedBox bounds_of_rows(const Columns& columns, std::size_t begin, std::size_t
 
 }  // namespace
 
-ChunkCurve::ChunkCurve(const AlignedBox& box)
-    : corner_(box.min()), cells_a_unit_(k_side / std::max(box.sizes().maxCoeff(), 1e-300)) {}
-
-std::uint16_t ChunkCurve::cell_of(double x, double y, double z) const {
-  return static_cast<std::uint16_t>(spread_step(x - corner_.x(), cells_a_unit_) |
-                                    spread_step(y - corner_.y(), cells_a_unit_) << 1U |
-                                    spread_step(z - corner_.z(), cells_a_unit_) << 2U);
-}
-
 template <class Real>
 PointBlocks<Real>::PointBlocks(const PointCloud& cloud, const AlignedBox& box, std::span<const std::uint32_t> order)
     : cloud_(&cloud),
-      curve_(box),
+      curve_(box, k_chunk_curve_bits),
       order_(order),
       origin_(origin(box)),
       columns_(std::make_unique<std::array<Column, 6>>()) {}
@@ -98,7 +70,7 @@ void PointBlocks<Real>::sort_points(std::size_t begin) {
   const PointsView positions = cloud_->positions.view().subview(begin, points_);
   std::array<std::uint32_t, k_cells> places{};
   for (std::size_t i = 0; i < points_; ++i) {
-    cells_[i] = curve_.cell_of(positions.x[i], positions.y[i], positions.z[i]);
+    cells_[i] = static_cast<std::uint16_t>(curve_.cell_of(positions.x[i], positions.y[i], positions.z[i]));
     ++places[cells_[i]];
   }
   std::exclusive_scan(places.begin(), places.end(), places.begin(), 0U);

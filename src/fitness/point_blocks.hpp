@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cloud2csg/point_cloud.hpp"
+#include "fitness/morton_curve.hpp"
 #include "fitness/point_kernels.hpp"
 
 namespace cloud2csg {
@@ -18,16 +19,8 @@ inline constexpr std::size_t k_chunk_points = 16384;
   return (points + k_chunk_points - 1) / k_chunk_points;
 }
 
-/// A coarse cubic grid over a box, its cells numbered along Morton's curve.
-class ChunkCurve {
- public:
-  explicit ChunkCurve(const AlignedBox& box);
-  [[nodiscard]] std::uint16_t cell_of(double x, double y, double z) const;
-
- private:
-  Eigen::Vector3d corner_;
-  double cells_a_unit_;
-};
+/// Of the curve that the points of a chunk follow: with a chunk of points on a surface, some tens in a cell.
+inline constexpr int k_chunk_curve_bits = 3;
 
 /// One chunk of a cloud after the other, its points in the order of a space-filling curve (Morton's) and cut into
 /// blocks: the points of a block are near each other, so that much of what is computed of them is alike. One a thread.
@@ -75,7 +68,7 @@ class PointBlocks {
   void take_column(std::size_t which, const std::vector<double>& from, double origin);
 
   const PointCloud* cloud_;
-  ChunkCurve curve_;
+  MortonCurve curve_;
   std::span<const std::uint32_t> order_;
   Eigen::Vector3d origin_;
   std::size_t points_ = 0;

@@ -47,9 +47,6 @@ bool has_unit_gradient(const Primitive& primitive) {
   return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
 }
 
-/// From so many primitives on, a block of points is near few of them, and it pays to find out of which.
-constexpr std::size_t k_many_primitives = 32;
-
 /// Where points may belong to each primitive, with room for what rounding does.
 std::vector<AlignedBox> reach_of(const PrimitiveSet& primitives, const AlignedBox& box, double distance) {
   const double largest = (box.isEmpty() ? 0.0 : box.diagonal().norm()) + box.center().norm();
@@ -140,12 +137,13 @@ PointPass pass_over(const PointCloud& cloud, const AlignedBox& box, const Primit
                     std::span<const RankClassesRequest> requests, const PointPassOptions& options,
                     const RunContext& run) {
   Stopwatch watch;
-  const WorkerInput<Real> input = input_of<Real>(cloud, box, primitives, requests, options, run);
+  WorkerInput<Real> input = input_of<Real>(cloud, box, primitives, requests, options, run);
   const WorkerShare share = work(input, run);
   watch.lap();
   PointPass pass{.tables = build_tables(requests, input.roots, share.tables, options, run),
                  .points_of_primitive = share.points_of_primitive,
                  .unassigned = share.unassigned,
+                 .order = std::move(input.order),
                  .segment_seconds = share.segment_seconds,
                  .classes_seconds = share.classes_seconds};
   pass.classes_seconds += watch.lap();

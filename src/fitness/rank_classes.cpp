@@ -14,19 +14,18 @@ RankTable<Rank> table_of(const AlignedVector<Rank>& ranks, const AlignedVector<f
   return {.ranks = ranks.data(), .scores = scores.data(), .primitives = primitives, .padded = padded};
 }
 
-/// Whether the tree is nothing or all of space: without a surface, it scores nothing at any point.
-bool is_constant(const CsgTree& tree) {
-  const auto is_constant_node = [](const CsgNode& node) {
-    return node.operation() == Operation::empty || node.operation() == Operation::full;
-  };
-  assert(tree.size() == 1 || std::ranges::none_of(tree.nodes(), is_constant_node));
-  return is_constant_node(tree.nodes().front()) && tree.size() == 1;
+/// Nothing and all of space have no surface: they score nothing at any point.
+bool has_no_surface(const CsgTree& tree) {
+  assert(is_constant(tree) || std::ranges::none_of(tree.nodes(), [](const CsgNode& node) {
+           return node.is_leaf() && node.operation() != Operation::primitive;
+         }));
+  return is_constant(tree);
 }
 
 }  // namespace
 
 double RankClasses::geometry(const CsgTree& tree, RankScratch& scratch) const {
-  if (is_constant(tree)) return 0;
+  if (has_no_surface(tree)) return 0;
   return std::visit(
       [&](const auto& ranks) {
         return tree_geometry(table_of(ranks, scores_, primitive_count(), padded_count_), tree.nodes(), scratch);
@@ -36,24 +35,13 @@ double RankClasses::geometry(const CsgTree& tree, RankScratch& scratch) const {
 
 std::vector<float> RankClasses::class_scores(const CsgTree& tree, RankScratch& scratch) const {
   std::vector<float> scores(class_count_);
-  if (is_constant(tree)) return scores;
+  if (has_no_surface(tree)) return scores;
   std::visit(
       [&](const auto& ranks) {
         tree_class_scores(table_of(ranks, scores_, primitive_count(), padded_count_), tree.nodes(), scratch, scores);
       },
       ranks_);
   return scores;
-}
-
-std::vector<float> RankClasses::class_bounds() const {
-  std::vector<float> bounds(class_count_);
-  const auto row = static_cast<std::ptrdiff_t>(2 * primitive_count() + 1);
-  auto scores = scores_.begin();
-  for (float& bound : bounds) {
-    bound = *std::max_element(scores, scores + row);
-    scores += row;
-  }
-  return bounds;
 }
 
 std::vector<double> RankClasses::sums_by_nearest(std::span<const float> values) const {
@@ -64,7 +52,7 @@ std::vector<double> RankClasses::sums_by_nearest(std::span<const float> values) 
 }
 
 double RankClasses::reference_geometry(const CsgTree& tree) const {
-  if (is_constant(tree)) return 0;
+  if (has_no_surface(tree)) return 0;
   double sum = 0;
   const std::size_t row = 2 * primitive_count() + 1;
   std::visit(

@@ -27,7 +27,8 @@ void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, c
       scores[2 * n - code] = static_cast<float>(static_cast<double>(sum.complement) * k_unit);
       if (std::abs(rank) == 1) result.nearest_[c] = static_cast<std::uint16_t>(p);
     }
-    result.geometry_bound_ += static_cast<double>(*std::max_element(scores, scores + row));
+    result.bounds_[c] = *std::max_element(scores, scores + row);
+    result.geometry_bound_ += static_cast<double>(result.bounds_[c]);
   }
 }
 
@@ -42,6 +43,7 @@ RankClasses RankClassesBuilder::build(std::span<const PrimitiveIndex> primitives
   result.objective_ = objective;
   result.scores_.assign(result.padded_count_ * (2 * primitives.size() + 1), 0.0F);
   result.nearest_.assign(classes.size(), 0);
+  result.bounds_.resize(classes.size());
   if (primitives.size() <= RankClasses::k_byte_limit) {
     fill(result, result.ranks_.emplace<AlignedVector<std::int8_t>>(), classes);
   } else {

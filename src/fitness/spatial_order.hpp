@@ -8,6 +8,9 @@
 
 namespace cloud2csg {
 
+/// From so many primitives on, a block of neighbouring points is near few of them, and it pays to find out of which.
+inline constexpr std::size_t k_many_primitives = 32;
+
 /// The indices of all points along a space-filling curve (Morton's) through `box`, which holds them: neighbours in this
 /// order are near each other. Cells are cubes, 1024 along the longest side; within one, points stay in their order.
 /// O(n log n). Does not depend on the number of threads.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -16,23 +17,8 @@ enum class Role { undecided, added, removed };
 
 /// The tree with one primitive taken for nothing, or for all of space.
 CsgTree substitute(const CsgTree& tree, PrimitiveIndex primitive, bool is_full) {
-  FoldingTree result;
-  for (const CsgNode node : tree.nodes()) {
-    if (!node.is_leaf()) {
-      result.apply(node.operation());
-    } else if (node.operation() != Operation::primitive) {
-      result.constant(node.operation() == Operation::full);
-    } else if (node.primitive() == primitive) {
-      result.constant(is_full);
-    } else {
-      result.leaf(node.primitive());
-    }
-  }
-  return result.take();
-}
-
-bool is_constant(const CsgTree& tree) {
-  return tree.size() == 1 && tree.nodes().front().operation() != Operation::primitive;
+  return fold_primitives(tree,
+                         [&](PrimitiveIndex p) { return p == primitive ? std::optional(is_full) : std::nullopt; });
 }
 
 /// Primitives of one role, taken out of all trees one after the other.

@@ -12,22 +12,10 @@
 namespace cloud2csg {
 namespace {
 
-/// A tree over primitives of the component with a window's local indices. Precondition: the window has them.
-CsgTree localised(const CsgTree& tree, const MergeWindow& window) {
-  std::vector<CsgNode> nodes(tree.nodes().begin(), tree.nodes().end());
-  for (CsgNode& node : nodes) {
-    if (node.operation() != Operation::primitive) continue;
-    const auto place = std::ranges::lower_bound(window.primitives, node.primitive());
-    assert(place != window.primitives.end() && *place == node.primitive());
-    node = CsgNode::leaf(static_cast<PrimitiveIndex>(place - window.primitives.begin()));
-  }
-  return CsgTree(std::move(nodes));
-}
-
 /// What a tree scores in a window, by nearest primitive (the window's local indices).
 std::vector<double> scores_in(const MergeWindow& window, const CsgTree& tree) {
   RankScratch scratch;
-  return window.table->sums_by_nearest(window.table->class_scores(localised(tree, window), scratch));
+  return window.table->sums_by_nearest(window.table->class_scores(localised(tree, window.primitives), scratch));
 }
 
 bool is_judged(const MergeWindow& window, PrimitiveIndex p) {

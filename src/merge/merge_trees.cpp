@@ -87,6 +87,16 @@ std::size_t merge_in_order_of_the_paper(std::vector<MergeCandidate>& list, const
   return merges;
 }
 
+/// Takes out the places that `is_gone`; the others stay in their order.
+template <typename IsGone>
+void drop_gone(std::vector<MergeCandidate>& list, const IsGone& is_gone) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!is_gone(i) && kept++ != i) list[kept - 1] = std::move(list[i]);
+  }
+  list.resize(kept);
+}
+
 /// The queue of mergeable pairs, largest common subtree first, then in the order of the list.
 class LargestFirst {
  public:
@@ -106,11 +116,7 @@ class LargestFirst {
       merge(pair);
       ++merges;
     }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < slots_.size(); ++i) {
-      if (versions_[i] != k_gone && kept++ != i) slots_[kept - 1] = std::move(slots_[i]);
-    }
-    slots_.resize(kept);
+    drop_gone(slots_, [this](std::size_t i) { return versions_[i] == k_gone; });
     return merges;
   }
 
@@ -186,11 +192,7 @@ class PairingRounds {
         break;
       }
     }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < list_.size(); ++i) {
-      if (!is_gone[i] && kept++ != i) list_[kept - 1] = std::move(list_[i]);
-    }
-    list_.resize(kept);
+    drop_gone(list_, [&is_gone](std::size_t i) { return is_gone[i]; });
     return merges;
   }
 

@@ -3,33 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <utility>
 
 #include "cloud2csg/error.hpp"
 #include "overlap/narrow_phase.hpp"
+#include "primitive/bounds_index.hpp"
 
 namespace cloud2csg {
 namespace {
 
-namespace bg = boost::geometry;
-using IndexPoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using IndexBox = bg::model::box<IndexPoint>;
-using IndexEntry = std::pair<IndexBox, PrimitiveIndex>;
-using SpatialIndex = bg::index::rtree<IndexEntry, bg::index::quadratic<16>>;
-
 /// The stop token is looked at once in this many pairs: a pair of convex solids takes about a microsecond.
 constexpr std::size_t k_pairs_between_stops = 1024;
-
-IndexBox to_index_box(const AlignedBox& box, double margin) {
-  const auto corner = [margin](const Eigen::Vector3d& p, double sign) {
-    return IndexPoint(p.x() + sign * margin, p.y() + sign * margin, p.z() + sign * margin);
-  };
-  return {corner(box.min(), -1), corner(box.max(), 1)};
-}
 
 void check(const OverlapOptions& options) {
   if (!std::isfinite(options.tolerance) || options.tolerance < 0) {
@@ -66,7 +51,7 @@ class BroadPhase {
     for (PrimitiveIndex i = 0; i < bodies.size(); ++i) {
       if (bodies[i].is_bounded()) entries.emplace_back(to_index_box(bodies[i].bounds, margin), i);
     }
-    index_ = SpatialIndex(entries);  // from a range: packed, O(n log n)
+    index_ = BoundsIndex(entries);  // from a range: packed, O(n log n)
   }
 
   /// Primitives that may overlap primitive i, each pair for one of its two members only.
@@ -79,7 +64,7 @@ class BroadPhase {
       return found;
     }
     const IndexBox box = to_index_box(bodies_[i].bounds, margin_);
-    for (auto hit = index_.qbegin(bg::index::intersects(box)); hit != index_.qend(); ++hit) {
+    for (auto hit = index_.qbegin(boost::geometry::index::intersects(box)); hit != index_.qend(); ++hit) {
       if (hit->second > i) found.push_back(hit->second);
     }
     return found;
@@ -88,7 +73,7 @@ class BroadPhase {
  private:
   const std::vector<OverlapBody>& bodies_;
   double margin_;
-  SpatialIndex index_;
+  BoundsIndex index_;
 };
 
 }  // namespace

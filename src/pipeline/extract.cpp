@@ -61,10 +61,6 @@ void check_input(const PointCloud& cloud, const PrimitiveSet& primitives) {
   for (const Primitive& primitive : primitives) check_primitive(primitive);
 }
 
-TreeStatistics measure(const CsgTree& tree) {
-  return {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree)};
-}
-
 /// Local indices of the primitives of a table, by index in the prepared set.
 std::vector<PrimitiveIndex> local_indices(std::span<const PrimitiveIndex> members, std::size_t primitives) {
   std::vector<PrimitiveIndex> local(primitives, 0);
@@ -237,9 +233,9 @@ class Extractor {
 
   CsgTree simplified(const CsgTree& tree) {
     Stopwatch watch;
-    statistics_.before_simplification = measure(tree);
+    statistics_.before_simplification = statistics_of(tree);
     CsgTree result = renumber(simplify(tree), prepared_.original);
-    statistics_.tree = measure(result);
+    statistics_.tree = statistics_of(result);
     statistics_.seconds.simplify += watch.lap();
     return result;
   }
@@ -252,7 +248,7 @@ class Extractor {
     const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
     RunContext to_the_end = run;
     to_the_end.stop = {};  // the tree of an interrupted search has a fit, too
-    statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.noise, to_the_end);
+    statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.noise, to_the_end, prepared_.pass.order);
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
@@ -278,6 +274,10 @@ class Extractor {
 };
 
 }  // namespace
+
+TreeStatistics statistics_of(const CsgTree& tree) {
+  return {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree)};
+}
 
 Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
                        const RunContext& run) {

@@ -17,23 +17,16 @@ struct PointFit {
   std::vector<double> angles;     // radians
 };
 
-/// From so many primitives on, a tree is evaluated by what of it is near.
-constexpr std::size_t k_many_primitives = 32;
-
 /// Measures a tree at points, a block of neighbours at a time. Far from a primitive a tree is as without it: where the
 /// tree without all primitives farther than r has a value below r, the whole tree has the same.
 class FitMeasure {
  public:
   FitMeasure(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud, double noise,
-             const RunContext& run)
-      : tree_(tree), restriction_(tree), primitives_(primitives), cloud_(cloud), run_(run) {
-    const AlignedBox box = bounds_of(cloud.positions);
-    order_.resize(cloud.size());
-    std::iota(order_.begin(), order_.end(), 0U);
+             const RunContext& run, std::span<const std::uint32_t> order)
+      : tree_(tree), restriction_(tree), primitives_(primitives), cloud_(cloud), run_(run), order_(order) {
     const std::vector<PrimitiveIndex> used = primitives_of(tree);
     if (used.size() > k_many_primitives) {
-      order_ = spatial_order(cloud.positions, box, run);
-      const double diagonal = box.diagonal().norm();
+      const double diagonal = bounds_of(cloud.positions).diagonal().norm();
       double radius = std::max(k_first_radius * noise, 1e-9 * diagonal);
       while (radius < diagonal) {
         levels_.push_back(level_of(used, radius));
@@ -47,7 +40,7 @@ class FitMeasure {
     fit_.angles.resize(cloud_.size());
     for_each_index((cloud_.size() + k_block - 1) / k_block, run_, [&](std::size_t block) {
       const std::size_t begin = block * k_block;
-      measure_block(std::span(order_).subspan(begin, std::min(k_block, cloud_.size() - begin)));
+      measure_block(begin, std::min(k_block, cloud_.size() - begin));
     });
     return std::move(fit_);
   }
@@ -70,8 +63,13 @@ class FitMeasure {
     return level;
   }
 
-  void measure_block(std::span<const std::uint32_t> block) {
-    std::vector<std::uint32_t> points(block.begin(), block.end());
+  void measure_block(std::size_t begin, std::size_t count) {
+    std::vector<std::uint32_t> points(count);
+    if (order_.empty()) {
+      std::iota(points.begin(), points.end(), static_cast<std::uint32_t>(begin));
+    } else {
+      std::ranges::copy(order_.subspan(begin, count), points.begin());
+    }
     for (const Level& level : levels_) {
       points = measure_near(level, points);
       if (points.empty()) return;
@@ -112,8 +110,8 @@ class FitMeasure {
   const PrimitiveSet& primitives_;
   const PointCloud& cloud_;
   const RunContext& run_;
-  std::vector<std::uint32_t> order_;  // of the points
-  std::vector<Level> levels_;         // by radius; none where the whole tree is evaluated everywhere
+  std::span<const std::uint32_t> order_;
+  std::vector<Level> levels_;  // by radius; none where the whole tree is evaluated everywhere
   PointFit fit_;
 };
 
@@ -133,8 +131,9 @@ double quantile_95(std::vector<double>& values) {
 }  // namespace
 
 FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                          const Objective& objective, double noise, const RunContext& run) {
-  PointFit points = FitMeasure(tree, primitives, cloud, noise, run).measure();
+                          const Objective& objective, double noise, const RunContext& run,
+                          std::span<const std::uint32_t> order) {
+  PointFit points = FitMeasure(tree, primitives, cloud, noise, run, order).measure();
   FitStatistics fit;
   fit.objective = -objective.alpha * static_cast<double>(tree.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {

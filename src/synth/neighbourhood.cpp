@@ -1,33 +1,18 @@
 #include "synth/neighbourhood.hpp"
 
 #include <algorithm>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <iterator>
 #include <utility>
 
 #include "cloud2csg/restrict.hpp"
+#include "primitive/bounds_index.hpp"
 
 namespace cloud2csg {
 namespace {
 
-namespace bg = boost::geometry;
-using IndexPoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using IndexBox = bg::model::box<IndexPoint>;
-using IndexEntry = std::pair<IndexBox, PrimitiveIndex>;
-using SpatialIndex = bg::index::rtree<IndexEntry, bg::index::quadratic<16>>;
-
 /// Of an expression, the formula may be negative outside of the bounds that it is given.
 bool has_known_reach(const Primitive& primitive, const AlignedBox& box) {
   return !std::holds_alternative<Expression>(primitive.shape) && box.min().allFinite() && box.max().allFinite();
-}
-
-IndexBox to_index_box(const AlignedBox& box, double margin) {
-  const auto corner = [margin](const Eigen::Vector3d& p, double sign) {
-    return IndexPoint(p.x() + sign * margin, p.y() + sign * margin, p.z() + sign * margin);
-  };
-  return {corner(box.min(), -1), corner(box.max(), 1)};
 }
 
 }  // namespace
@@ -44,13 +29,14 @@ std::vector<std::vector<PrimitiveIndex>> meeting_bounds(const PrimitiveSet& prim
       far_reaching.push_back(p);
     }
   }
-  const SpatialIndex index(bounded);
+  const BoundsIndex index(bounded);
   std::vector<std::vector<PrimitiveIndex>> meeting(primitives.size());
   for (const PrimitiveIndex p : far_reaching) meeting[p].assign(used.begin(), used.end());
   for (const auto& [box, p] : bounded) {
     std::vector<PrimitiveIndex>& found = meeting[p];
     found = far_reaching;
-    for (auto hit = index.qbegin(bg::index::intersects(box)); hit != index.qend(); ++hit) found.push_back(hit->second);
+    for (auto hit = index.qbegin(boost::geometry::index::intersects(box)); hit != index.qend(); ++hit)
+      found.push_back(hit->second);
     std::sort(found.begin(), found.end());
   }
   return meeting;
@@ -60,17 +46,13 @@ std::vector<Neighbourhood> neighbourhoods(const CsgTree& tree, const PrimitiveSe
                                           std::span<const PrimitiveIndex> used, double margin) {
   std::vector<std::vector<PrimitiveIndex>> meeting = meeting_bounds(primitives, used, margin);
   const TreeRestriction restriction(tree);
-  std::vector<PrimitiveIndex> local(primitives.size());
   std::vector<Neighbourhood> result;
   result.reserve(used.size());
   for (const PrimitiveIndex p : used) {
     Neighbourhood& here = result.emplace_back();
     here.members = std::move(meeting[p]);
-    for (std::size_t i = 0; i < here.members.size(); ++i) {
-      local[here.members[i]] = static_cast<PrimitiveIndex>(i);
-      here.primitives.push_back(primitives[here.members[i]]);
-    }
-    here.tree = renumber(restriction.restrict_to(here.members), local);
+    for (const PrimitiveIndex member : here.members) here.primitives.push_back(primitives[member]);
+    here.tree = localised(restriction.restrict_to(here.members), here.members);
   }
   return result;
 }

@@ -14,6 +14,16 @@ void append(std::vector<CsgNode>& nodes, std::span<const CsgNode> more) {
   nodes.insert(nodes.end(), more.begin(), more.end());
 }
 
+/// The tree with each primitive p renamed to new_name(p).
+template <typename NewName>
+CsgTree renamed(const CsgTree& tree, const NewName& new_name) {
+  std::vector<CsgNode> nodes(tree.nodes().begin(), tree.nodes().end());
+  for (CsgNode& node : nodes) {
+    if (node.operation() == Operation::primitive) node = CsgNode::leaf(new_name(node.primitive()));
+  }
+  return CsgTree(std::move(nodes));
+}
+
 CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
   std::vector<CsgNode> nodes;
   nodes.reserve(a.size() + b.size() + 1);
@@ -116,12 +126,20 @@ std::vector<PrimitiveIndex> primitives_of(const CsgTree& tree) {
   return primitives;
 }
 
+bool is_constant(const CsgTree& tree) {
+  return tree.size() == 1 && tree.nodes().front().operation() != Operation::primitive;
+}
+
 CsgTree renumber(const CsgTree& tree, std::span<const PrimitiveIndex> new_index) {
-  std::vector<CsgNode> nodes(tree.nodes().begin(), tree.nodes().end());
-  for (CsgNode& node : nodes) {
-    if (node.operation() == Operation::primitive) node = CsgNode::leaf(new_index[node.primitive()]);
-  }
-  return CsgTree(std::move(nodes));
+  return renamed(tree, [new_index](PrimitiveIndex p) { return new_index[p]; });
+}
+
+CsgTree localised(const CsgTree& tree, std::span<const PrimitiveIndex> members) {
+  return renamed(tree, [members](PrimitiveIndex p) {
+    const auto place = std::ranges::lower_bound(members, p);
+    assert(place != members.end() && *place == p);
+    return static_cast<PrimitiveIndex>(place - members.begin());
+  });
 }
 
 bool contains(const CsgTree& tree, const std::vector<bool>& inside_primitive) {

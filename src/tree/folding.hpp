@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -86,5 +87,24 @@ class FoldingTree {
   std::vector<CsgNode> nodes_;
   std::vector<Value> stack_;
 };
+
+/// The tree with some primitives taken for constants, and what follows from that. `constant_of(primitive)` gives an
+/// optional bool: whether the primitive is all of space, or nothing where it stays. O(size).
+template <typename ConstantOf>
+[[nodiscard]] CsgTree fold_primitives(const CsgTree& tree, const ConstantOf& constant_of) {
+  FoldingTree result;
+  for (const CsgNode node : tree.nodes()) {
+    if (!node.is_leaf()) {
+      result.apply(node.operation());
+    } else if (node.operation() != Operation::primitive) {
+      result.constant(node.operation() == Operation::full);
+    } else if (const std::optional<bool> constant = constant_of(node.primitive())) {
+      result.constant(*constant);
+    } else {
+      result.leaf(node.primitive());
+    }
+  }
+  return result.take();
+}
 
 }  // namespace cloud2csg

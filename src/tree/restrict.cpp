@@ -57,19 +57,9 @@ CsgTree restrict_to(const CsgTree& tree, std::span<const PrimitiveIndex> kept) {
     if (p >= is_kept.size()) is_kept.resize(p + std::size_t{1});
     is_kept[p] = true;
   }
-  FoldingTree result;
-  for (const CsgNode node : tree.nodes()) {
-    if (!node.is_leaf()) {
-      result.apply(node.operation());
-    } else if (node.operation() != Operation::primitive) {
-      result.constant(node.operation() == Operation::full);
-    } else if (node.primitive() < is_kept.size() && is_kept[node.primitive()]) {
-      result.leaf(node.primitive());
-    } else {
-      result.constant(/*is_full=*/false);
-    }
-  }
-  return result.take();
+  return fold_primitives(tree, [&](PrimitiveIndex p) {
+    return p < is_kept.size() && is_kept[p] ? std::nullopt : std::optional(/*is_full=*/false);
+  });
 }
 
 TreeRestriction::TreeRestriction(const CsgTree& tree) : tree_(tree), is_full_(values_without_primitives(tree)) {

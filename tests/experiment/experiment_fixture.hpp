@@ -4,9 +4,12 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "cloud2csg/experiment.hpp"
+#include "experiment/table.hpp"
 
 namespace cloud2csg::test {
 
@@ -39,5 +42,13 @@ class ExperimentTest : public ::testing::Test {
  private:
   std::filesystem::path folder_;
 };
+
+/// @throws std::out_of_range when there is none of this name.
+inline const Table& table_of(const std::vector<Table>& tables, const std::string& name) {
+  for (const Table& table : tables) {
+    if (table.name == name) return table;
+  }
+  throw std::out_of_range(name);
+}
 
 }  // namespace cloud2csg::test

@@ -14,7 +14,10 @@ namespace {
 /// The search path of programs, while it lives.
 class SearchPath {
  public:
-  explicit SearchPath(const std::string& path) : before_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
+  explicit SearchPath(const std::string& path) {
+    if (const char* before = std::getenv("PATH")) before_ = before;
+    ::setenv("PATH", path.c_str(), 1);
+  }
   ~SearchPath() { ::setenv("PATH", before_.c_str(), 1); }
   SearchPath(const SearchPath&) = delete;
   SearchPath& operator=(const SearchPath&) = delete;
@@ -52,13 +55,6 @@ PaperResults made_up() {
     results.runs.push_back(run);
   }
   return results;
-}
-
-const Table& table_of(const std::vector<Table>& tables, const std::string& name) {
-  for (const Table& table : tables) {
-    if (table.name == name) return table;
-  }
-  throw std::out_of_range(name);
 }
 
 TEST_F(PaperReport, TablesSummarise) {

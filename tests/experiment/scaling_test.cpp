@@ -137,13 +137,6 @@ ScalingResults made_up() {
   return results;
 }
 
-const Table& table_of(const std::vector<Table>& tables, const std::string& name) {
-  for (const Table& table : tables) {
-    if (table.name == name) return table;
-  }
-  throw std::out_of_range(name);
-}
-
 TEST_F(Scaling, TablesHoldExponentsAndSpeedUp) {
   const ScalingResults results = made_up();
   EXPECT_NEAR(fitted(results, Sweep::primitives, Family::grid, extraction_milliseconds()).exponent, 2, 1e-9);

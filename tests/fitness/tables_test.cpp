@@ -18,12 +18,14 @@ namespace {
 std::vector<double> geometries(const RankClasses& table, const std::vector<CsgTree>& trees) {
   RankScratch scratch;
   std::vector<double> values;
+  values.reserve(trees.size());
   for (const CsgTree& tree : trees) values.push_back(table.geometry(tree, scratch));
   return values;
 }
 
 std::vector<double> reference_geometries(const RankClasses& table, const std::vector<CsgTree>& trees) {
   std::vector<double> values;
+  values.reserve(trees.size());
   for (const CsgTree& tree : trees) values.push_back(table.reference_geometry(tree));
   return values;
 }
@@ -229,7 +231,7 @@ TEST(RankClassesTables, NoTreeExceedsTheBoundInAnyClass) {
   RandomStream random(10);
   const test::Scene scene = test::random_scene(4, 2000, random);
   const RankClasses table = test::whole_table(scene);
-  const std::vector<float> bounds = table.class_bounds();
+  const std::vector<float> bounds(table.class_bounds().begin(), table.class_bounds().end());
   std::vector<float> best(table.class_count(), 0);
   RankScratch scratch;
   for (const CsgTree& tree : test::random_formulas(4, 3000, random)) {

@@ -20,10 +20,10 @@ namespace cloud2csg::test {
 /// looked at, else along one in each chunk.
 inline std::vector<std::uint32_t> order_of_points(const Scene& scene) {
   const AlignedBox box = bounds_of(scene.cloud.positions);
-  if (scene.primitives.size() > 32) return spatial_order(scene.cloud.positions, box);
+  if (scene.primitives.size() > k_many_primitives) return spatial_order(scene.cloud.positions, box);
   std::vector<std::uint32_t> order(scene.cloud.size());
   std::iota(order.begin(), order.end(), 0U);
-  const ChunkCurve curve(box);
+  const MortonCurve curve(box, k_chunk_curve_bits);
   const auto key = [&](std::uint32_t i) {
     const Eigen::Vector3d position = scene.cloud.positions[i];
     return std::pair(i / k_chunk_points, curve.cell_of(position.x(), position.y(), position.z()));
