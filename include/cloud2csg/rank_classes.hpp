@@ -103,8 +103,8 @@ struct RankClassesRequest {
   /// Points are taken that belong to one of these; empty: to one of the primitives, as the paper's partitions do.
   /// Some of the primitives, ascending.
   std::vector<PrimitiveIndex> owners = {};
-  /// Use every k-th point only (along a curve through the cloud or some thousands of its points, before the choice by
-  /// segmentation): bounds memory for large sets.
+  /// Use every k-th point only (along a curve through the cloud, before the choice by segmentation): bounds memory for
+  /// large sets.
   std::size_t stride = 1;
   bool all_points = false;  ///< also those that belong to none of the primitives
   /// Not those inside a primitive that is not in the set (beyond the paper): there the set does not tell the whole, and
@@ -134,10 +134,9 @@ struct PointPass {
   std::vector<RankClasses> tables;               ///< one a request
   std::vector<std::size_t> points_of_primitive;  ///< how many points belong to each primitive
   std::size_t unassigned = 0;                    ///< points that belong to no primitive
-  std::vector<std::uint32_t> order =
-      {};                      ///< all points so that neighbours are near each other; of few primitives: empty
-  double segment_seconds = 0;  ///< of all threads: distances, gradients, membership, contributions
-  double classes_seconds = 0;  ///< of all threads: ranks, classes
+  std::vector<std::uint32_t> order = {};         ///< all points, so that neighbours are near each other
+  double segment_seconds = 0;                    ///< of all threads: distances, gradients, membership, contributions
+  double classes_seconds = 0;                    ///< of all threads: ranks, classes
 };
 
 /// The one pass over the points: signed distances and normals, segmentation, contributions, ranks and classes for

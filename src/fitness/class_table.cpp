@@ -6,6 +6,9 @@
 namespace cloud2csg {
 namespace {
 
+/// Contributions a line of the cache.
+constexpr std::size_t k_line = 64 / sizeof(PackedContribution);
+
 bool equal(const std::uint32_t* a, const std::uint32_t* b, std::size_t stride_b, std::size_t words) {
   for (std::size_t w = 0; w < words; ++w) {
     if (a[w] != b[w * stride_b]) return false;
@@ -29,7 +32,8 @@ void ClassTable::find_or_insert(const BlockKeys& keys, std::span<const std::uint
   for (const std::uint16_t i : points) __builtin_prefetch(&slots_[keys.hashes[i] & (slots_.size() - 1)]);
   for (std::size_t k = 0; k < points.size(); ++k) {
     classes[k] = find_or_insert(&keys.words[points[k]], k_block_points, keys.hashes[points[k]]);
-    __builtin_prefetch(row(classes[k]).data(), 1);
+    const std::span<const PackedContribution> sums = std::as_const(*this).row(classes[k]);
+    for (std::size_t place = 0; place < row_; place += k_line) __builtin_prefetch(&sums[place], 1);
   }
 }
 
@@ -76,13 +80,13 @@ void ClassTable::add_class(std::size_t class_index, const ClassTable& other, std
                            std::span<const std::size_t> places) {
   const std::span<const PackedContribution> packed = other.row(other_class);
   const std::span<PackedContribution> sums = add_points(class_index, other.pending_[other_class]);
-  for (std::size_t k = 0; k < row_; ++k) sums[k] += packed[places[k]];
+  for (std::size_t k = 0; k < places.size(); ++k) sums[k] += packed[places[k]];
   if (!other.has_wide(other_class)) return;
   make_wide(class_index);
   wide_points_[wide_[class_index] - 1] += other.wide_points_[other.wide_[other_class] - 1];
   const std::span<const WideContribution> added = other.wide_row(other_class);
   const std::span<WideContribution> wide = wide_row(class_index);
-  for (std::size_t k = 0; k < row_; ++k) wide[k] += added[places[k]];
+  for (std::size_t k = 0; k < places.size(); ++k) wide[k] += added[places[k]];
 }
 
 std::size_t ClassTable::point_count() const {

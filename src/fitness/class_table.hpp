@@ -15,13 +15,14 @@ namespace cloud2csg {
 class ClassTable {
  public:
   ClassTable(std::size_t primitives, std::size_t key_words)
-      : words_(key_words), row_(primitives), slots_(k_first_slots, 0) {}
+      : words_(key_words), row_(primitives + primitives % 2), slots_(k_first_slots, 0) {}
 
   /// The classes of points of a block, made when they are new. `points` are places in the block, ascending; `classes`
   /// receives one a point.
   void find_or_insert(const BlockKeys& keys, std::span<const std::uint16_t> points, std::span<std::uint32_t> classes);
 
-  /// Counts `points` more in a class, and gives the contributions to which theirs are to be added: one a primitive.
+  /// Counts `points` more in a class, and gives the contributions to which theirs are to be added: one a primitive,
+  /// and one more where their number is odd.
   /// Precondition: at most k_most_packed_points.
   [[nodiscard]] std::span<PackedContribution> add_points(std::size_t class_index, std::uint32_t points) {
     if (pending_[class_index] + points > k_most_packed_points) widen(class_index);
@@ -80,7 +81,7 @@ class ClassTable {
   [[nodiscard]] std::size_t slot_of(const std::uint32_t* key, std::size_t stride, std::uint32_t hash) const;
 
   std::size_t words_;
-  std::size_t row_;
+  std::size_t row_;                   // of contributions: an even number
   std::vector<std::uint32_t> slots_;  // class index + 1; 0 is free. A power of two of them
   std::vector<std::uint32_t> keys_;
   std::vector<std::uint32_t> hashes_;

@@ -5,8 +5,6 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::size_t k_cells = std::size_t{1} << (3 * k_chunk_curve_bits);
-
 /// Of some rows of columns x, y and z.
 template <class Columns>
 AlignedBox bounds_of_rows(const Columns& columns, std::size_t begin, std::size_t end) {
@@ -25,11 +23,7 @@ AlignedBox bounds_of_rows(const Columns& columns, std::size_t begin, std::size_t
 
 template <class Real>
 PointBlocks<Real>::PointBlocks(const PointCloud& cloud, const AlignedBox& box, std::span<const std::uint32_t> order)
-    : cloud_(&cloud),
-      curve_(box, k_chunk_curve_bits),
-      order_(order),
-      origin_(origin(box)),
-      columns_(std::make_unique<std::array<Column, 6>>()) {}
+    : cloud_(&cloud), order_(order), origin_(origin(box)), columns_(std::make_unique<std::array<Column, 6>>()) {}
 
 template <class Real>
 Eigen::Vector3d PointBlocks<Real>::origin(const AlignedBox& box) {
@@ -49,13 +43,8 @@ AlignedBox PointBlocks<Real>::bounds() const {
 
 template <class Real>
 void PointBlocks<Real>::load(std::size_t chunk) {
-  const std::size_t begin = chunk * k_chunk_points;
-  points_ = std::min(k_chunk_points, cloud_->size() - begin);
-  if (order_.empty()) {
-    sort_points(begin);
-  } else {
-    std::ranges::copy(order_.subspan(begin, points_), sources_.begin());
-  }
+  begin_ = chunk * k_chunk_points;
+  points_ = std::min(k_chunk_points, cloud_->size() - begin_);
   take_column(0, cloud_->positions.x, origin_.x());
   take_column(1, cloud_->positions.y, origin_.y());
   take_column(2, cloud_->positions.z, origin_.z());
@@ -64,23 +53,11 @@ void PointBlocks<Real>::load(std::size_t chunk) {
   take_column(5, cloud_->normals.z, 0);
 }
 
-/// Counting sort.
-template <class Real>
-void PointBlocks<Real>::sort_points(std::size_t begin) {
-  const PointsView positions = cloud_->positions.view().subview(begin, points_);
-  std::array<std::uint32_t, k_cells> places{};
-  for (std::size_t i = 0; i < points_; ++i) {
-    cells_[i] = static_cast<std::uint16_t>(curve_.cell_of(positions.x[i], positions.y[i], positions.z[i]));
-    ++places[cells_[i]];
-  }
-  std::exclusive_scan(places.begin(), places.end(), places.begin(), 0U);
-  for (std::size_t i = 0; i < points_; ++i) sources_[places[cells_[i]]++] = static_cast<std::uint32_t>(begin + i);
-}
-
 template <class Real>
 void PointBlocks<Real>::take_column(std::size_t which, const std::vector<double>& from, double origin) {
   auto& values = (*columns_)[which].values;
-  for (std::size_t i = 0; i < points_; ++i) values[i] = static_cast<Real>(from[sources_[i]] - origin);
+  const std::span<const std::uint32_t> sources = order_.subspan(begin_, points_);
+  for (std::size_t i = 0; i < points_; ++i) values[i] = static_cast<Real>(from[sources[i]] - origin);
   const auto end = static_cast<std::ptrdiff_t>(count() * k_block_points);
   std::fill(values.begin() + static_cast<std::ptrdiff_t>(points_), values.begin() + end, values[points_ - 1]);
 }

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "cloud2csg/point_cloud.hpp"
-#include "fitness/morton_curve.hpp"
 #include "fitness/point_kernels.hpp"
 
 namespace cloud2csg {
@@ -19,18 +18,14 @@ inline constexpr std::size_t k_chunk_points = 16384;
   return (points + k_chunk_points - 1) / k_chunk_points;
 }
 
-/// Of the curve that the points of a chunk follow: with a chunk of points on a surface, some tens in a cell.
-inline constexpr int k_chunk_curve_bits = 3;
-
-/// One chunk of a cloud after the other, its points in the order of a space-filling curve (Morton's) and cut into
-/// blocks: the points of a block are near each other, so that much of what is computed of them is alike. One a thread.
-/// A chunk is consecutive points of the cloud, or of an order that follows such a curve through the whole cloud.
+/// One chunk of a cloud after the other, its points in the order of a space-filling curve and cut into blocks: the
+/// points of a block are near each other, so that much of what is computed of them is alike. One a thread.
 /// `Real` is double or float.
 template <class Real>
 class PointBlocks {
  public:
-  /// `box` is the cloud's bounds; `order` all its indices, or empty. Precondition: the cloud has normals; it and the
-  /// order outlive this.
+  /// `box` is the cloud's bounds; `order` all its indices, see spatial_order(). Precondition: the cloud has normals;
+  /// it and the order outlive this.
   PointBlocks(const PointCloud& cloud, const AlignedBox& box, std::span<const std::uint32_t> order);
 
   /// Coordinates are relative to it: for doubles it is zero, so that nothing is rounded.
@@ -63,18 +58,14 @@ class PointBlocks {
   [[nodiscard]] std::span<const Real> column(std::size_t which, std::size_t block) const {
     return std::span((*columns_)[which].values).subspan(block * k_block_points, k_block_points);
   }
-  /// Puts the chunk's points into `sources_`, along the curve.
-  void sort_points(std::size_t begin);
   void take_column(std::size_t which, const std::vector<double>& from, double origin);
 
   const PointCloud* cloud_;
-  MortonCurve curve_;
   std::span<const std::uint32_t> order_;
   Eigen::Vector3d origin_;
-  std::size_t points_ = 0;
+  std::size_t begin_ = 0;                           // the chunk's place in the order
+  std::size_t points_ = 0;                          // of the chunk
   std::unique_ptr<std::array<Column, 6>> columns_;  ///< coordinates, then normals
-  std::array<std::uint16_t, k_chunk_points> cells_{};
-  std::array<std::uint32_t, k_chunk_points> sources_{};  ///< indices into the cloud, in the order of the blocks
 };
 
 extern template class PointBlocks<double>;

@@ -1,7 +1,9 @@
 #include "fitness/point_kernels.hpp"
 
 #include <bit>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
@@ -14,49 +16,52 @@ namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-using Floats = hn::ScalableTag<float>;
+/// Numbers of a block, as many as fit a vector; of doubles at most eight, so that as many floats are made of them.
+template <class Real>
+using Reals = std::conditional_t<sizeof(Real) == sizeof(double), hn::CappedTag<double, 8>, hn::ScalableTag<Real>>;
 
-/// Arguments of exp(-t): the distance's part and the angle's part of each point's score, and the side of the normal.
-struct Exponents {
-  alignas(64) std::array<float, k_block_points> distance, angle_chord, cosine;
-};
+/// As many floats.
+template <class Real>
+using Floats = hn::Rebind<float, Reals<Real>>;
 
-/// exp(-t) for t >= 0 to about 1e-7 relative, 0 from 87 on: 2^k times a polynomial of degree 6 on |r| <= ln(2) / 2.
-template <class V>
-HWY_INLINE V exp_negative(V t) {
-  const hn::DFromV<V> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const V magic = hn::Set(d, 12582912.0F);  // 1.5 * 2^23: adding it rounds to an integer
-  const V x = hn::Neg(hn::Min(t, hn::Set(d, 87.0F)));
-  const V shifted = x * hn::Set(d, 1.44269504F) + magic;
-  const V k = shifted - magic;
-  const V r = (x - k * hn::Set(d, 0.693359375F)) - k * hn::Set(d, -2.12194440e-4F);
-  V p = hn::Set(d, 1.3888889e-3F);
-  p = p * r + hn::Set(d, 8.3333333e-3F);
-  p = p * r + hn::Set(d, 4.1666667e-2F);
-  p = p * r + hn::Set(d, 1.6666667e-1F);
-  p = p * r + hn::Set(d, 0.5F);
-  p = p * r + hn::Set(d, 1.0F);
-  p = p * r + hn::Set(d, 1.0F);
-  const auto scale = hn::ShiftLeft<23>(hn::BitCast(di, shifted) + hn::Set(di, 127));
-  const V value = p * hn::BitCast(d, scale);
-  return hn::IfThenElse(t >= hn::Set(d, 87.0F), hn::Zero(d), value);
+HWY_INLINE auto to_floats(hn::Vec<Reals<double>> v) {
+  return hn::DemoteTo(Floats<double>(), v);
+}
+HWY_INLINE auto to_floats(hn::Vec<Reals<float>> v) {
+  return v;
 }
 
-/// acos(1 - u)^2 / (2 u) on 0 <= u <= 1, to 1e-8: analytic there, so a polynomial (fitted at Chebyshev nodes) does.
+/// c[0] + c[1] x + c[2] x^2 ..., by Horner's rule.
+template <class V, std::size_t n>
+HWY_INLINE V polynomial(const std::array<float, n>& c, V x) {
+  const hn::DFromV<V> d;
+  V sum = hn::Set(d, c[n - 1]);
+  for (std::size_t k = n - 1; k-- > 0;) sum = sum * x + hn::Set(d, c[k]);
+  return sum;
+}
+
+/// 2^(-y) for y >= 0, to 1e-7 of its value up to 2, and of one beyond; almost 0 from 126 on. 2^k times a polynomial
+/// (minimax, degree 6) of the rest, which is at most 1/2.
+template <class V>
+HWY_INLINE V power_of_half(V y) {
+  constexpr std::array k_coefficients{1.0F,          -0.69314721F,   0.24022652F,  -0.055503272F,
+                                      9.6179945e-3F, -1.3400432e-3F, 1.5478022e-4F};
+  const hn::DFromV<V> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const V magic = hn::Set(d, 12582912.0F);  // 1.5 * 2^23: adding to it rounds to an integer
+  const V clamped = hn::Min(y, hn::Set(d, 126.0F));
+  const V shifted = magic - clamped;
+  const V rest = clamped + (shifted - magic);
+  const auto scale = hn::ShiftLeft<23>(hn::BitCast(di, shifted) + hn::Set(di, 127));
+  return polynomial(k_coefficients, rest) * hn::BitCast(d, scale);
+}
+
+/// acos(1 - u)^2 / (2 u) on 0 <= u <= 1, to 5e-8: analytic there, so a polynomial (minimax) does.
 template <class V>
 HWY_INLINE V angle_square_ratio(V u) {
-  const hn::DFromV<V> d;
-  V p = hn::Set(d, 0.0014233762F);
-  p = p * u + hn::Set(d, -0.0031453168F);
-  p = p * u + hn::Set(d, 0.0049172384F);
-  p = p * u + hn::Set(d, -0.0007905127F);
-  p = p * u + hn::Set(d, 0.0060830568F);
-  p = p * u + hn::Set(d, 0.0140819740F);
-  p = p * u + hn::Set(d, 0.0444648293F);
-  p = p * u + hn::Set(d, 0.1666658914F);
-  p = p * u + hn::Set(d, 1.0F);
-  return p;
+  constexpr std::array k_coefficients{1.0F,          0.16667211F,   0.044337514F,   0.015079435F,
+                                      2.2322409e-3F, 7.3039218e-3F, -4.5281528e-3F, 2.6034803e-3F};
+  return polynomial(k_coefficients, u);
 }
 
 /// 0 <= v <= 2 in units: above 2, the last bit of a float is one.
@@ -67,25 +72,6 @@ HWY_INLINE auto units_of(V v) {
 }
 static_assert(k_unit == 1.0 / (1U << 22U));
 
-/// Plain and complement units of consecutive points, packed. Numbers are stored with their lower half first.
-static_assert(std::endian::native == std::endian::little);
-template <class D, class V>
-HWY_INLINE void store_packed(D d, V plain, V complement, PackedContribution* out) {
-  hn::StoreInterleaved2(plain, complement, d, reinterpret_cast<std::uint32_t*>(out));
-}
-
-/// Eight lanes of doubles at most, so that they fill a vector of floats.
-template <class Real>
-using Reals = std::conditional_t<sizeof(Real) == sizeof(double), hn::CappedTag<double, 8>, Floats>;
-
-HWY_INLINE void store_single(Reals<double> /*tag*/, hn::Vec<Reals<double>> v, float* out) {
-  const hn::Rebind<float, Reals<double>> narrow;
-  hn::Store(hn::DemoteTo(narrow, v), narrow, out);
-}
-HWY_INLINE void store_single(Floats tag, hn::Vec<Floats> v, float* out) {
-  hn::Store(v, tag, out);
-}
-
 /// Read back byte by byte: a wider load would have to wait for the store.
 template <class D, class M>
 HWY_INLINE std::uint64_t bits_of(D tag, M mask) {
@@ -93,90 +79,138 @@ HWY_INLINE std::uint64_t bits_of(D tag, M mask) {
   hn::StoreMaskBits(tag, mask, bytes.data());
   return bytes[0] | std::uint64_t{bytes[1]} << 8U;
 }
-static_assert(hn::MaxLanes(Floats()) <= 16);
+static_assert(hn::MaxLanes(hn::ScalableTag<float>()) <= 16);
 
-/// In full precision: distances and angles, and who is a member; all that is left is in single precision.
 template <class Real>
-void compute_exponents(const BlockField<Real>& field, const BlockNormals<Real>& normals,
-                       const ContributionParameters& parameters, Exponents& exponents, BlockContributions<Real>& out) {
+void find_range(const BlockField<Real>& field, BlockContributions<Real>& out) {
   const Reals<Real> d;
-  const auto all = [d](double value) { return hn::Set(d, static_cast<Real>(value)); };
-  const auto beta = all(parameters.beta);
-  const auto one = all(1.0);
-  const auto farthest = all(parameters.tolerances.distance);
-  const auto least_cosine = all(parameters.tolerances.cosine);
-  // A gradient of length zero has no direction, but must not divide.
-  const auto tiny = hn::Set(d, std::numeric_limits<Real>::min());
   auto smallest = hn::Abs(hn::Load(d, field.distance.data()));
   auto largest = smallest;
-  out.member = {};
-  out.inside = {};
   for (std::size_t i = 0; i < k_block_points; i += hn::Lanes(d)) {
-    const auto f = hn::Load(d, &field.distance[i]);
-    const auto gx = hn::Load(d, &field.gradient_x[i]);
-    const auto gy = hn::Load(d, &field.gradient_y[i]);
-    const auto gz = hn::Load(d, &field.gradient_z[i]);
-    const auto dot =
-        gx * hn::Load(d, normals.x + i) + gy * hn::Load(d, normals.y + i) + gz * hn::Load(d, normals.z + i);
-    const auto cosine = parameters.unit_gradient ? dot : dot / hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
-    const auto magnitude = hn::Abs(f);
+    const auto magnitude = hn::Abs(hn::Load(d, &field.distance[i]));
     smallest = hn::Min(smallest, magnitude);
     largest = hn::Max(largest, magnitude);
-    const auto scaled = f * beta;
-    const auto chord = hn::Max(one - hn::Abs(cosine), hn::Zero(d));
-    // Squares beyond the range of floats count as 87 in exp_negative, long before they overflow.
-    store_single(d, hn::Min(scaled * scaled, all(1e30)), &exponents.distance[i]);
-    store_single(d, hn::Min(chord, one), &exponents.angle_chord[i]);
-    store_single(d, cosine, &exponents.cosine[i]);
-    const auto is_member = hn::And(magnitude <= farthest, hn::Abs(cosine) >= least_cosine);
-    out.member[i / 64] |= bits_of(d, is_member) << (i % 64);
-    out.inside[i / 64] |= bits_of(d, f < hn::Zero(d)) << (i % 64);
   }
   out.smallest = hn::GetLane(hn::MinOfLanes(d, smallest));
   out.largest = hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// Both parts of a score with exponents of this and more, added and rounded, are zero.
-constexpr float k_silent_exponent = 17.0F;
+/// Of the gradients with the normals.
+template <class Real>
+HWY_INLINE auto cosines(const BlockField<Real>& field, const BlockNormals<Real>& normals, bool unit_gradient,
+                        std::size_t i) {
+  const Reals<Real> d;
+  const auto gx = hn::Load(d, &field.gradient_x[i]);
+  const auto gy = hn::Load(d, &field.gradient_y[i]);
+  const auto gz = hn::Load(d, &field.gradient_z[i]);
+  const auto dot = gx * hn::Load(d, normals.x + i) + gy * hn::Load(d, normals.y + i) + gz * hn::Load(d, normals.z + i);
+  if (unit_gradient) return dot;
+  // A gradient of length zero has no direction, but must not divide.
+  const auto tiny = hn::Set(d, std::numeric_limits<Real>::min());
+  return dot / hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
+}
+
+/// Scores of exp(-this) and less, added and rounded, are zero.
+constexpr double k_silent_exponent = 17.0;
+
+/// What the loop over a block need not compute.
+struct Shortcuts {
+  bool is_far;           ///< no point's distance counts
+  bool far_side_counts;  ///< see far_side_counts()
+};
+
+/// In full precision: distances and angles, and who is a member; all that is left is in single precision.
+template <Shortcuts k_shortcuts, class Real>
+void score_block(const BlockField<Real>& field, const BlockNormals<Real>& normals,
+                 const ContributionParameters& parameters, BlockContributions<Real>& out) {
+  const Reals<Real> d;
+  const Floats<Real> df;
+  const hn::RebindToUnsigned<Floats<Real>> du;
+  const auto all = [d](double value) { return hn::Set(d, static_cast<Real>(value)); };
+  const auto all_floats = [df](double value) { return hn::Set(df, static_cast<float>(value)); };
+  const auto zero = hn::Zero(df);
+  const auto farthest = all(parameters.tolerances.distance);
+  const auto least_cosine = all(parameters.tolerances.cosine);
+  const auto silent = all_floats(k_silent_exponent * std::numbers::log2e);
+  // exp(-(beta f)^2) and exp(-(gamma angle)^2) as powers of two.
+  const auto distance_scale = all(parameters.beta * std::sqrt(std::numbers::log2e));
+  const auto angle_scale = all_floats(parameters.gamma * parameters.gamma * std::numbers::log2e);
+  auto loudest = hn::Zero(du);
+  for (std::size_t w = 0; w < out.member.size(); ++w) {
+    std::uint64_t members = 0;
+    std::uint64_t inside = 0;
+    for (std::size_t k = 0; k < 64; k += hn::Lanes(d)) {
+      const std::size_t i = 64 * w + k;
+      const auto f = hn::Load(d, &field.distance[i]);
+      const auto cosine = cosines(field, normals, parameters.unit_gradient, i);
+      const auto is_member = hn::And(hn::Abs(f) <= farthest, hn::Abs(cosine) >= least_cosine);
+      members |= bits_of(d, is_member) << k;
+      inside |= bits_of(d, f < hn::Zero(d)) << k;
+      const auto chord = hn::Max(all(1.0) - hn::Abs(cosine), hn::Zero(d));
+      const auto u = to_floats(hn::Min(chord, all(1.0)));
+      // The square of an angle is at least twice its chord.
+      auto is_silent = angle_scale * (u + u) >= silent;
+      auto at_distance = zero;
+      if constexpr (!k_shortcuts.is_far) {
+        const auto scaled = f * distance_scale;
+        // Squares beyond the range of floats are clamped in power_of_half, long before they overflow.
+        const auto exponent = to_floats(hn::Min(scaled * scaled, all(1e30)));
+        is_silent = hn::And(is_silent, exponent >= silent);
+        at_distance = power_of_half(exponent);
+      }
+      if (hn::AllTrue(df, is_silent)) {
+        hn::Store(hn::Zero(du), du, &out.units.plain[i]);
+        hn::Store(hn::Zero(du), du, &out.units.complement[i]);
+        continue;
+      }
+      const auto angle_square = (u + u) * angle_square_ratio(u);
+      const auto near_side = power_of_half(angle_scale * angle_square);
+      auto far_side = zero;
+      if constexpr (k_shortcuts.far_side_counts) {
+        const auto far_angle = all_floats(std::numbers::pi) - hn::Sqrt(angle_square);
+        far_side = power_of_half(angle_scale * (far_angle * far_angle));
+      }
+      const auto near_score = units_of(at_distance + near_side);
+      const auto far_score = units_of(at_distance + far_side);
+      loudest = hn::Max(loudest, near_score);
+      const auto faces_away = hn::RebindMask(du, to_floats(cosine) < zero);
+      hn::Store(hn::IfThenElse(faces_away, far_score, near_score), du, &out.units.plain[i]);
+      hn::Store(hn::IfThenElse(faces_away, near_score, far_score), du, &out.units.complement[i]);
+    }
+    out.member[w] = members;
+    out.inside[w] = inside;
+  }
+  out.is_silent = hn::AllTrue(du, loudest == hn::Zero(du));
+}
 
 template <class Real>
 void contributions_of_block(const BlockField<Real>& field, const BlockNormals<Real>& normals,
                             const ContributionParameters& parameters, BlockContributions<Real>& out) {
-  Exponents exponents;
-  compute_exponents(field, normals, parameters, exponents, out);
-  const Floats d;
-  const auto gamma = static_cast<float>(parameters.gamma);
-  const auto gamma_square = hn::Set(d, gamma * gamma);
-  const auto pi = hn::Set(d, 3.14159265F);
-  const auto silent = hn::Set(d, k_silent_exponent);
-  const bool both_sides_count = far_side_counts(parameters.gamma);
-  const hn::RebindToUnsigned<Floats> du;
-  auto loudest = hn::Zero(du);
-  for (std::size_t i = 0; i < k_block_points; i += hn::Lanes(d)) {
-    const auto u = hn::Load(d, &exponents.angle_chord[i]);
-    const auto distance_exponent = hn::Load(d, &exponents.distance[i]);
-    // The square of an angle is at least twice its chord.
-    const auto is_silent = hn::And(distance_exponent >= silent, gamma_square * (u + u) >= silent);
-    if (hn::AllTrue(d, is_silent)) {
-      store_packed(du, hn::Zero(du), hn::Zero(du), &out.packed[i]);
-      continue;
+  find_range(field, out);
+  const double least_exponent = std::pow(static_cast<double>(out.smallest) * parameters.beta, 2);
+  const bool is_far = least_exponent >= k_silent_exponent;
+  if (far_side_counts(parameters.gamma)) {
+    if (is_far) {
+      score_block<Shortcuts{.is_far = true, .far_side_counts = true}>(field, normals, parameters, out);
+    } else {
+      score_block<Shortcuts{.is_far = false, .far_side_counts = true}>(field, normals, parameters, out);
     }
-    const auto angle_square = (u + u) * angle_square_ratio(u);
-    const auto near_side = exp_negative(gamma_square * angle_square);
-    auto far_side = hn::Zero(d);
-    if (both_sides_count) {
-      const auto far_angle = pi - hn::Sqrt(angle_square);
-      far_side = exp_negative(gamma_square * (far_angle * far_angle));
-    }
-    const auto at_distance = exp_negative(distance_exponent);
-    const auto near_score = units_of(at_distance + near_side);
-    const auto far_score = units_of(at_distance + far_side);
-    loudest = hn::Max(loudest, near_score);
-    const auto faces_away = hn::RebindMask(du, hn::Load(d, &exponents.cosine[i]) < hn::Zero(d));
-    store_packed(du, hn::IfThenElse(faces_away, far_score, near_score),
-                 hn::IfThenElse(faces_away, near_score, far_score), &out.packed[i]);
+  } else if (is_far) {
+    score_block<Shortcuts{.is_far = true, .far_side_counts = false}>(field, normals, parameters, out);
+  } else {
+    score_block<Shortcuts{.is_far = false, .far_side_counts = false}>(field, normals, parameters, out);
   }
-  out.is_silent = hn::AllTrue(du, loudest == hn::Zero(du));
+}
+
+/// Numbers are stored with their lower half first.
+static_assert(std::endian::native == std::endian::little);
+void interleave_units(const BlockUnits& first, const BlockUnits& second, PackedPairs& out) {
+  const hn::ScalableTag<std::uint32_t> d;
+  auto* const target = reinterpret_cast<std::uint32_t*>(out.of.data());
+  for (std::size_t i = 0; i < k_block_points; i += hn::Lanes(d)) {
+    hn::StoreInterleaved4(hn::Load(d, &first.plain[i]), hn::Load(d, &first.complement[i]),
+                          hn::Load(d, &second.plain[i]), hn::Load(d, &second.complement[i]), d, target + 4 * i);
+  }
 }
 
 void contributions_in_double(const BlockField<double>& field, const BlockNormals<double>& normals,
@@ -197,6 +231,7 @@ namespace cloud2csg {
 
 HWY_EXPORT(contributions_in_double);
 HWY_EXPORT(contributions_in_single);
+HWY_EXPORT(interleave_units);
 
 void compute_contributions(const BlockField<double>& field, const BlockNormals<double>& normals,
                            const ContributionParameters& parameters, BlockContributions<double>& out) {
@@ -205,6 +240,9 @@ void compute_contributions(const BlockField<double>& field, const BlockNormals<d
 void compute_contributions(const BlockField<float>& field, const BlockNormals<float>& normals,
                            const ContributionParameters& parameters, BlockContributions<float>& out) {
   HWY_DYNAMIC_DISPATCH(contributions_in_single)(field, normals, parameters, out);
+}
+void interleave(const BlockUnits& first, const BlockUnits& second, PackedPairs& out) {
+  HWY_DYNAMIC_DISPATCH(interleave_units)(first, second, out);
 }
 
 }  // namespace cloud2csg

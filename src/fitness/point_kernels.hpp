@@ -30,11 +30,23 @@ struct BlockField {
   alignas(64) std::array<Real, k_block_points> distance{}, gradient_x{}, gradient_y{}, gradient_z{};
 };
 
+/// Units of contributions, a point of a block each.
+using Units = std::array<std::uint32_t, k_block_points>;
+
+/// What a primitive contributes at the points of a block, as it is and as its complement, with the opposite gradient.
+struct BlockUnits {
+  alignas(64) Units plain{}, complement{};
+};
+
+/// What two primitives contribute at the points of a block.
+struct alignas(64) PackedPairs {
+  std::array<std::array<PackedContribution, 2>, k_block_points> of;
+};
+
 /// What a primitive contributes to E(t) at the points of a block, were it the selected one.
 template <class Real>
 struct BlockContributions {
-  /// A point each: as it is, and as its complement, with the opposite gradient.
-  alignas(64) std::array<PackedContribution, k_block_points> packed{};
+  BlockUnits units;
   bool is_silent = true;  ///< all of them are zero
   BlockMask member{};     ///< points that belong to the primitive
   BlockMask inside{};     ///< points with a negative distance
@@ -61,5 +73,8 @@ void compute_contributions(const BlockField<double>& field, const BlockNormals<d
                            const ContributionParameters& parameters, BlockContributions<double>& out);
 void compute_contributions(const BlockField<float>& field, const BlockNormals<float>& normals,
                            const ContributionParameters& parameters, BlockContributions<float>& out);
+
+/// Packs what two primitives contribute.
+void interleave(const BlockUnits& first, const BlockUnits& second, PackedPairs& out);
 
 }  // namespace cloud2csg

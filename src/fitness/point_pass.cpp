@@ -73,8 +73,12 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
                            std::span<const RankClassesRequest> requests, const PointPassOptions& options,
                            const RunContext& run) {
   const Objective scale = resolve(options.objective, cloud.size(), options.noise);
-  WorkerInput<Real> input{
-      .primitives = primitives, .parameters = {}, .cloud = cloud, .box = box, .roots = plan_roots(requests)};
+  WorkerInput<Real> input{.primitives = primitives,
+                          .parameters = {},
+                          .cloud = cloud,
+                          .box = box,
+                          .order = spatial_order(cloud.positions, box, run),
+                          .roots = plan_roots(requests)};
   link_roots(input);
   for (Primitive& primitive : input.primitives) {
     primitive.pose.position -= PointBlocks<Real>::origin(box);
@@ -85,7 +89,6 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
   }
   if (primitives.size() > k_many_primitives) {
     input.reach = reach_of(input.primitives, box, options.tolerances.distance);
-    input.order = spatial_order(cloud.positions, box, run);
   }
   return input;
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/stopwatch.hpp"
+#include "fitness/block_groups.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -197,16 +198,46 @@ class Worker {
     if (chosen.empty()) return;
     make_keys(root);
     ClassTable& table = share_.tables[k];
-    const std::span<std::uint32_t> classes = std::span(classes_).first(chosen.size());
-    table.find_or_insert(keys_, chosen, classes);
-    loud_.clear();
-    for (std::size_t place = 0; place < root.primitives.size(); ++place) {
-      const BlockContributions<Real>& contributions = active(root.primitives[place]).contributions;
-      if (!contributions.is_silent) loud_.push_back({contributions.packed.data(), place});
+    groups_.group(keys_, chosen);
+    const std::span<std::uint32_t> classes = std::span(classes_).first(groups_.size());
+    table.find_or_insert(keys_, groups_.first_points(), classes);
+    pack_loud_pairs(root);
+    add_up(chosen);
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const std::span<PackedContribution> sums = table.add_points(classes[g], groups_.count(g));
+      for (std::size_t pair = 0; pair < loud_.size(); ++pair) {
+        const std::array<PackedContribution, 2>& added = sums_[g * loud_.size() + pair];
+        sums[loud_[pair]] += added[0];
+        sums[loud_[pair] + 1] += added[1];
+      }
     }
+  }
+
+  /// The contributions of each group's points.
+  void add_up(std::span<const std::uint16_t> chosen) {
+    sums_.assign(groups_.size() * loud_.size(), {});
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-      const std::span<PackedContribution> sums = table.add_points(classes[i], 1);
-      for (const Loud& loud : loud_) sums[loud.place] += loud.contributions[chosen[i]];
+      std::array<PackedContribution, 2>* const sums = &sums_[groups_.group_of(i) * loud_.size()];
+      for (std::size_t pair = 0; pair < loud_.size(); ++pair) {
+        const std::array<PackedContribution, 2>& added = pairs_[pair].of[chosen[i]];
+        sums[pair][0] += added[0];
+        sums[pair][1] += added[1];
+      }
+    }
+  }
+
+  /// Of the root's primitives, two and two, those that contribute something in the block: their places, and what.
+  void pack_loud_pairs(const Root& root) {
+    static constexpr BlockUnits k_nothing{};
+    loud_.clear();
+    for (std::size_t place = 0; place < root.primitives.size(); place += 2) {
+      const bool has_second = place + 1 < root.primitives.size();
+      const BlockContributions<Real>& first = active(root.primitives[place]).contributions;
+      const BlockContributions<Real>& second = active(root.primitives[place + (has_second ? 1 : 0)]).contributions;
+      if (first.is_silent && second.is_silent) continue;
+      if (loud_.size() == pairs_.size()) pairs_.emplace_back();
+      interleave(first.units, has_second ? second.units : k_nothing, pairs_[loud_.size()]);
+      loud_.push_back(place);
     }
   }
 
@@ -235,12 +266,6 @@ class Worker {
     compute_hashes(keys_);
   }
 
-  /// A primitive that contributes something in the block, and its place in the root's set.
-  struct Loud {
-    const PackedContribution* contributions;
-    std::size_t place;
-  };
-
   BlockKeys keys_;
   const WorkerInput<Real>& input_;
   PointBlocks<Real> blocks_;
@@ -254,7 +279,10 @@ class Worker {
   std::vector<DistanceColumn<Real>> columns_;
   std::vector<RankColumn> ranks_;
   std::vector<const BlockMask*> members_;
-  std::vector<Loud> loud_;
+  std::vector<std::size_t> loud_;   // see pack_loud_pairs
+  std::vector<PackedPairs> pairs_;  // the first loud_.size() of them
+  BlockGroups groups_;
+  std::vector<std::array<PackedContribution, 2>> sums_;  // by group and loud pair
   std::array<std::uint16_t, k_block_points> places_{};
   std::array<std::uint32_t, k_block_points> classes_{};
   WorkerShare share_;

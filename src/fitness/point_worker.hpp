@@ -13,13 +13,13 @@ struct WorkerInput {
   PrimitiveSet primitives;                         ///< in the frame of the blocks
   std::vector<ContributionParameters> parameters;  ///< by primitive
   const PointCloud& cloud;
-  AlignedBox box;  ///< of the cloud
+  AlignedBox box;                    ///< of the cloud
+  std::vector<std::uint32_t> order;  ///< of the points: see spatial_order()
   std::vector<Root> roots;
   std::vector<std::vector<std::uint32_t>> roots_of = {};  ///< by primitive: those that it is an owner of
   std::vector<std::uint32_t> roots_of_all_points = {};
   /// For many primitives; for few, empty, and all are looked at everywhere.
-  std::vector<AlignedBox> reach = {};     ///< by primitive, in the frame of the blocks: where points may belong to it
-  std::vector<std::uint32_t> order = {};  ///< of the points: see PointBlocks
+  std::vector<AlignedBox> reach = {};  ///< by primitive, in the frame of the blocks: where points may belong to it
 };
 
 /// What a worker gathers from its share of the points; shares are added up at the end.

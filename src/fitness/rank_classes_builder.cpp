@@ -12,22 +12,28 @@ template <class Rank>
 void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, const ClassTable& classes) {
   const std::size_t n = result.primitive_count();
   const KeyLayout layout(n);
-  const std::size_t row = 2 * n + 1;
+  std::vector<KeyLayout::Place> places;
+  places.reserve(n);
+  for (std::size_t p = 0; p < n; ++p) places.push_back(layout.place_of(p));
   ranks.assign(n * result.padded_count_, Rank{0});
-  const std::uint32_t mask = (std::uint32_t{1} << layout.bits) - 1;
   for (std::size_t c = 0; c < classes.size(); ++c) {
     const std::span<const std::uint32_t> key = classes.key(c);
-    float* const scores = &result.scores_[c * row];
+    float* const scores = &result.scores_[c * (2 * n + 1)];
+    std::int64_t bound = 0;
     for (std::size_t p = 0; p < n; ++p) {
-      const auto code = static_cast<std::size_t>(key[layout.word_of(p)] >> layout.shift_of(p) & mask);
+      const std::size_t code = places[p].code_in(key);
       const int rank = static_cast<int>(code) - static_cast<int>(n);
       ranks[p * result.padded_count_ + c] = static_cast<Rank>(rank);
       const WideContribution sum = classes.sum(c, p);
-      scores[code] = static_cast<float>(static_cast<double>(sum.plain) * k_unit);
-      scores[2 * n - code] = static_cast<float>(static_cast<double>(sum.complement) * k_unit);
+      // Signed numbers are converted at once.
+      const auto plain = static_cast<std::int64_t>(sum.plain);
+      const auto complement = static_cast<std::int64_t>(sum.complement);
+      scores[code] = static_cast<float>(static_cast<double>(plain) * k_unit);
+      scores[2 * n - code] = static_cast<float>(static_cast<double>(complement) * k_unit);
+      bound = std::max({bound, plain, complement});
       if (std::abs(rank) == 1) result.nearest_[c] = static_cast<std::uint16_t>(p);
     }
-    result.bounds_[c] = *std::max_element(scores, scores + row);
+    result.bounds_[c] = static_cast<float>(static_cast<double>(bound) * k_unit);
     result.geometry_bound_ += static_cast<double>(result.bounds_[c]);
   }
 }

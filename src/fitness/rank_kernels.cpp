@@ -16,27 +16,48 @@
 #define CLOUD2CSG_FITNESS_RIVALS
 namespace cloud2csg {
 
-/// How a primitive stands among the others of a block.
+/// How each primitive of a block stands among the others. Of two, where their ranges overlap, one is nearer here and
+/// the other there; else one is nearer at every point.
 template <class Real>
-struct Standing {
-  int certain_rank = 1;                     ///< one more than how many are nearer at every point
-  std::vector<const Real*> earlier, later;  ///< distances of those of smaller and of larger index that are sometimes
-};
-
-template <class Real>
-void place(std::span<const DistanceColumn<Real>> primitives, std::size_t p, Standing<Real>& standing) {
-  standing.certain_rank = 1;
-  standing.earlier.clear();
-  standing.later.clear();
-  for (std::size_t q = 0; q < primitives.size(); ++q) {
-    if (q == p || primitives[q].smallest > primitives[p].largest) continue;
-    if (primitives[q].largest < primitives[p].smallest) {
-      ++standing.certain_rank;
-    } else {
-      (q < p ? standing.earlier : standing.later).push_back(primitives[q].distances);
+class Standings {
+ public:
+  explicit Standings(std::span<const DistanceColumn<Real>> primitives)
+      : rivals_(primitives.size() * primitives.size()), counts_(primitives.size()) {
+    for (std::size_t q = 1; q < primitives.size(); ++q) {
+      for (std::size_t p = 0; p < q; ++p) {
+        if (primitives[p].largest < primitives[q].smallest) {
+          ++counts_[q].always_nearer;
+        } else if (primitives[q].largest < primitives[p].smallest) {
+          ++counts_[p].always_nearer;
+        } else {
+          row(q)[counts_[q].earlier++] = primitives[p].distances;
+          row(p)[counts_.size() - ++counts_[p].later] = primitives[q].distances;
+        }
+      }
     }
   }
-}
+
+  /// One more than how many are nearer at every point.
+  [[nodiscard]] int certain_rank(std::size_t p) const { return 1 + counts_[p].always_nearer; }
+  /// Distances of those of smaller, and of larger index that are sometimes nearer.
+  [[nodiscard]] std::span<const Real* const> earlier(std::size_t p) const { return row(p).first(counts_[p].earlier); }
+  [[nodiscard]] std::span<const Real* const> later(std::size_t p) const { return row(p).last(counts_[p].later); }
+
+ private:
+  struct Counts {
+    int always_nearer = 0;
+    std::uint32_t earlier = 0, later = 0;
+  };
+  [[nodiscard]] std::span<const Real*> row(std::size_t p) {
+    return std::span(rivals_).subspan(p * counts_.size(), counts_.size());
+  }
+  [[nodiscard]] std::span<const Real* const> row(std::size_t p) const {
+    return std::span(rivals_).subspan(p * counts_.size(), counts_.size());
+  }
+
+  std::vector<const Real*> rivals_;  // by primitive: the earlier from the front, the later from the back
+  std::vector<Counts> counts_;
+};
 
 }  // namespace cloud2csg
 #endif
@@ -62,19 +83,19 @@ HWY_INLINE void store_narrowed(hn::ScalableTag<double> d, hn::Vec<hn::ScalableTa
 }
 
 template <class Real>
-void rank_one(const Real* distances, const Standing<Real>& standing, RankColumn& out) {
+void rank_one(const Real* distances, const Standings<Real>& standings, std::size_t p, RankColumn& out) {
   const hn::ScalableTag<Real> d;
   const auto one = hn::Set(d, Real{1});
-  const auto certain_rank = hn::Set(d, static_cast<Real>(standing.certain_rank));
+  const auto certain_rank = hn::Set(d, static_cast<Real>(standings.certain_rank(p)));
   for (std::size_t i = 0; i < k_block_points; i += hn::Lanes(d)) {
     const auto distance = hn::Load(d, distances + i);
     const auto magnitude = hn::Abs(distance);
     auto rank = certain_rank;
     // Ties by index: of equal magnitudes, those with a smaller index come before.
-    for (const Real* other : standing.earlier) {
+    for (const Real* other : standings.earlier(p)) {
       rank = rank + hn::IfThenElseZero(hn::Abs(hn::Load(d, other + i)) <= magnitude, one);
     }
-    for (const Real* other : standing.later) {
+    for (const Real* other : standings.later(p)) {
       rank = rank + hn::IfThenElseZero(hn::Abs(hn::Load(d, other + i)) < magnitude, one);
     }
     store_narrowed(d, hn::IfThenElse(distance < hn::Zero(d), hn::Neg(rank), rank), &out.ranks[i]);
@@ -83,11 +104,8 @@ void rank_one(const Real* distances, const Standing<Real>& standing, RankColumn&
 
 template <class Real>
 void rank_all(std::span<const DistanceColumn<Real>> primitives, std::span<RankColumn> out) {
-  Standing<Real> standing;
-  for (std::size_t p = 0; p < primitives.size(); ++p) {
-    place(primitives, p, standing);
-    rank_one(primitives[p].distances, standing, out[p]);
-  }
+  const Standings<Real> standings(primitives);
+  for (std::size_t p = 0; p < primitives.size(); ++p) rank_one(primitives[p].distances, standings, p, out[p]);
 }
 
 void rank_doubles(std::span<const DistanceColumn<double>> primitives, std::span<RankColumn> out) {

@@ -43,6 +43,15 @@ struct KeyLayout {
   [[nodiscard]] std::uint32_t shift_of(std::size_t primitive) const {
     return static_cast<std::uint32_t>(primitive) % codes_per_word * bits;
   }
+
+  /// Where a primitive's code is in a key, worked out once for many keys.
+  struct Place {
+    std::uint32_t word, shift, mask;
+    [[nodiscard]] std::uint32_t code_in(std::span<const std::uint32_t> key) const { return key[word] >> shift & mask; }
+  };
+  [[nodiscard]] Place place_of(std::size_t primitive) const {
+    return {word_of(primitive), shift_of(primitive), (std::uint32_t{1} << bits) - 1};
+  }
 };
 
 /// Keys of the points of a block.

@@ -84,12 +84,10 @@ class Projection {
     count_ = 0;
   }
 
-  void decode(std::size_t place, RankColumn& out) const {
-    const std::uint32_t word = root_layout_.word_of(place);
-    const std::uint32_t shift = root_layout_.shift_of(place);
-    const std::uint32_t mask = (std::uint32_t{1} << root_layout_.bits) - 1;
+  void decode(std::size_t primitive, RankColumn& out) const {
+    const KeyLayout::Place place = root_layout_.place_of(primitive);
     for (std::size_t i = 0; i < count_; ++i) {
-      const std::uint32_t code = from_.key(chosen_[i])[word] >> shift & mask;
+      const std::uint32_t code = place.code_in(from_.key(chosen_[i]));
       out.ranks[i] = static_cast<std::int8_t>(static_cast<int>(code) - static_cast<int>(root_size_));
     }
   }
@@ -144,13 +142,11 @@ std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
 
 std::vector<std::uint32_t> inside_words(const Root& root, const ClassTable& classes) {
   const KeyLayout layout = root.layout();
-  const std::uint32_t mask = (std::uint32_t{1} << layout.bits) - 1;
   std::vector<std::uint32_t> words(classes.size(), 0);
-  for (std::size_t c = 0; c < classes.size(); ++c) {
-    const std::span<const std::uint32_t> key = classes.key(c);
-    for (std::size_t place = 0; place < root.primitives.size(); ++place) {
-      const std::uint32_t code = key[layout.word_of(place)] >> layout.shift_of(place) & mask;
-      words[c] |= std::uint32_t{code < root.primitives.size()} << place;
+  for (std::size_t k = 0; k < root.primitives.size(); ++k) {
+    const KeyLayout::Place place = layout.place_of(k);
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+      words[c] |= std::uint32_t{place.code_in(classes.key(c)) < root.primitives.size()} << k;
     }
   }
   return words;

@@ -256,11 +256,11 @@ void expect_point_scores(std::uint64_t seed, double tolerance, double least_gamm
     compute_contributions(block.field, block.normals(), parameters, out);
     bool is_silent = true;
     for (std::size_t i = 0; i < k_block_points; ++i) {
-      RC_ASSERT(std::abs(k_unit * static_cast<double>(plain_units(out.packed[i])) - score_of(block, i, 1, objective)) <=
+      RC_ASSERT(std::abs(k_unit * static_cast<double>(out.units.plain[i]) - score_of(block, i, 1, objective)) <=
                 allowed);
-      RC_ASSERT(std::abs(k_unit * static_cast<double>(complement_units(out.packed[i])) -
-                         score_of(block, i, -1, objective)) <= allowed);
-      is_silent = is_silent && out.packed[i] == 0;
+      RC_ASSERT(std::abs(k_unit * static_cast<double>(out.units.complement[i]) - score_of(block, i, -1, objective)) <=
+                allowed);
+      is_silent = is_silent && out.units.plain[i] == 0 && out.units.complement[i] == 0;
       RC_ASSERT(std::abs(block.field.distance[i]) >= out.smallest && std::abs(block.field.distance[i]) <= out.largest);
     }
     RC_ASSERT(out.is_silent == is_silent);
@@ -284,7 +284,7 @@ void expect_same_bits(std::uint64_t seed) {
     const test::ForcedTarget forced(target);
     BlockContributions<Real> out;
     compute_contributions(block.field, block.normals(), parameters, out);
-    RC_ASSERT(out.packed == expected.packed);
+    RC_ASSERT(out.units.plain == expected.units.plain && out.units.complement == expected.units.complement);
     RC_ASSERT(out.member == expected.member);
     RC_ASSERT(out.smallest == expected.smallest && out.largest == expected.largest);
   }
@@ -301,9 +301,29 @@ RC_GTEST_PROP(Contributions, OfManyPointsFitTheHalvesOfASum, (std::uint64_t seed
   const Block<double> block = random_block<double>(true, random);
   compute_contributions(block.field, block.normals(), random_parameters(true, random), out);
   constexpr std::uint64_t k_largest_sum = 0xffff'ffff;
-  for (const PackedContribution packed : out.packed) {
-    RC_ASSERT(plain_units(packed) * k_most_packed_points <= k_largest_sum);
-    RC_ASSERT(complement_units(packed) * k_most_packed_points <= k_largest_sum);
+  for (std::size_t i = 0; i < k_block_points; ++i) {
+    RC_ASSERT(std::uint64_t{out.units.plain[i]} * k_most_packed_points <= k_largest_sum);
+    RC_ASSERT(std::uint64_t{out.units.complement[i]} * k_most_packed_points <= k_largest_sum);
+  }
+}
+
+RC_GTEST_PROP(Contributions, OfTwoPrimitivesInterleaveOnEveryInstructionSet, (std::uint64_t seed)) {
+  RandomStream random(seed);
+  std::array<BlockUnits, 2> of;
+  for (BlockUnits& units : of) {
+    for (std::uint32_t& unit : units.plain) unit = random.below(1U << 24U);
+    for (std::uint32_t& unit : units.complement) unit = random.below(1U << 24U);
+  }
+  for (const std::int64_t target : test::all_targets()) {
+    const test::ForcedTarget forced(target);
+    PackedPairs pairs;
+    interleave(of[0], of[1], pairs);
+    for (std::size_t i = 0; i < k_block_points; ++i) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        RC_ASSERT(plain_units(pairs.of[i][k]) == of[k].plain[i]);
+        RC_ASSERT(complement_units(pairs.of[i][k]) == of[k].complement[i]);
+      }
+    }
   }
 }
 

@@ -16,20 +16,9 @@
 /// score on them.
 namespace cloud2csg::test {
 
-/// The points in the order in which strides are counted: along one curve of primitives so many that only near ones are
-/// looked at, else along one in each chunk.
+/// The points in the order in which strides are counted.
 inline std::vector<std::uint32_t> order_of_points(const Scene& scene) {
-  const AlignedBox box = bounds_of(scene.cloud.positions);
-  if (scene.primitives.size() > k_many_primitives) return spatial_order(scene.cloud.positions, box);
-  std::vector<std::uint32_t> order(scene.cloud.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const MortonCurve curve(box, k_chunk_curve_bits);
-  const auto key = [&](std::uint32_t i) {
-    const Eigen::Vector3d position = scene.cloud.positions[i];
-    return std::pair(i / k_chunk_points, curve.cell_of(position.x(), position.y(), position.z()));
-  };
-  std::ranges::stable_sort(order, std::less(), key);
-  return order;
+  return spatial_order(scene.cloud.positions, bounds_of(scene.cloud.positions));
 }
 
 /// The plain segmentation and membership of a scene's points, to choose those of many requests.
