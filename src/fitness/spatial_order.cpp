@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -66,8 +65,8 @@ class CellSort {
         digits_(digits),
         parts_(std::clamp<std::size_t>(count / k_least_part, 1, static_cast<std::size_t>(usable_threads(run)))),
         places_(parts_),
-        keys_(std::make_unique_for_overwrite<Key[]>(count)),
-        sorted_(std::make_unique_for_overwrite<Key[]>(count)) {}
+        keys_(count),
+        sorted_(count) {}
 
   template <class CellOf>
   std::vector<std::uint32_t> order_by(const CellOf& cell_of) {
@@ -134,7 +133,7 @@ class CellSort {
   int digits_;
   std::size_t parts_;
   std::vector<std::vector<std::uint32_t>> places_;  // by part and digit: counts, then where the next one goes
-  std::unique_ptr<Key[]> keys_, sorted_;
+  std::vector<Key> keys_, sorted_;
 };
 
 }  // namespace

@@ -53,6 +53,7 @@ std::vector<DistanceColumn<Real>> bounded(const std::vector<Column<Real>>& colum
 template <class Real>
 AlignedVector<std::uint32_t> keys_by_sorting(const std::vector<Column<Real>>& columns, const KeyLayout& layout) {
   std::vector<const Real*> pointers;
+  pointers.reserve(columns.size());
   for (const Column<Real>& column : columns) pointers.push_back(column.values.data());
   BlockKeys keys(layout.words);
   sort_rank_keys(pointers, layout, keys);
