@@ -2,6 +2,7 @@
 
 #include <boost/align/aligned_allocator.hpp>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -110,6 +111,8 @@ struct RankClassesRequest {
   /// Not those inside a primitive that is not in the set (beyond the paper): there the set does not tell the whole, and
   /// no tree over it can explain, say, the part of a bore that lies in another block.
   bool without_strangers = false;
+  /// Only points at or above the box's minimum and below its maximum: boxes side by side share none.
+  std::optional<AlignedBox> region = {};
 };
 
 /// In which precision distances and angles are computed. Ranks follow from them; sums are exact in any case.

@@ -79,6 +79,9 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
                           .box = box,
                           .order = spatial_order(cloud.positions, box, run),
                           .roots = plan_roots(requests)};
+  for (Root& root : input.roots) {
+    if (root.region) root.region->translate(-PointBlocks<Real>::origin(box));
+  }
   link_roots(input);
   for (Primitive& primitive : input.primitives) {
     primitive.pose.position -= PointBlocks<Real>::origin(box);

@@ -51,7 +51,9 @@ class Worker {
       : input_(input),
         blocks_(input.cloud, input.box, input.order),
         slot_of_(input.primitives.size(), k_none),
-        is_wanted_(input.roots.size(), false) {
+        is_wanted_(input.roots.size(), false),
+        looks_at_bounds_(!input.reach.empty() ||
+                         std::ranges::any_of(input.roots, [](const Root& root) { return root.region.has_value(); })) {
     share_.points_of_primitive.resize(input.primitives.size());
     std::size_t most_primitives = 0;
     for (const Root& root : input.roots) {
@@ -99,9 +101,9 @@ class Worker {
 
   /// Finds out which points of the block belong to which primitives.
   void segment(std::size_t block) {
-    const AlignedBox box = input_.reach.empty() ? AlignedBox() : blocks_.bounds(block);
+    if (looks_at_bounds_) bounds_ = blocks_.bounds(block);
     for (const PrimitiveIndex p : near_chunk_) {
-      if (input_.reach.empty() || input_.reach[p].intersects(box)) evaluate(p, block);
+      if (input_.reach.empty() || input_.reach[p].intersects(bounds_)) evaluate(p, block);
     }
     const BlockMask in_block = first_bits(blocks_.size(block));
     BlockMask assigned{};
@@ -145,7 +147,8 @@ class Worker {
     for (std::size_t slot = 0; slot < segmented_count_; ++slot) {
       if (!active_[slot].has_members) continue;
       for (const std::uint32_t k : input_.roots_of[active_[slot].primitive]) {
-        if (!is_wanted_[k]) wanted_.push_back(k);
+        if (is_wanted_[k] || (input_.roots[k].region && !input_.roots[k].region->intersects(bounds_))) continue;
+        wanted_.push_back(k);
         is_wanted_[k] = true;
       }
     }
@@ -159,6 +162,7 @@ class Worker {
   /// Those of owners that are not active have no points here.
   [[nodiscard]] BlockMask points_of(const Root& root, std::size_t block, std::size_t begin) const {
     BlockMask chosen = every_kth(begin, blocks_.size(block), root.stride);
+    if (root.region && !root.region->contains(bounds_)) keep_to(*root.region, block, chosen);
     if (root.without_strangers) leave_out_strangers(root, chosen);
     if (root.all_points) return chosen;
     BlockMask any{};
@@ -169,6 +173,17 @@ class Worker {
     }
     for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= any[w];
     return chosen;
+  }
+
+  /// Takes out the points that are not in the region, as RankClassesRequest::region says.
+  void keep_to(const AlignedBox& region, std::size_t block, BlockMask& chosen) const {
+    const BasicPointsView<Real> points = blocks_.positions(block);
+    const Eigen::Array<Real, 3, 1> least = region.min().template cast<Real>().array();
+    const Eigen::Array<Real, 3, 1> most = region.max().template cast<Real>().array();
+    for (std::size_t i = 0; i < k_block_points; ++i) {
+      const Eigen::Array<Real, 3, 1> point(points.x[i], points.y[i], points.z[i]);
+      if ((point < least || point >= most).any()) chosen[i / 64] &= ~(std::uint64_t{1} << (i % 64));
+    }
   }
 
   /// Takes out the points inside a primitive that is not of the root. Of those that are not active, none is.
@@ -276,6 +291,8 @@ class Worker {
   std::vector<std::uint32_t> slot_of_;  // by primitive: its place among the active, or k_none
   std::vector<std::uint32_t> wanted_;   // roots that take points of the block
   std::vector<bool> is_wanted_;         // by root
+  bool looks_at_bounds_;
+  AlignedBox bounds_;  // of the block, if they are looked at
   std::vector<DistanceColumn<Real>> columns_;
   std::vector<RankColumn> ranks_;
   std::vector<const BlockMask*> members_;

@@ -13,9 +13,9 @@ struct WorkerInput {
   PrimitiveSet primitives;                         ///< in the frame of the blocks
   std::vector<ContributionParameters> parameters;  ///< by primitive
   const PointCloud& cloud;
-  AlignedBox box;                    ///< of the cloud
-  std::vector<std::uint32_t> order;  ///< of the points: see spatial_order()
-  std::vector<Root> roots;
+  AlignedBox box;                                         ///< of the cloud
+  std::vector<std::uint32_t> order;                       ///< of the points: see spatial_order()
+  std::vector<Root> roots;                                ///< their regions in the frame of the blocks
   std::vector<std::vector<std::uint32_t>> roots_of = {};  ///< by primitive: those that it is an owner of
   std::vector<std::uint32_t> roots_of_all_points = {};
   /// For many primitives; for few, empty, and all are looked at everywhere.

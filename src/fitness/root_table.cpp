@@ -15,10 +15,14 @@ const std::vector<PrimitiveIndex>& owners_of(const RankClassesRequest& request) 
   return request.owners.empty() ? request.primitives : request.owners;
 }
 
+bool are_same(const std::optional<AlignedBox>& a, const std::optional<AlignedBox>& b) {
+  return a && b ? a->min() == b->min() && a->max() == b->max() : !a && !b;
+}
+
 /// Whether the root may be grouped by for the request as well.
 bool can_answer(const Root& root, const RankClassesRequest& request) {
   return root.primitives.size() <= RankClasses::k_shared_limit && root.stride == request.stride &&
-         root.without_strangers == request.without_strangers &&
+         root.without_strangers == request.without_strangers && are_same(root.region, request.region) &&
          std::ranges::includes(root.primitives, request.primitives) &&
          std::ranges::includes(root.owners, owners_of(request));
 }
@@ -130,7 +134,8 @@ std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
       roots.push_back({.primitives = request.primitives,
                        .owners = owners_of(request),
                        .stride = request.stride,
-                       .without_strangers = request.without_strangers});
+                       .without_strangers = request.without_strangers,
+                       .region = request.region});
       for (const PrimitiveIndex p : request.primitives) roots_with[p].push_back(r);
     }
     roots[r].all_points = roots[r].all_points || request.all_points;

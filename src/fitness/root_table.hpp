@@ -17,6 +17,7 @@ struct Root {
   std::size_t stride = 1;                  ///< every k-th point
   bool all_points = false;                 ///< also those that belong to none of the owners
   bool without_strangers = false;          ///< not those inside of a primitive that is not in the set
+  std::optional<AlignedBox> region = {};   ///< only the points in it
   bool has_member_word = false;            ///< whether keys end with a word that tells to whom the points belong
   std::vector<std::size_t> requests = {};  ///< that are answered from it
 

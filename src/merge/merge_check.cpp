@@ -22,6 +22,43 @@ bool is_judged(const MergeWindow& window, PrimitiveIndex p) {
   return window.judged.value_or(p) == p;
 }
 
+/// The cliques with primitives that are judged in the window, where the window has all of their primitives; without any
+/// such, one.
+std::set<std::size_t> cliques_seen(const MergeWindow& window, std::span<const Clique> cliques,
+                                   std::span<const std::vector<std::size_t>> cliques_with) {
+  std::set<std::size_t> seen;
+  std::optional<std::size_t> other;
+  for (const PrimitiveIndex p : window.primitives) {
+    if (!is_judged(window, p)) continue;
+    for (const std::size_t k : cliques_with[p]) {
+      if (std::ranges::includes(window.primitives, cliques[k])) {
+        seen.insert(k);
+      } else {
+        other = k;
+      }
+    }
+  }
+  if (seen.empty() && other) seen.insert(*other);
+  return seen;
+}
+
+/// The best that trees of partitions with each of the window's primitives score on the points nearest to it.
+std::vector<double> promises_in(const MergeWindow& window, std::span<const Clique> cliques,
+                                std::span<const CsgTree> trees,
+                                std::span<const std::vector<std::size_t>> cliques_with) {
+  std::vector<double> promises(window.primitives.size(), 0.0);
+  for (const std::size_t k : cliques_seen(window, cliques, cliques_with)) {
+    const std::vector<double> scores = scores_in(window, restrict_to(trees[k], window.primitives));
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      const PrimitiveIndex p = window.primitives[i];
+      if (is_judged(window, p) && std::ranges::binary_search(cliques[k], p)) {
+        promises[i] = std::max(promises[i], scores[i]);
+      }
+    }
+  }
+  return promises;
+}
+
 }  // namespace
 
 MergeCheck::MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha,
@@ -32,22 +69,12 @@ MergeCheck::MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives,
   for (std::size_t k = 0; k < cliques.size(); ++k) {
     for (const PrimitiveIndex p : cliques[k]) cliques_with[p].push_back(k);
   }
-  // Each window promises for primitives of its own, so that windows may be looked at side by side.
-  for_each_index_in_arena(windows_.size(), run_, [&](std::size_t w) {
-    const MergeWindow& window = windows_[w];
-    std::set<std::size_t> seen;
-    for (const PrimitiveIndex p : window.primitives) {
-      if (is_judged(window, p)) seen.insert(cliques_with[p].begin(), cliques_with[p].end());
-    }
-    for (const std::size_t k : seen) {
-      const std::vector<double> scores = scores_in(window, trees[k]);
-      for (std::size_t i = 0; i < scores.size(); ++i) {
-        const PrimitiveIndex p = window.primitives[i];
-        const bool is_of_clique = std::ranges::binary_search(cliques[k], p);
-        if (is_of_clique && is_judged(window, p)) promised_[p] = std::max(promised_[p], scores[i]);
-      }
-    }
-  });
+  std::vector<std::vector<double>> promises(windows_.size());
+  for_each_index_in_arena(windows_.size(), run_,
+                          [&](std::size_t w) { promises[w] = promises_in(windows_[w], cliques, trees, cliques_with); });
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    for (std::size_t i = 0; i < promises[w].size(); ++i) promised_[windows_[w].primitives[i]] += promises[w][i];
+  }
 }
 
 MergeCheck::Verdict MergeCheck::judge(const CsgTree& merged) const {

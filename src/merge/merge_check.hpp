@@ -10,7 +10,7 @@
 namespace cloud2csg {
 
 /// Points of a component with the primitives that tell what any tree is at them: the whole component, or, where that is
-/// too large for a table, the points of one primitive with it and all that overlap it.
+/// too large for a table, the points of one primitive, or some of them, with it and all that overlap it near them.
 struct MergeWindow {
   const RankClasses* table;
   std::vector<PrimitiveIndex> primitives;     ///< by local index of the table: index in the component; ascending
@@ -25,9 +25,9 @@ struct MergeWindow {
 class MergeCheck {
  public:
   /// `cliques` and `trees` belong together; they index the component's `primitives`. What less than `alpha`, the cost
-  /// of a node, tells is taken for noise. A primitive is judged in one window. Works on the threads of the task arena
-  /// that the caller is in, unless run.threads == 1. The windows' tables must outlive this. O(sum over the cliques of
-  /// their windows' classes).
+  /// of a node, tells is taken for noise. A primitive is judged in all windows together that share no point. Works on
+  /// the threads of the task arena that the caller is in, unless run.threads == 1. The windows' tables must outlive
+  /// this. O(sum over the cliques of their windows' classes).
   MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha, std::span<const Clique> cliques,
              std::span<const CsgTree> trees, RunContext run = {.threads = 1});
 

@@ -13,7 +13,7 @@ namespace cloud2csg {
 /// A connected component of the overlap graph with the trees of its partitions; all indices are the component's.
 struct Component {
   std::size_t primitives = 0;             ///< how many
-  std::vector<MergeWindow> windows = {};  ///< one over all primitives, or one for each
+  std::vector<MergeWindow> windows = {};  ///< one over all primitives, or some for each
   double alpha = 0;                       ///< cost of a node
   std::vector<Clique> cliques = {};
   std::vector<CsgTree> trees = {};  ///< one a clique
@@ -22,8 +22,9 @@ struct Component {
 /// Finds the tree of a set of primitives from the points that belong to them; component's indices in and out.
 using SolveJointly = std::function<CsgTree(const Clique&)>;
 
-/// Components of up to so many primitives have one window, and may be searched as a whole. Larger ones have one for
-/// each primitive: the points that belong to it, with all that overlaps it.
+/// Components of up to so many primitives have one window, and may be searched as a whole. Larger ones have
+/// them for each primitive: the points that belong to it, with all that overlaps it; where that is many, in regions
+/// that few of them reach into.
 inline constexpr std::size_t k_whole_limit = RankClasses::k_shared_limit;
 
 /// A merged tree passes when no primitive's surface loses more than this share of what its partitions reached. Trees

@@ -70,10 +70,10 @@ std::vector<PrimitiveIndex> local_indices(std::span<const PrimitiveIndex> member
 
 class Extractor {
  public:
-  /// `run` holds for all; the search, which always has a tree to give, also stops on `search_stop`.
+  /// `run` holds for all; the search, which always has a tree to give, also stops at the limit.
   Extractor(const PointCloud& cloud, const PrimitiveSet& input, const ExtractOptions& options, const RunContext& run,
-            std::stop_token search_stop)
-      : cloud_(cloud), input_(input), options_(options), run_(run), search_stop_(std::move(search_stop)) {
+            const TimeLimit& limit)
+      : cloud_(cloud), input_(input), options_(options), run_(run), limit_(limit) {
     options_.search.seed = options.seed;
   }
 
@@ -87,6 +87,7 @@ class Extractor {
     statistics_.primitives = input_.size();
     const RunContext pass_run = with_threads(options_.parallel == Parallel::none ? 1 : run_.threads);
     prepared_ = prepare(cloud_, input_, options_, pass_run, statistics_);
+    limit_.enforce();
     solve_partitions();
     const CsgTree tree = simplified(merge_components());
     statistics_.seconds.extraction = total.lap();
@@ -108,7 +109,7 @@ class Extractor {
     RunContext run = with_threads(over_population ? run_.threads : 1);
     // Of several searches at once, those that have ended are counted; a single one tells its generations.
     if (prepared_.partitions.size() > 1) run.on_progress = {};
-    run.stop = search_stop_;
+    run.stop = limit_.token();
     return run;
   }
 
@@ -181,13 +182,12 @@ class Extractor {
       for (const PrimitiveIndex p : prepared_.partitions[k]) clique.push_back(local[p]);
       component.trees.push_back(renumber(evolutions_[k].tree, clique));
     }
-    const bool is_whole = partitions.size() == 1 || primitives.size() <= k_whole_limit;
     std::size_t points = 0;
-    for (std::size_t w = 0; w < (is_whole ? 1 : primitives.size()); ++w) {
-      const RankClasses& table = prepared_.pass.tables[prepared_.first_window[c] + w];
-      MergeWindow& window = component.windows.emplace_back(MergeWindow{.table = &table, .primitives = {}});
+    for (const TableWindow& from : prepared_.windows_of[c]) {
+      const RankClasses& table = prepared_.pass.tables[from.table];
+      MergeWindow& window =
+          component.windows.emplace_back(MergeWindow{.table = &table, .primitives = {}, .judged = from.judged});
       for (const PrimitiveIndex p : table.primitives()) window.primitives.push_back(local[p]);
-      if (!is_whole) window.judged = static_cast<PrimitiveIndex>(w);
       points += table.point_count();
     }
     component.alpha = resolve(options_.objective, points, prepared_.noise).alpha;
@@ -266,7 +266,7 @@ class Extractor {
   const PrimitiveSet& input_;
   ExtractOptions options_;
   const RunContext& run_;
-  std::stop_token search_stop_;
+  const TimeLimit& limit_;
   ExtractStatistics statistics_;
   Preparation prepared_;
   std::vector<Evolution> evolutions_;
@@ -287,7 +287,7 @@ Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives, 
   RunContext inner = run;
   inner.threads = run.threads > 0 ? run.threads : usable_threads(run);
   oneapi::tbb::task_arena arena(usable_threads(run));
-  return arena.execute([&] { return Extractor(cloud, primitives, options, inner, limit.token()).extract(); });
+  return arena.execute([&] { return Extractor(cloud, primitives, options, inner, limit).extract(); });
 }
 
 }  // namespace cloud2csg

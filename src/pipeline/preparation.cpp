@@ -8,6 +8,7 @@
 #include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
 #include "pipeline/component.hpp"
+#include "pipeline/regions.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -35,13 +36,6 @@ std::vector<std::optional<OrientedBox>> extents_of_unbounded(const PointCloud& c
         OrientedBox{.pose = compose(primitive.pose, {.position = local.center()}), .half_size = local.sizes() / 2};
   }
   return extents;
-}
-
-/// A primitive and all that overlap it, ascending.
-std::vector<PrimitiveIndex> closed_neighbourhood(const OverlapGraph& graph, PrimitiveIndex p) {
-  std::vector<PrimitiveIndex> set = graph.neighbours[p];
-  set.insert(std::ranges::upper_bound(set, p), p);
-  return set;
 }
 
 void build_partitions(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,
@@ -92,30 +86,87 @@ void build_partitions(const PointCloud& cloud, const ExtractOptions& options, co
   seconds.partition += watch.lap();
 }
 
-/// One table a partition, and for each component of several partitions those of its windows.
-std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, const ExtractOptions& options,
-                                             Preparation& preparation) {
-  std::vector<RankClassesRequest> requests;
-  const auto request = [&](const std::vector<PrimitiveIndex>& primitives, std::vector<PrimitiveIndex> owners) {
-    requests.push_back({.primitives = primitives,
-                        .owners = std::move(owners),
-                        .stride = stride_for(primitives.size(), cloud.size()),
-                        .without_strangers = options.without_strangers});
-  };
-  for (const Clique& partition : preparation.partitions) request(partition, {});
-  preparation.first_window.clear();
-  for (std::size_t c = 0; c < preparation.components.size(); ++c) {
-    const std::vector<PrimitiveIndex>& component = preparation.components[c];
-    const bool is_one_partition = preparation.partitions_of[c].size() == 1;
-    preparation.first_window.push_back(is_one_partition ? preparation.partitions_of[c].front() : requests.size());
-    if (is_one_partition) continue;
-    if (component.size() <= k_whole_limit) {
-      request(component, {});
-    } else {
-      for (const PrimitiveIndex p : component) request(closed_neighbourhood(preparation.graph, p), {p});
+/// The tables that the search and the merge need.
+class Requests {
+ public:
+  Requests(const PointCloud& cloud, const ExtractOptions& options, const Preparation& preparation)
+      : cloud_(cloud), options_(options), preparation_(preparation) {
+    for (const Primitive& primitive : preparation.primitives) {
+      reach_.push_back(reach(primitive, preparation.tolerances.distance));
     }
   }
-  return requests;
+
+  /// One a partition.
+  void add_partitions() {
+    for (const Clique& partition : preparation_.partitions) add(partition, {}, surroundings(partition));
+  }
+
+  /// For a component of several partitions.
+  std::vector<TableWindow> add_windows(const std::vector<PrimitiveIndex>& component) {
+    if (component.size() <= k_whole_limit) return {{.table = add(component, {}, {})}};
+    std::vector<TableWindow> windows;
+    for (PrimitiveIndex local = 0; local < component.size(); ++local) {
+      const PrimitiveIndex p = component[local];
+      const std::vector<Region> regions = cut_into_regions(preparation_.graph.neighbours[p], reach_, k_whole_limit);
+      for (const Region& region : regions) {
+        std::vector<PrimitiveIndex> set = region.near;
+        set.insert(std::ranges::upper_bound(set, p), p);
+        const auto box = regions.size() == 1 ? std::nullopt : std::optional(region.box);
+        windows.push_back({.table = add(std::move(set), {p}, box), .judged = local});
+      }
+    }
+    return windows;
+  }
+
+  [[nodiscard]] const std::vector<RankClassesRequest>& all() const { return requests_; }
+
+ private:
+  /// Overlaps so many others that only those nearby may be looked at.
+  [[nodiscard]] bool is_hub(PrimitiveIndex p) const { return preparation_.graph.neighbours[p].size() > k_whole_limit; }
+
+  std::size_t add(std::vector<PrimitiveIndex> primitives, std::vector<PrimitiveIndex> owners,
+                  const std::optional<AlignedBox>& region) {
+    const std::size_t stride = stride_for(primitives.size(), cloud_.size());
+    requests_.push_back({.primitives = std::move(primitives),
+                         .owners = std::move(owners),
+                         .stride = stride,
+                         .without_strangers = options_.without_strangers,
+                         .region = region});
+    return requests_.size() - 1;
+  }
+
+  /// Where a partition with hubs is decided: at its other primitives, and around them.
+  [[nodiscard]] std::optional<AlignedBox> surroundings(const Clique& partition) const {
+    if (options_.strategy == Strategy::baseline || std::ranges::none_of(partition, [&](auto p) { return is_hub(p); })) {
+      return std::nullopt;
+    }
+    AlignedBox box;
+    for (const PrimitiveIndex p : partition) {
+      if (!is_hub(p)) box.extend(reach_[p]);
+    }
+    if (box.isEmpty() || !box.sizes().allFinite()) return std::nullopt;
+    const Eigen::Vector3d margin = box.sizes() / 2;
+    return AlignedBox(box.min() - margin, box.max() + margin);
+  }
+
+  const PointCloud& cloud_;
+  const ExtractOptions& options_;
+  const Preparation& preparation_;
+  std::vector<AlignedBox> reach_;  // by primitive
+  std::vector<RankClassesRequest> requests_;
+};
+
+std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, const ExtractOptions& options,
+                                             Preparation& preparation) {
+  Requests requests(cloud, options, preparation);
+  requests.add_partitions();
+  preparation.windows_of.clear();
+  for (std::size_t c = 0; c < preparation.components.size(); ++c) {
+    const std::vector<std::size_t>& partitions = preparation.partitions_of[c];
+    preparation.windows_of.push_back(partitions.size() == 1 ? std::vector<TableWindow>{{.table = partitions.front()}}
+                                                            : requests.add_windows(preparation.components[c]));
+  }
+  return requests.all();
 }
 
 void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,

@@ -1,11 +1,18 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cloud2csg/extract.hpp"
 #include "cloud2csg/overlap_graph.hpp"
 
 namespace cloud2csg {
+
+/// See MergeWindow.
+struct TableWindow {
+  std::size_t table;                          ///< index into PointPass::tables
+  std::optional<PrimitiveIndex> judged = {};  ///< index in the component
+};
 
 /// Everything the search needs, over the primitives that points support.
 struct Preparation {
@@ -20,7 +27,7 @@ struct Preparation {
   std::vector<std::size_t> component_of;                ///< by partition
   std::vector<std::vector<std::size_t>> partitions_of;  ///< by component
   PointPass pass;                                       ///< a table a partition, then those of the components' windows
-  std::vector<std::size_t> first_window;  ///< by component, index into pass.tables: see Component::windows
+  std::vector<std::vector<TableWindow>> windows_of;     ///< by component: see Component::windows
 };
 
 /// Noise, overlap graph, partitions and the pass over the points. Primitives without a single point are dropped, with a

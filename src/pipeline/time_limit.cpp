@@ -1,17 +1,23 @@
 #include "pipeline/time_limit.hpp"
 
-#include <chrono>
-
 namespace cloud2csg {
 
 TimeLimit::TimeLimit(const std::stop_token& caller, std::optional<double> seconds)
     : on_caller_(caller, RequestStop{source_}) {
   if (!seconds) return;
-  watch_ = std::jthread([this, limit = std::chrono::duration<double>(*seconds)](const std::stop_token& done) {
+  const std::chrono::duration<double> limit(*seconds);
+  // Ten years of a clock fit its counter; longer limits are none.
+  if (limit > std::chrono::years(10)) return;
+  end_ = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
+  watch_ = std::jthread([this](const std::stop_token& done) {
     std::unique_lock lock(mutex_);
-    timer_.wait_for(lock, done, limit, [&done] { return done.stop_requested(); });
+    timer_.wait_until(lock, done, *end_, [&done] { return done.stop_requested(); });
     if (!done.stop_requested()) source_.request_stop();
   });
+}
+
+void TimeLimit::enforce() const {
+  if (end_ && std::chrono::steady_clock::now() >= *end_) source_.request_stop();
 }
 
 }  // namespace cloud2csg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -14,6 +15,8 @@ class TimeLimit {
   TimeLimit(const std::stop_token& caller, std::optional<double> seconds);
 
   [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+  /// Triggers the token when the limit is over: on a busy machine, the thread that is to do it may be late.
+  void enforce() const;
 
  private:
   struct RequestStop {
@@ -21,6 +24,7 @@ class TimeLimit {
     void operator()() { source.request_stop(); }
   };
 
+  std::optional<std::chrono::steady_clock::time_point> end_;
   std::stop_source source_;
   std::stop_callback<RequestStop> on_caller_;
   std::mutex mutex_;

@@ -2,6 +2,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "support/request_points.hpp"
@@ -90,6 +91,18 @@ std::vector<PrimitiveIndex> some_of(const std::vector<PrimitiveIndex>& set, Rand
   return some;
 }
 
+/// Some of its sides go through points, others are at infinity.
+AlignedBox random_region(const test::Scene& scene, RandomStream& random) {
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  AlignedBox region(Eigen::Vector3d::Constant(-k_infinity), Eigen::Vector3d::Constant(k_infinity));
+  const auto any_point = [&] { return scene.cloud.positions[random.below(scene.cloud.size())]; };
+  for (int axis = 0; axis < 3; ++axis) {
+    if (random.chance(0.4)) region.min()[axis] = any_point()[axis];
+    if (random.chance(0.4)) region.max()[axis] = any_point()[axis];
+  }
+  return region;
+}
+
 RankClassesRequest random_request(const test::Scene& scene, RandomStream& random) {
   const std::size_t size = random.chance(0.15) ? 25 + random.below(20) : 1 + random.below(10);
   RankClassesRequest request{.primitives = neighbours(scene.primitives, size, random)};
@@ -97,6 +110,7 @@ RankClassesRequest random_request(const test::Scene& scene, RandomStream& random
   if (random.chance(0.2)) request.stride = 2 + random.below(3);
   request.all_points = random.chance(0.15);
   request.without_strangers = random.chance(0.5);
+  if (random.chance(0.3)) request.region = random_region(scene, random);
   return request;
 }
 
@@ -106,6 +120,7 @@ RankClassesRequest random_part_of(const RankClassesRequest& whole, RandomStream&
   if (random.chance(0.4)) part.owners = some_of(part.primitives, random);
   part.all_points = random.chance(0.2);
   part.without_strangers = random.chance(0.8) ? whole.without_strangers : !whole.without_strangers;
+  if (random.chance(0.8)) part.region = whole.region;
   return part;
 }
 
@@ -202,6 +217,7 @@ RC_GTEST_PROP(ManyPrimitives, TablesAreTheSameFromALargerOne, (std::uint64_t see
   RankClassesRequest whole{.primitives = neighbours(scene.primitives, size, random)};
   whole.stride = 1 + random.below(2);
   whole.without_strangers = random.chance(0.5);
+  if (random.chance(0.3)) whole.region = random_region(scene, random);
   const RankClassesRequest part = random_part_of(whole, random);
   const PointPass both = test::pass_over(scene, {part, whole});
   expect_equal_tables(both.tables[0], test::pass_over(scene, {part}).tables[0], random);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "cloud2csg/restrict.hpp"
@@ -149,6 +151,51 @@ TEST_F(MergeCheckInWindows, AgreesWithOneTable) {
     EXPECT_NEAR(verdict.score, expected.score,
                 (expected.worst_shortfall < 0.1 ? 0.01 : 0.05) * one.judge(truth_).score);
   }
+}
+
+/// What is judged in parts is judged as a whole is: the parts of a primitive's points add up.
+TEST_F(MergeCheckInWindows, OfOnePrimitiveAddUp) {
+  std::vector<RankClassesRequest> requests;
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  for (PrimitiveIndex p = 0; p < k_count; ++p) {
+    const std::span<const PrimitiveIndex> set = pass_.tables[p + 1].primitives();
+    AlignedBox below(Eigen::Vector3d::Constant(-k_infinity), Eigen::Vector3d::Constant(k_infinity));
+    AlignedBox above = below;
+    below.max().y() = above.min().y() = 0.1;
+    for (const AlignedBox& region : {below, above}) {
+      requests.push_back({.primitives = {set.begin(), set.end()}, .owners = {p}, .region = region});
+    }
+  }
+  const PointPass halves = test::pass_over(scene_, requests);
+  std::vector<MergeWindow> windows;
+  for (std::size_t w = 0; w < requests.size(); ++w) {
+    windows.push_back(
+        {.table = &halves.tables[w], .primitives = requests[w].primitives, .judged = requests[w].owners.front()});
+  }
+  const MergeCheck in_halves(windows, k_count, alpha(), cliques_, trees_);
+  const MergeCheck whole = by_windows();
+  std::vector<PrimitiveIndex> without_bore = test::all_of(primitives_);
+  std::erase(without_bore, PrimitiveIndex{4});
+  for (const CsgTree& tree : {truth_, restrict_to(truth_, without_bore), CsgTree::leaf(0), CsgTree::empty()}) {
+    EXPECT_NEAR(in_halves.judge(tree).score, whole.judge(tree).score, 1e-6 * std::abs(whole.judge(tree).score));
+    EXPECT_NEAR(in_halves.judge(tree).worst_shortfall, whole.judge(tree).worst_shortfall, 0.02);
+  }
+}
+
+/// A window that has no partition's primitives whole still tells whether the judged primitive is there.
+TEST_F(MergeCheckInWindows, PromiseWithoutWholePartitions) {
+  std::vector<RankClassesRequest> requests;
+  std::vector<MergeWindow> windows;
+  for (PrimitiveIndex p = 0; p < k_count; ++p) requests.push_back({.primitives = {p}});
+  const PointPass alone = test::pass_over(scene_, requests);
+  for (PrimitiveIndex p = 0; p < k_count; ++p) {
+    windows.push_back({.table = &alone.tables[p], .primitives = {p}, .judged = p});
+  }
+  const MergeCheck check(windows, k_count, alpha(), cliques_, trees_);
+  EXPECT_LT(check.judge(truth_).worst_shortfall, 0.02);
+  std::vector<PrimitiveIndex> others = test::all_of(primitives_);
+  std::erase(others, PrimitiveIndex{6});
+  EXPECT_EQ(check.judge(restrict_to(truth_, others)).worst_shortfall, 1.0);
 }
 
 TEST_F(MergeCheckInWindows, FindsWhatIsLostAnywhere) {

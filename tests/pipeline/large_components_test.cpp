@@ -43,6 +43,58 @@ Known lattice_of_spheres(int columns, int rows, int layers) {
   return known;
 }
 
+/// A plate with holes through it, bosses on it and dents in it: all overlap the plate, and none another.
+Known plate_with_features(int columns, int rows) {
+  Known known;
+  const double width = columns + 0.5;
+  const double depth = rows + 0.5;
+  known.primitives.push_back(test::placed("plate", Box{{width, depth, 0.5}}, {0.5 * width, 0.5 * depth, 0}));
+  CsgTree plate = CsgTree::leaf(0);
+  std::vector<CsgTree> cuts;
+  for (int k = 0; k < columns * rows; ++k) {
+    const auto p = static_cast<PrimitiveIndex>(known.primitives.size());
+    const Eigen::Vector3d middle(k % columns + 0.75, k / columns + 0.75, 0);
+    std::string id("f");
+    id += std::to_string(p);
+    if (k % 3 == 0) {
+      known.primitives.push_back(test::placed(id, Sphere{0.3}, middle + Eigen::Vector3d(0, 0, 0.3)));
+    } else {
+      known.primitives.push_back(
+          test::placed(id, Cylinder{0.3, 1}, middle + Eigen::Vector3d(0, 0, k % 3 == 1 ? 0 : 0.4)));
+    }
+    if (k % 3 == 2) {
+      plate = unite(plate, CsgTree::leaf(p));
+    } else {
+      cuts.push_back(CsgTree::leaf(p));
+    }
+  }
+  known.truth = subtract(plate, unite_all(cuts));
+  known.cloud = sample_surface(known.truth, known.primitives,
+                               {.count = 300 * known.primitives.size(), .noise = 0.004, .seed = 5});
+  return known;
+}
+
+/// One primitive that overlaps all others is judged region by region.
+TEST(Hub, IsRightAndAsSmallAsTheTruth) {
+  const Known known = plate_with_features(9, 8);
+  const Extraction result = extract_csg(known.cloud, known.primitives);
+  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 60), 0.9999);
+  EXPECT_EQ(result.tree.size(), simplify(known.truth).size()) << to_text(result.tree, known.primitives);
+  EXPECT_LT(result.statistics.merge.worst_shortfall, 0.05);
+  EXPECT_TRUE(result.statistics.warnings.empty());
+  for (const PartitionStatistics& partition : result.statistics.partitions) {
+    EXPECT_LT(partition.points, known.cloud.size() / 8);  // not all of the plate's
+  }
+}
+
+TEST(Hub, IsTheSameOnAnyNumberOfThreads) {
+  const Known known = plate_with_features(6, 6);
+  const Extraction expected = extract_csg(known.cloud, known.primitives, {}, {.threads = 1});
+  for (const int threads : {2, 0}) {
+    EXPECT_EQ(extract_csg(known.cloud, known.primitives, {}, {.threads = threads}).tree, expected.tree) << threads;
+  }
+}
+
 class Lattice : public ::testing::Test {
  protected:
   static const Known& known() {

@@ -26,6 +26,7 @@ class PlainPoints {
  public:
   explicit PlainPoints(const Scene& scene)
       : order_(order_of_points(scene)),
+        positions_(scene.cloud.positions),
         segmentation_(segment_points(scene.cloud, scene.primitives, scene_tolerances())) {
     for (const Primitive& primitive : scene.primitives) {
       distances_.push_back(signed_distance(primitive, scene.cloud.positions));
@@ -44,13 +45,22 @@ class PlainPoints {
     std::vector<std::uint32_t> points;
     for (std::size_t k = 0; k < order_.size(); k += request.stride) {
       const std::uint32_t point = order_[k];
-      if (is_taken[point] && !(request.without_strangers && is_in_stranger(request, point))) points.push_back(point);
+      if (is_taken[point] && is_in_region(request, point) &&
+          !(request.without_strangers && is_in_stranger(request, point))) {
+        points.push_back(point);
+      }
     }
     std::ranges::sort(points);
     return points;
   }
 
  private:
+  [[nodiscard]] bool is_in_region(const RankClassesRequest& request, std::uint32_t point) const {
+    if (!request.region) return true;
+    const Eigen::Array3d position = positions_[point].array();
+    return (position >= request.region->min().array()).all() && (position < request.region->max().array()).all();
+  }
+
   [[nodiscard]] bool is_in_stranger(const RankClassesRequest& request, std::uint32_t point) const {
     for (PrimitiveIndex p = 0; p < distances_.size(); ++p) {
       if (distances_[p][point] < 0 && !std::ranges::binary_search(request.primitives, p)) return true;
@@ -59,6 +69,7 @@ class PlainPoints {
   }
 
   std::vector<std::uint32_t> order_;
+  Points positions_;
   Segmentation segmentation_;
   std::vector<std::vector<double>> distances_;  // by primitive
 };
