@@ -58,7 +58,8 @@ void add_options(CLI::App& app, ScalingCommand& command) {
   std::vector<std::string> names;
   names.reserve(all_families().size());
   for (const Family family : all_families()) names.emplace_back(to_string(family));
-  app.add_option("--family", command.families, "Models of this family: chain, grid, plate, random, nest (default: all)")
+  app.add_option("--family", command.families,
+                 "Models of this family: chain, grid, plate, panel, random, nest\n(default: all)")
       ->check(one_of(names))
       ->type_name("NAME ...")
       ->group("Experiment");

@@ -88,7 +88,8 @@ void add_search_arguments(CLI::App& app, ExtractArguments& arguments) {
       ->transform(whole_number_from(0));
   group.add("--time-limit", arguments.time_limit_seconds, "SECONDS", "Then take the best tree so far (default: none)")
       ->check(number_not_negative());
-  group.either("polish", arguments.polish, "Take nodes out that the whole cloud does not need (default)",
+  group.either("polish", arguments.polish,
+               "Take nodes out that the whole cloud does not need (default; of up to 24 in a component)",
                "Leave them in (paper)");
   group.either("strangers", arguments.strangers,
                "Judge a partition's trees also by points inside primitives of others (paper)",

@@ -186,21 +186,31 @@ void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, co
   seconds.classes += wall * (1 - share);
 }
 
+/// So many of the primitives that are left out are told by name.
+constexpr std::size_t k_named_warnings = 10;
+
 /// Takes out the primitives without points. Whether there were any.
 bool drop_unsupported(Preparation& preparation, ExtractStatistics& statistics) {
   const std::vector<std::size_t>& points = preparation.pass.points_of_primitive;
   PrimitiveSet kept;
   std::vector<PrimitiveIndex> original;
+  std::size_t named = 0;
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (points[p] == 0) {
-      statistics.warnings.push_back(
-          fmt::format("no point supports primitive '{}': it is left out", preparation.primitives[p].id));
+      if (named++ < k_named_warnings) {
+        statistics.warnings.push_back(
+            fmt::format("no point supports primitive '{}': it is left out", preparation.primitives[p].id));
+      }
       continue;
     }
     kept.push_back(preparation.primitives[p]);
     original.push_back(preparation.original[p]);
   }
   if (kept.size() == points.size()) return false;
+  if (named > k_named_warnings) {
+    statistics.warnings.push_back(
+        fmt::format("no point supports {} more primitives: they are left out", named - k_named_warnings));
+  }
   preparation.primitives = std::move(kept);
   preparation.original = std::move(original);
   return true;

@@ -11,7 +11,8 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::array k_families{Family::chain, Family::grid, Family::plate, Family::random, Family::nest};
+constexpr std::array k_families{Family::chain, Family::grid,   Family::plate,
+                                Family::panel, Family::random, Family::nest};
 constexpr std::size_t k_most_primitives = 1'000'000;
 constexpr std::size_t k_least_clique = 2;
 constexpr std::size_t k_most_clique = 12;
@@ -39,6 +40,8 @@ std::string_view to_string(Family family) {
       return "grid";
     case Family::plate:
       return "plate";
+    case Family::panel:
+      return "panel";
     case Family::random:
       return "random";
     case Family::nest:
@@ -52,7 +55,7 @@ Family family_of(std::string_view name) {
   if (found != k_families.end()) return *found;
   throw Error({.file = {},
                .where = "family",
-               .expected = fmt::format("expected chain, grid, plate, random or nest, found '{}'", name),
+               .expected = fmt::format("expected chain, grid, plate, panel, random or nest, found '{}'", name),
                .remedy = {}});
 }
 
@@ -77,6 +80,9 @@ Model make_family(Family family, const FamilyOptions& options) {
       break;
     case Family::plate:
       build_plates(builder, options);
+      break;
+    case Family::panel:
+      build_panel(builder, options);
       break;
     case Family::random:
       build_clusters(builder, options);

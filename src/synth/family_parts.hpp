@@ -56,6 +56,7 @@ class SpiralPath {
 void build_chain(FamilyBuilder& builder, const FamilyOptions& options);
 void build_grid(FamilyBuilder& builder, const FamilyOptions& options);
 void build_plates(FamilyBuilder& builder, const FamilyOptions& options);
+void build_panel(FamilyBuilder& builder, const FamilyOptions& options);
 void build_clusters(FamilyBuilder& builder, const FamilyOptions& options);
 void build_nests(FamilyBuilder& builder, const FamilyOptions& options);
 

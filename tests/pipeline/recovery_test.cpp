@@ -139,6 +139,23 @@ TEST(ExtractCsg, GivesTheSameTreeAtEveryScale) {
   }
 }
 
+/// Thousands of candidates that are not there must not drown what else is to be said.
+TEST(ExtractCsg, NamesOnlyTheFirstOfManyPrimitivesThatNoPointSupports) {
+  PrimitiveSet primitives{test::placed("a", Box{{1, 1, 1}}, {0, 0, 0})};
+  const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 1000, .noise = 0.002, .seed = 1});
+  for (int k = 0; k < 500; ++k) {
+    std::string id("far");
+    id += std::to_string(k);
+    primitives.push_back(test::placed(id, Sphere{0.2}, {9.0 + k, 9, 9}));
+  }
+  const Extraction result = extract_csg(cloud, primitives);
+  EXPECT_EQ(result.tree, CsgTree::leaf(0));
+  const std::vector<std::string>& warnings = result.statistics.warnings;
+  ASSERT_EQ(warnings.size(), 11U);
+  EXPECT_NE(warnings.front().find("'far0'"), std::string::npos);
+  EXPECT_NE(warnings.back().find("490 more"), std::string::npos);
+}
+
 TEST(ExtractCsg, DropsPrimitivesThatNoPointSupports) {
   PrimitiveSet primitives{test::placed("nowhere", Sphere{0.2}, {9, 9, 9}), test::placed("a", Box{{1, 1, 1}}, {0, 0, 0}),
                           test::placed("hidden", Sphere{0.2}, {0, 0, 0}), test::placed("b", Sphere{0.4}, {0.5, 0, 0})};

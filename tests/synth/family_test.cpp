@@ -138,6 +138,12 @@ TEST(Family, PlateHasHolesAndHolesInHoles) {
   EXPECT_GT(std::ranges::count(model.tree->nodes(), Operation::difference, &CsgNode::operation), 30);
 }
 
+TEST(Family, PanelOverlapsAllOthersAndNoneElseDoes) {
+  const OverlapGraph graph = overlaps(make_family(Family::panel, {.primitives = 60}));
+  EXPECT_EQ(graph.neighbours.front().size(), 59U);
+  for (std::size_t p = 1; p < 60; ++p) EXPECT_EQ(graph.neighbours[p], std::vector<PrimitiveIndex>{0}) << p;
+}
+
 TEST(Family, OfAName) {
   for (const Family family : all_families()) EXPECT_EQ(family_of(to_string(family)), family);
   EXPECT_THROW((void)family_of("chains"), Error);
