@@ -125,7 +125,10 @@ std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
     const RankClassesRequest& request = requests[k];
     assert(!request.primitives.empty() && request.stride > 0 && std::ranges::is_sorted(request.primitives));
     assert(std::ranges::includes(request.primitives, owners_of(request)));
-    const std::vector<std::size_t>& nearby = roots_with[request.primitives.front()];
+    // Of the lists of roots that could do, the shortest: a primitive that overlaps all others is in all.
+    const PrimitiveIndex rarest =
+        *std::ranges::min_element(request.primitives, {}, [&](PrimitiveIndex p) { return roots_with[p].size(); });
+    const std::vector<std::size_t>& nearby = roots_with[rarest];
     const auto found = std::ranges::find_if(nearby, [&](std::size_t r) { return can_answer(roots[r], request); });
     std::size_t r = roots.size();
     if (found != nearby.end()) {

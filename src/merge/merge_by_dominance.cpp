@@ -32,6 +32,7 @@ class DominanceMerge {
   DominanceMerge(std::span<const CsgTree> trees, std::span<const Clique> cliques, const RunContext& run) : run_(run) {
     assert(trees.size() == cliques.size());
     for (std::size_t k = 0; k < trees.size(); ++k) add(simplify(trees[k]), cliques[k]);
+    decided_.assign(trees_with_.size(), 0);
     for (PrimitiveIndex p = 0; p < trees_with_.size(); ++p) mark_stale(p);
   }
 
@@ -63,17 +64,28 @@ class DominanceMerge {
     stale_removed_.insert(p);
   }
 
-  /// What the primitive is to all partitions that have it, if it is the same to all. A tree of which nothing is left
-  /// says nothing. One that has primitives left, but not this one, has something in its place: that must go first.
-  [[nodiscard]] Role role_of(PrimitiveIndex p) const {
+  /// What the primitive is to a partition; nothing: the tree says nothing, because nothing is left of it.
+  [[nodiscard]] std::optional<Role> claim_of(std::size_t tree, PrimitiveIndex p) const {
+    if (is_constant(trees_[tree])) return std::nullopt;
+    const CsgTree inside = substitute(trees_[tree], p, /*is_full=*/true);
+    // One that has primitives left, but not this one, has something in its place: that must go first.
+    if (!is_constant(inside)) return Role::undecided;
+    return inside == CsgTree::full() ? Role::added : Role::removed;
+  }
+
+  /// What the primitive is to all partitions that have it, if it is the same to all.
+  [[nodiscard]] Role role_of(PrimitiveIndex p) {
+    const std::vector<std::size_t>& trees = trees_with_[p];
+    // A tree that has decided stays so, whatever else is taken out: it is enough to ask the first that has not.
+    for (std::size_t& k = decided_[p]; k < trees.size(); ++k) {
+      if (claim_of(trees[k], p) == Role::undecided) return Role::undecided;
+    }
     Role common = Role::undecided;
-    for (const std::size_t k : trees_with_[p]) {
-      if (is_constant(trees_[k])) continue;
-      const CsgTree inside = substitute(trees_[k], p, /*is_full=*/true);
-      if (!is_constant(inside)) return Role::undecided;
-      const Role role = inside == CsgTree::full() ? Role::added : Role::removed;
-      if (common != Role::undecided && role != common) return Role::undecided;
-      common = role;
+    for (const std::size_t k : trees) {
+      const std::optional<Role> claim = claim_of(k, p);
+      if (!claim) continue;
+      if (common != Role::undecided && *claim != common) return Role::undecided;
+      common = *claim;
     }
     return common;
   }
@@ -126,7 +138,8 @@ class DominanceMerge {
   const RunContext& run_;
   std::vector<CsgTree> trees_;
   std::vector<Clique> cliques_;
-  std::vector<std::vector<std::size_t>> trees_with_;      ///< by primitive
+  std::vector<std::vector<std::size_t>> trees_with_;  ///< by primitive
+  std::vector<std::size_t> decided_;                  ///< by primitive: so many of its first trees are not undecided
   std::set<PrimitiveIndex> stale_added_, stale_removed_;  ///< whose role may have become this one
   std::vector<Layer> layers_;                             ///< the outermost first
 };
