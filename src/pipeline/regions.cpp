@@ -50,7 +50,7 @@ class Cutter {
     std::vector<Eigen::Vector3d> all;
     for (const PrimitiveIndex p : region.near) {
       if (!reach_[p].sizes().allFinite()) continue;
-      all.push_back(reach_[p].center());
+      all.emplace_back(reach_[p].center());
       middles.extend(all.back());
     }
     if (all.empty()) return std::nullopt;

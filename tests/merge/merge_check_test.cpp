@@ -31,6 +31,7 @@ class MergeCheckOfABlock : public ::testing::Test {
 
   [[nodiscard]] MergeCheck check_of(const std::vector<const char*>& texts) const {
     std::vector<CsgTree> trees;
+    trees.reserve(texts.size());
     for (const char* text : texts) trees.push_back(tree(text));
     return MergeCheck({{.table = &table_, .primitives = {0, 1, 2}}}, 3, table_.objective().alpha, cliques_, trees);
   }
@@ -121,7 +122,7 @@ class MergeCheckInWindows : public ::testing::Test {
       const std::span<const PrimitiveIndex> set = pass_.tables[p + 1].primitives();
       windows.push_back({.table = &pass_.tables[p + 1], .primitives = {set.begin(), set.end()}, .judged = p});
     }
-    return MergeCheck(windows, k_count, alpha(), cliques_, trees_);
+    return {windows, k_count, alpha(), cliques_, trees_};
   }
 
   [[nodiscard]] double alpha() const { return pass_.tables[0].objective().alpha; }

@@ -53,7 +53,8 @@ Known plate_with_features(int columns, int rows) {
   std::vector<CsgTree> cuts;
   for (int k = 0; k < columns * rows; ++k) {
     const auto p = static_cast<PrimitiveIndex>(known.primitives.size());
-    const Eigen::Vector3d middle(k % columns + 0.75, k / columns + 0.75, 0);
+    const int row = k / columns;
+    const Eigen::Vector3d middle(k % columns + 0.75, row + 0.75, 0);
     std::string id("f");
     id += std::to_string(p);
     if (k % 3 == 0) {

@@ -59,7 +59,8 @@ RC_GTEST_PROP(Regions, CoverSpaceOnceAndKnowAllThatReachIntoThem, (std::uint64_t
 TEST(Regions, HaveNoMoreThanTheLimitWhereBoxesCanBeParted) {
   std::vector<AlignedBox> reach;
   for (int k = 0; k < 400; ++k) {
-    const Eigen::Vector3d corner(k % 20, k / 20, 0);
+    const int row = k / 20;
+    const Eigen::Vector3d corner(k % 20, row, 0);
     reach.emplace_back(corner, corner + Eigen::Vector3d(0.6, 0.6, 5));
   }
   const std::vector<Region> regions = cut_into_regions(first_indices(400), reach, 12);
