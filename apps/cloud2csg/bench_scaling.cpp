@@ -59,7 +59,7 @@ void add_options(CLI::App& app, ScalingCommand& command) {
   names.reserve(all_families().size());
   for (const Family family : all_families()) names.emplace_back(to_string(family));
   app.add_option("--family", command.families,
-                 "Models of this family: chain, grid, plate, panel, random, nest\n(default: all)")
+                 "Models of this family: chain, grid, plate, random, nest, panel\n(default: all)")
       ->check(one_of(names))
       ->type_name("NAME ...")
       ->group("Experiment");

@@ -18,17 +18,17 @@ enum class Family {
   grid,
   /// Plates in a row, each with holes, bosses, bosses with a hole, and holes in which a hollow pin stands.
   plate,
-  /// One panel with holes through it, bosses on it and round dents in it, on a lattice: it overlaps all others.
-  panel,
   /// Clusters of solids of all kinds that all overlap each other, under a random tree each, joined by one bar each.
   random,
   /// Boxes in boxes: each nest is a box less (a box less (a box less ...)).
   nest,
+  /// One panel with holes through it, bosses on it and round dents in it, on a lattice: it overlaps all others.
+  panel,
 };
 
 /// All, in the order above.
 [[nodiscard]] std::span<const Family> all_families();
-/// "chain", "grid", "plate", "panel", "random", "nest"
+/// "chain", "grid", "plate", "random", "nest", "panel"
 [[nodiscard]] std::string_view to_string(Family family);
 /// @throws Error when there is none of this name.
 [[nodiscard]] Family family_of(std::string_view name);

@@ -2,7 +2,6 @@
 
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -59,19 +58,6 @@ void for_each_index(std::size_t count, const RunContext& run, const Work& work) 
   }
   oneapi::tbb::task_arena arena(usable_threads(run));
   arena.execute([&] { for_each_index_in_arena(count, run, one); });
-}
-
-/// Sorts on the threads of the run. The result does not depend on how many: equal values must be alike.
-template <typename Values>
-void sort_values(Values& values, [[maybe_unused]] const RunContext& run) {
-#ifndef CLOUD2CSG_THREAD_SANITIZER
-  if (run.threads != 1) {
-    oneapi::tbb::task_arena arena(usable_threads(run));
-    arena.execute([&] { oneapi::tbb::parallel_sort(values); });
-    return;
-  }
-#endif
-  std::sort(values.begin(), values.end());
 }
 
 }  // namespace cloud2csg

@@ -110,8 +110,8 @@ HWY_INLINE auto cosines(const BlockField<Real>& field, const BlockNormals<Real>&
   return dot / hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
 }
 
-/// Scores of exp(-this) and less, added and rounded, are zero.
-constexpr double k_silent_exponent = 17.0;
+/// Scores of 2^(-this) and less, added and rounded, are zero.
+constexpr double k_silent_power = 17.0 * std::numbers::log2e;
 
 /// What the loop over a block need not compute.
 struct Shortcuts {
@@ -131,7 +131,7 @@ void score_block(const BlockField<Real>& field, const BlockNormals<Real>& normal
   const auto zero = hn::Zero(df);
   const auto farthest = all(parameters.tolerances.distance);
   const auto least_cosine = all(parameters.tolerances.cosine);
-  const auto silent = all_floats(k_silent_exponent * std::numbers::log2e);
+  const auto silent = all_floats(k_silent_power);
   // exp(-(beta f)^2) and exp(-(gamma angle)^2) as powers of two.
   const auto distance_scale = all(parameters.beta * std::sqrt(std::numbers::log2e));
   const auto angle_scale = all_floats(parameters.gamma * parameters.gamma * std::numbers::log2e);
@@ -156,7 +156,8 @@ void score_block(const BlockField<Real>& field, const BlockNormals<Real>& normal
         // Squares beyond the range of floats are clamped in power_of_half, long before they overflow.
         const auto exponent = to_floats(hn::Min(scaled * scaled, all(1e30)));
         is_silent = hn::And(is_silent, exponent >= silent);
-        at_distance = power_of_half(exponent);
+        // As if the block were far: what a point scores does not depend on its neighbours.
+        at_distance = hn::IfThenElseZero(exponent < silent, power_of_half(exponent));
       }
       if (hn::AllTrue(df, is_silent)) {
         hn::Store(hn::Zero(du), du, &out.units.plain[i]);
@@ -187,8 +188,9 @@ template <class Real>
 void contributions_of_block(const BlockField<Real>& field, const BlockNormals<Real>& normals,
                             const ContributionParameters& parameters, BlockContributions<Real>& out) {
   find_range(field, out);
-  const double least_exponent = std::pow(static_cast<double>(out.smallest) * parameters.beta, 2);
-  const bool is_far = least_exponent >= k_silent_exponent;
+  // In the numbers of the loop, so that both round alike.
+  const Real scaled = out.smallest * static_cast<Real>(parameters.beta * std::sqrt(std::numbers::log2e));
+  const bool is_far = static_cast<float>(std::min(scaled * scaled, Real{1e30F})) >= static_cast<float>(k_silent_power);
   if (far_side_counts(parameters.gamma)) {
     if (is_far) {
       score_block<Shortcuts{.is_far = true, .far_side_counts = true}>(field, normals, parameters, out);

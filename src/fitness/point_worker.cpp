@@ -162,7 +162,7 @@ class Worker {
   /// Those of owners that are not active have no points here.
   [[nodiscard]] BlockMask points_of(const Root& root, std::size_t block, std::size_t begin) const {
     BlockMask chosen = every_kth(begin, blocks_.size(block), root.stride);
-    if (root.region && !root.region->contains(bounds_)) keep_to(*root.region, block, chosen);
+    if (root.region && !holds_block(*root.region)) keep_to(*root.region, block, chosen);
     if (root.without_strangers) leave_out_strangers(root, chosen);
     if (root.all_points) return chosen;
     BlockMask any{};
@@ -175,11 +175,19 @@ class Worker {
     return chosen;
   }
 
+  /// A side of a region, rounded as the points are, so that all that look at it see it at one place.
+  static Eigen::Array<Real, 3, 1> rounded(const Eigen::Vector3d& corner) { return corner.cast<Real>().array(); }
+
+  [[nodiscard]] bool holds_block(const AlignedBox& region) const {
+    return (rounded(bounds_.min()) >= rounded(region.min())).all() &&
+           (rounded(bounds_.max()) < rounded(region.max())).all();
+  }
+
   /// Takes out the points that are not in the region, as RankClassesRequest::region says.
   void keep_to(const AlignedBox& region, std::size_t block, BlockMask& chosen) const {
     const BasicPointsView<Real> points = blocks_.positions(block);
-    const Eigen::Array<Real, 3, 1> least = region.min().template cast<Real>().array();
-    const Eigen::Array<Real, 3, 1> most = region.max().template cast<Real>().array();
+    const Eigen::Array<Real, 3, 1> least = rounded(region.min());
+    const Eigen::Array<Real, 3, 1> most = rounded(region.max());
     for (std::size_t i = 0; i < k_block_points; ++i) {
       const Eigen::Array<Real, 3, 1> point(points.x[i], points.y[i], points.z[i]);
       if ((point < least || point >= most).any()) chosen[i / 64] &= ~(std::uint64_t{1} << (i % 64));

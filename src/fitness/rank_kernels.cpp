@@ -12,8 +12,8 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
-#ifndef CLOUD2CSG_FITNESS_RIVALS
-#define CLOUD2CSG_FITNESS_RIVALS
+#ifndef CLOUD2CSG_FITNESS_STANDINGS
+#define CLOUD2CSG_FITNESS_STANDINGS
 namespace cloud2csg {
 
 /// How each primitive of a block stands among the others. Of two, where their ranges overlap, one is nearer here and

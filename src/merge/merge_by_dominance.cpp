@@ -84,7 +84,8 @@ class DominanceMerge {
     for (const std::size_t k : trees) {
       const std::optional<Role> claim = claim_of(k, p);
       if (!claim) continue;
-      if (common != Role::undecided && *claim != common) return Role::undecided;
+      const bool differs = common != Role::undecided && *claim != common;
+      if (differs || *claim == Role::undecided) return Role::undecided;
       common = *claim;
     }
     return common;

@@ -22,24 +22,34 @@ bool is_judged(const MergeWindow& window, PrimitiveIndex p) {
   return window.judged.value_or(p) == p;
 }
 
-/// The cliques with primitives that are judged in the window, where the window has all of their primitives; without any
-/// such, one.
-std::set<std::size_t> cliques_seen(const MergeWindow& window, std::span<const Clique> cliques,
-                                   std::span<const std::vector<std::size_t>> cliques_with) {
-  std::set<std::size_t> seen;
-  std::optional<std::size_t> other;
+/// A partition's tree in a window, and the partition's primitives.
+struct Witness {
+  CsgTree tree;
+  const Clique* clique;
+};
+
+/// The trees of the cliques with primitives that are judged in the window, where the window has all of their
+/// primitives. Without any such: of all, each different one once, which are few, as most of their primitives are
+/// elsewhere.
+std::vector<Witness> witnesses_in(const MergeWindow& window, std::span<const Clique> cliques,
+                                  std::span<const CsgTree> trees,
+                                  std::span<const std::vector<std::size_t>> cliques_with) {
+  std::set<std::size_t> whole, cut;
   for (const PrimitiveIndex p : window.primitives) {
     if (!is_judged(window, p)) continue;
     for (const std::size_t k : cliques_with[p]) {
-      if (std::ranges::includes(window.primitives, cliques[k])) {
-        seen.insert(k);
-      } else {
-        other = k;
-      }
+      (std::ranges::includes(window.primitives, cliques[k]) ? whole : cut).insert(k);
     }
   }
-  if (seen.empty() && other) seen.insert(*other);
-  return seen;
+  std::vector<Witness> witnesses;
+  for (const std::size_t k : whole) witnesses.push_back({.tree = trees[k], .clique = &cliques[k]});
+  if (!whole.empty()) return witnesses;
+  for (const std::size_t k : cut) {
+    CsgTree tree = restrict_to(trees[k], window.primitives);
+    const auto is_known = [&tree](const Witness& witness) { return witness.tree == tree; };
+    if (std::ranges::none_of(witnesses, is_known)) witnesses.push_back({std::move(tree), &cliques[k]});
+  }
+  return witnesses;
 }
 
 /// The best that trees of partitions with each of the window's primitives score on the points nearest to it.
@@ -47,11 +57,11 @@ std::vector<double> promises_in(const MergeWindow& window, std::span<const Cliqu
                                 std::span<const CsgTree> trees,
                                 std::span<const std::vector<std::size_t>> cliques_with) {
   std::vector<double> promises(window.primitives.size(), 0.0);
-  for (const std::size_t k : cliques_seen(window, cliques, cliques_with)) {
-    const std::vector<double> scores = scores_in(window, restrict_to(trees[k], window.primitives));
+  for (const Witness& witness : witnesses_in(window, cliques, trees, cliques_with)) {
+    const std::vector<double> scores = scores_in(window, witness.tree);
     for (std::size_t i = 0; i < scores.size(); ++i) {
       const PrimitiveIndex p = window.primitives[i];
-      if (is_judged(window, p) && std::ranges::binary_search(cliques[k], p)) {
+      if (is_judged(window, p) && std::ranges::binary_search(*witness.clique, p)) {
         promises[i] = std::max(promises[i], scores[i]);
       }
     }

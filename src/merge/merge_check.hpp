@@ -25,9 +25,9 @@ struct MergeWindow {
 class MergeCheck {
  public:
   /// `cliques` and `trees` belong together; they index the component's `primitives`. What less than `alpha`, the cost
-  /// of a node, tells is taken for noise. A primitive is judged in all windows together that share no point. Works on
-  /// the threads of the task arena that the caller is in, unless run.threads == 1. The windows' tables must outlive
-  /// this. O(sum over the cliques of their windows' classes).
+  /// of a node, tells is taken for noise. A primitive may be judged in several windows, which must share no points:
+  /// promises and scores are summed over them. Works on the threads of the task arena that the caller is in, unless
+  /// run.threads == 1. The windows' tables must outlive this. O(sum over the cliques of their windows' classes).
   MergeCheck(std::vector<MergeWindow> windows, std::size_t primitives, double alpha, std::span<const Clique> cliques,
              std::span<const CsgTree> trees, RunContext run = {.threads = 1});
 

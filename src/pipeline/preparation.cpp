@@ -107,22 +107,26 @@ class Requests {
     std::vector<TableWindow> windows;
     for (PrimitiveIndex local = 0; local < component.size(); ++local) {
       const PrimitiveIndex p = component[local];
-      const std::vector<Region> regions = cut_into_regions(preparation_.graph.neighbours[p], reach_, k_whole_limit);
+      const std::vector<Region> regions = cut_into_regions(preparation_.graph.neighbours[p], reach_, k_whole_limit - 1);
+      std::size_t largest = 0;
+      for (const Region& region : regions) largest = std::max(largest, region.near.size() + 1);
       for (const Region& region : regions) {
         std::vector<PrimitiveIndex> set = region.near;
         set.insert(std::ranges::upper_bound(set, p), p);
         const auto box = regions.size() == 1 ? std::nullopt : std::optional(region.box);
         windows.push_back({.table = add(std::move(set), {p}, box), .judged = local});
+        // What a primitive scores in its windows is added up: points must weigh the same in all.
+        requests_.back().stride = stride_for(largest, cloud_.size());
       }
     }
     return windows;
   }
 
-  [[nodiscard]] const std::vector<RankClassesRequest>& all() const { return requests_; }
+  [[nodiscard]] std::vector<RankClassesRequest> take() && { return std::move(requests_); }
 
  private:
   /// Overlaps so many others that only those nearby may be looked at.
-  [[nodiscard]] bool is_hub(PrimitiveIndex p) const { return preparation_.graph.neighbours[p].size() > k_whole_limit; }
+  [[nodiscard]] bool is_hub(PrimitiveIndex p) const { return preparation_.graph.neighbours[p].size() >= k_whole_limit; }
 
   std::size_t add(std::vector<PrimitiveIndex> primitives, std::vector<PrimitiveIndex> owners,
                   const std::optional<AlignedBox>& region) {
@@ -135,11 +139,10 @@ class Requests {
     return requests_.size() - 1;
   }
 
-  /// Where a partition with hubs is decided: at its other primitives, and around them.
+  /// Where a partition with hubs is decided: at its other primitives, and around them. The paper judges by all points.
   [[nodiscard]] std::optional<AlignedBox> surroundings(const Clique& partition) const {
-    if (options_.strategy == Strategy::baseline || std::ranges::none_of(partition, [&](auto p) { return is_hub(p); })) {
-      return std::nullopt;
-    }
+    const bool has_hub = std::ranges::any_of(partition, [&](PrimitiveIndex p) { return is_hub(p); });
+    if (!has_hub || !options_.without_strangers || options_.strategy == Strategy::baseline) return std::nullopt;
     AlignedBox box;
     for (const PrimitiveIndex p : partition) {
       if (!is_hub(p)) box.extend(reach_[p]);
@@ -166,7 +169,7 @@ std::vector<RankClassesRequest> requests_for(const PointCloud& cloud, const Extr
     preparation.windows_of.push_back(partitions.size() == 1 ? std::vector<TableWindow>{{.table = partitions.front()}}
                                                             : requests.add_windows(preparation.components[c]));
   }
-  return requests.all();
+  return std::move(requests).take();
 }
 
 void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,

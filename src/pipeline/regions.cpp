@@ -17,50 +17,44 @@ class Cutter {
   Cutter(std::span<const AlignedBox> reach, std::size_t limit) : reach_(reach), limit_(limit) {}
 
   void cut(const Region& region) {
-    const std::optional<Cut> plane = region.near.size() > limit_ ? best_cut(region) : std::nullopt;
-    if (!plane) {
+    std::optional<Halves> best;
+    for (int axis = 0; axis < 3 && region.near.size() > limit_; ++axis) {
+      std::optional<Halves> halves = cut_across(region, axis);
+      if (halves && (!best || halves->larger() < best->larger())) best = std::move(halves);
+    }
+    // Cuts that part off little would be many.
+    if (!best || 8 * best->larger() > 7 * region.near.size()) {
       regions_.push_back(region);
       return;
     }
-    Region below = region;
-    Region above = region;
-    below.box.max()[plane->axis] = plane->position;
-    above.box.min()[plane->axis] = plane->position;
-    keep_near(below);
-    keep_near(above);
-    if (std::max(below.near.size(), above.near.size()) == region.near.size()) {
-      regions_.push_back(region);
-      return;
-    }
-    cut(below);
-    cut(above);
+    cut(best->below);
+    cut(best->above);
   }
 
   [[nodiscard]] std::vector<Region>& regions() { return regions_; }
 
  private:
-  struct Cut {
-    int axis;
-    double position;
+  struct Halves {
+    Region below, above;
+    [[nodiscard]] std::size_t larger() const { return std::max(below.near.size(), above.near.size()); }
   };
 
-  /// Across the axis along which the middles of the boxes are farthest apart, at the median.
-  [[nodiscard]] std::optional<Cut> best_cut(const Region& region) const {
-    AlignedBox middles;
-    std::vector<Eigen::Vector3d> all;
+  /// At the median of the middles of the boxes.
+  [[nodiscard]] std::optional<Halves> cut_across(const Region& region, int axis) const {
+    std::vector<double> middles;
     for (const PrimitiveIndex p : region.near) {
-      if (!reach_[p].sizes().allFinite()) continue;
-      all.emplace_back(reach_[p].center());
-      middles.extend(all.back());
+      const double middle = reach_[p].center()[axis];
+      if (middle > region.box.min()[axis] && middle < region.box.max()[axis]) middles.push_back(middle);
     }
-    if (all.empty()) return std::nullopt;
-    Eigen::Index axis = 0;
-    middles.sizes().maxCoeff(&axis);
-    const auto median = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-    std::ranges::nth_element(all, median, {}, [axis](const Eigen::Vector3d& middle) { return middle[axis]; });
-    const double position = (*median)[axis];
-    if (position <= region.box.min()[axis] || position >= region.box.max()[axis]) return std::nullopt;
-    return Cut{.axis = static_cast<int>(axis), .position = position};
+    if (middles.empty()) return std::nullopt;
+    const auto median = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
+    std::ranges::nth_element(middles, median);
+    Halves halves{.below = region, .above = region};
+    halves.below.box.max()[axis] = *median;
+    halves.above.box.min()[axis] = *median;
+    keep_near(halves.below);
+    keep_near(halves.above);
+    return halves;
   }
 
   void keep_near(Region& region) const {

@@ -25,7 +25,7 @@ class TimeLimit {
   };
 
   std::optional<std::chrono::steady_clock::time_point> end_;
-  std::stop_source source_;
+  mutable std::stop_source source_;  // to request a stop does not change what this stands for
   std::stop_callback<RequestStop> on_caller_;
   std::mutex mutex_;
   std::condition_variable_any timer_;

@@ -11,8 +11,8 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::array k_families{Family::chain, Family::grid,   Family::plate,
-                                Family::panel, Family::random, Family::nest};
+constexpr std::array k_families{Family::chain,  Family::grid, Family::plate,
+                                Family::random, Family::nest, Family::panel};
 constexpr std::size_t k_most_primitives = 1'000'000;
 constexpr std::size_t k_least_clique = 2;
 constexpr std::size_t k_most_clique = 12;
@@ -55,7 +55,7 @@ Family family_of(std::string_view name) {
   if (found != k_families.end()) return *found;
   throw Error({.file = {},
                .where = "family",
-               .expected = fmt::format("expected chain, grid, plate, panel, random or nest, found '{}'", name),
+               .expected = fmt::format("expected chain, grid, plate, random, nest or panel, found '{}'", name),
                .remedy = {}});
 }
 

@@ -8,9 +8,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_cell = 1.2;       ///< from a feature's middle to the next one's
-constexpr double k_half_side = 0.5;  ///< of the panel's edge beyond the outermost features' middles: none reaches it
-constexpr double k_top = 0.25;       ///< half of the panel's thickness
+constexpr double k_cell = 1.2;    ///< from a feature's middle to the next one's
+constexpr double k_margin = 0.5;  ///< around the outermost cells
+constexpr double k_top = 0.25;    ///< half of the panel's thickness
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void build_panel(FamilyBuilder& builder, const FamilyOptions& options) {
   const auto middle_of = [](std::size_t step, std::size_t count) {
     return k_cell * (static_cast<double>(step) - 0.5 * static_cast<double>(count - 1));
   };
-  const auto length_of = [](std::size_t count) { return k_cell * static_cast<double>(count) + 2 * k_half_side; };
+  const auto length_of = [](std::size_t count) { return k_cell * static_cast<double>(count) + 2 * k_margin; };
   std::vector<CsgTree> solids{
       builder.add(Box{.size = {length_of(columns), length_of(rows), 2 * k_top}}, {.position = Vector3d::Zero()})};
   std::vector<CsgTree> cuts;
@@ -36,9 +36,11 @@ void build_panel(FamilyBuilder& builder, const FamilyOptions& options) {
       return builder.add(Cylinder{.radius = radius, .height = high - low}, pose);
     };
     switch (random.below(3)) {
-      case 0:
-        cuts.push_back(upright(-k_top - random.uniform(0.1, 0.2), k_top + random.uniform(0.1, 0.2)));
+      case 0: {
+        const double below = random.uniform(0.1, 0.2);
+        cuts.push_back(upright(-k_top - below, k_top + random.uniform(0.1, 0.2)));
         break;
+      }
       case 1:
         solids.push_back(upright(-0.4 * k_top, k_top + random.uniform(0.4, 0.8)));
         break;

@@ -33,12 +33,17 @@ class PlateBuilder {
     const double y = k_cell * (static_cast<double>(row) - 0.5 * (k_rows - 1));
     middle_ = Vector3d(x, y, 0) + random_shift(0.04, random_);
     switch (feature) {
-      case Feature::hole:
-        cuts_.push_back(upright(uniform(0.25, 0.46), -top_ - uniform(0.1, 0.2), top_ + uniform(0.1, 0.2)));
+      case Feature::hole: {
+        const double above = uniform(0.1, 0.2);
+        const double below = uniform(0.1, 0.2);
+        cuts_.push_back(upright(uniform(0.25, 0.46), -top_ - below, top_ + above));
         break;
-      case Feature::boss:
-        body_ = unite(body_, upright(uniform(0.28, 0.46), -0.4 * top_, top_ + uniform(0.4, 0.8)));
+      }
+      case Feature::boss: {
+        const double above = uniform(0.4, 0.8);
+        body_ = unite(body_, upright(uniform(0.28, 0.46), -0.4 * top_, top_ + above));
         break;
+      }
       case Feature::hollow_boss: {
         const double radius = uniform(0.36, 0.46);
         const double height = top_ + uniform(0.4, 0.8);
@@ -47,7 +52,8 @@ class PlateBuilder {
         break;
       }
       case Feature::pin_in_hole: {
-        cuts_.push_back(upright(uniform(0.42, 0.46), uniform(-0.2, 0.1) * top_, top_ + 0.15));
+        const double floor = uniform(-0.2, 0.1) * top_;
+        cuts_.push_back(upright(uniform(0.42, 0.46), floor, top_ + 0.15));
         const double height = top_ + uniform(0.2, 0.5);
         const double radius = uniform(0.22, 0.26);
         const CsgTree pin = upright(radius, -0.5 * top_, height);

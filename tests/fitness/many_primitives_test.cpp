@@ -208,6 +208,31 @@ TEST(ManyPrimitives, TablesDoNotDependOnThreads) {
   }
 }
 
+/// Whole blocks of points lie on the plane where two regions meet, which is no round number in single precision.
+TEST(ManyPrimitives, OnTheSideThatRegionsShareCountOnce) {
+  RandomStream random(11);
+  for (const double side : {0.0, 0.1, -1.0 / 3, 1e-3}) {
+    test::Scene scene{.primitives = {{.id = "p", .shape = Box{{4, 4, 4}}, .pose = {}}}, .cloud = {}};
+    for (int i = 0; i < 3000; ++i) {
+      scene.cloud.positions.push_back({side, random.uniform(-1, 1), random.uniform(-1, 1)});
+      scene.cloud.normals.push_back({0, 0, 1});
+    }
+    scene.cloud.positions.push_back({7.7, 3, 3});  // the middle of all is no round number either
+    scene.cloud.normals.push_back({1, 0, 0});
+    constexpr double k_infinity = std::numeric_limits<double>::infinity();
+    AlignedBox below(Eigen::Vector3d::Constant(-k_infinity), Eigen::Vector3d::Constant(k_infinity));
+    AlignedBox above = below;
+    below.max().x() = above.min().x() = side;
+    const std::vector<RankClassesRequest> requests{{.primitives = {0}, .all_points = true, .region = below},
+                                                   {.primitives = {0}, .all_points = true, .region = above}};
+    for (const Precision precision : {Precision::full, Precision::single}) {
+      const PointPass pass = test::pass_over(scene, requests, {}, 1, precision);
+      EXPECT_EQ(pass.tables[0].point_count(), 0U) << side;
+      EXPECT_EQ(pass.tables[1].point_count(), 3001U) << side;
+    }
+  }
+}
+
 /// A request alone is answered from the points, together with one that holds it from that one's classes.
 RC_GTEST_PROP(ManyPrimitives, TablesAreTheSameFromALargerOne, (std::uint64_t seed)) {
   RandomStream random(seed);

@@ -68,6 +68,16 @@ TEST(Regions, HaveNoMoreThanTheLimitWhereBoxesCanBeParted) {
   for (const Region& region : regions) EXPECT_LE(region.near.size(), 12U);
 }
 
+/// Long boxes that only cuts along them can part, though their middles are farther apart the other way.
+TEST(Regions, AreCutAcrossTheAxisThatHelps) {
+  std::vector<AlignedBox> reach;
+  for (int k = 0; k < 100; ++k) {
+    const double x = 0.1 * (k * 37 % 100);
+    reach.emplace_back(Eigen::Vector3d(x - 15, 0.05 * k, 0), Eigen::Vector3d(x + 15, 0.05 * k + 0.02, 1));
+  }
+  for (const Region& region : cut_into_regions(first_indices(100), reach, 20)) EXPECT_LE(region.near.size(), 20U);
+}
+
 TEST(Regions, OfBoxesThatCannotBePartedAreFew) {
   const std::vector<AlignedBox> same(50, AlignedBox(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)));
   EXPECT_EQ(cut_into_regions(first_indices(50), same, 10).size(), 1U);
