@@ -101,6 +101,7 @@ struct MergeStatistics {
 struct TreeStatistics {
   std::size_t size = 0, leaves = 0, depth = 0;
 };
+/// O(size of the tree).
 [[nodiscard]] TreeStatistics statistics_of(const CsgTree& tree);
 
 struct FitStatistics {

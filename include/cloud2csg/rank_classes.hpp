@@ -146,8 +146,7 @@ struct PointPass {
 /// all requested sets at once. Sets that are part of another requested one share its work. The result does not depend
 /// on the number of threads or the instruction set. Primitives that no request names are only segmented. Of many
 /// primitives, only those near a point and those requested together with one that it belongs to are looked at. O(points
-/// x log(points)) then, else O(points x primitives); for each point and each requested set that takes it, O(size^2 /
-/// lanes) more.
+/// x those looked at), and for each point and each requested set that takes it, O(size^2 / lanes) more.
 /// @throws Cancelled
 [[nodiscard]] PointPass build_rank_classes(const PointCloud& cloud, const PrimitiveSet& primitives,
                                            std::span<const RankClassesRequest> requests,

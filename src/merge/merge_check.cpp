@@ -42,6 +42,7 @@ std::vector<Witness> witnesses_in(const MergeWindow& window, std::span<const Cli
     }
   }
   std::vector<Witness> witnesses;
+  witnesses.reserve(whole.size());
   for (const std::size_t k : whole) witnesses.push_back({.tree = trees[k], .clique = &cliques[k]});
   if (!whole.empty()) return witnesses;
   for (const std::size_t k : cut) {
