@@ -59,7 +59,7 @@ void add_options(CLI::App& app, ScalingCommand& command) {
   names.reserve(all_families().size());
   for (const Family family : all_families()) names.emplace_back(to_string(family));
   app.add_option("--family", command.families,
-                 "Models of this family: chain, grid, plate, random, nest, panel\n(default: all)")
+                 fmt::format("Models of this family: {}\n(default: all)", fmt::join(names, ", ")))
       ->check(one_of(names))
       ->type_name("NAME ...")
       ->group("Experiment");

@@ -251,15 +251,15 @@ class Worker {
 
   /// Of the root's primitives, two and two, those that contribute something in the block: their places, and what.
   void pack_loud_pairs(const Root& root) {
-    static constexpr BlockUnits k_nothing{};
+    static constexpr BlockContributions<Real> k_nothing{};
     loud_.clear();
     for (std::size_t place = 0; place < root.primitives.size(); place += 2) {
-      const bool has_second = place + 1 < root.primitives.size();
       const BlockContributions<Real>& first = active(root.primitives[place]).contributions;
-      const BlockContributions<Real>& second = active(root.primitives[place + (has_second ? 1 : 0)]).contributions;
+      const BlockContributions<Real>& second =
+          place + 1 < root.primitives.size() ? active(root.primitives[place + 1]).contributions : k_nothing;
       if (first.is_silent && second.is_silent) continue;
       if (loud_.size() == pairs_.size()) pairs_.emplace_back();
-      interleave(first.units, has_second ? second.units : k_nothing, pairs_[loud_.size()]);
+      interleave(first.units, second.units, pairs_[loud_.size()]);
       loud_.push_back(place);
     }
   }

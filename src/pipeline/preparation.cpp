@@ -98,25 +98,29 @@ class Requests {
 
   /// One a partition.
   void add_partitions() {
-    for (const Clique& partition : preparation_.partitions) add(partition, {}, surroundings(partition));
+    for (const Clique& partition : preparation_.partitions) {
+      add(partition, {}, stride_for(partition.size(), cloud_.size()), surroundings(partition));
+    }
   }
 
   /// For a component of several partitions.
   std::vector<TableWindow> add_windows(const std::vector<PrimitiveIndex>& component) {
-    if (component.size() <= k_whole_limit) return {{.table = add(component, {}, {})}};
+    if (component.size() <= k_whole_limit) {
+      return {{.table = add(component, {}, stride_for(component.size(), cloud_.size()), {})}};
+    }
     std::vector<TableWindow> windows;
     for (PrimitiveIndex local = 0; local < component.size(); ++local) {
       const PrimitiveIndex p = component[local];
       const std::vector<Region> regions = cut_into_regions(preparation_.graph.neighbours[p], reach_, k_whole_limit - 1);
       std::size_t largest = 0;
       for (const Region& region : regions) largest = std::max(largest, region.near.size() + 1);
+      // What a primitive scores in its windows is added up: points must weigh the same in all.
+      const std::size_t stride = stride_for(largest, cloud_.size());
       for (const Region& region : regions) {
         std::vector<PrimitiveIndex> set = region.near;
         set.insert(std::ranges::upper_bound(set, p), p);
         const auto box = regions.size() == 1 ? std::nullopt : std::optional(region.box);
-        windows.push_back({.table = add(std::move(set), {p}, box), .judged = local});
-        // What a primitive scores in its windows is added up: points must weigh the same in all.
-        requests_.back().stride = stride_for(largest, cloud_.size());
+        windows.push_back({.table = add(std::move(set), {p}, stride, box), .judged = local});
       }
     }
     return windows;
@@ -128,9 +132,8 @@ class Requests {
   /// Overlaps so many others that only those nearby may be looked at.
   [[nodiscard]] bool is_hub(PrimitiveIndex p) const { return preparation_.graph.neighbours[p].size() >= k_whole_limit; }
 
-  std::size_t add(std::vector<PrimitiveIndex> primitives, std::vector<PrimitiveIndex> owners,
+  std::size_t add(std::vector<PrimitiveIndex> primitives, std::vector<PrimitiveIndex> owners, std::size_t stride,
                   const std::optional<AlignedBox>& region) {
-    const std::size_t stride = stride_for(primitives.size(), cloud_.size());
     requests_.push_back({.primitives = std::move(primitives),
                          .owners = std::move(owners),
                          .stride = stride,
