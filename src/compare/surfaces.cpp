@@ -11,7 +11,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "compare/triangle_tree.hpp"
-#include "synth/triangle_sampler.hpp"
+#include "primitive/triangle_sampler.hpp"
 
 namespace cloud2csg {
 namespace {

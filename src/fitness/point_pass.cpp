@@ -3,6 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "fitness/frame.hpp"
 #include "fitness/point_worker.hpp"
 #include "fitness/rank_classes_builder.hpp"
 #include "fitness/spatial_order.hpp"
@@ -10,36 +11,11 @@
 namespace cloud2csg {
 namespace {
 
-/// Rounding of single precision is 6e-8 of the largest length involved: a five-thousandth of this.
-constexpr double k_single_precision_noise = 3e-4;
-
-/// Whether its pose may be moved along its plane, which says nothing of the solid but is rounded.
-bool is_plain_half_space(const Primitive& primitive) {
-  return std::holds_alternative<HalfSpace>(primitive.shape) && !primitive.displacement;
-}
-
-Eigen::Vector3d foot_of_origin(const Pose& pose) {
-  const Eigen::Vector3d normal = pose.orientation * Eigen::Vector3d::UnitZ();
-  return normal * normal.dot(pose.position);
-}
-
-/// The largest length that goes into a primitive's distances, seen from a point.
-double reach_from(const Eigen::Vector3d& centre, const Primitive& primitive) {
-  Pose pose = primitive.pose;
-  pose.position -= centre;
-  if (is_plain_half_space(primitive)) return foot_of_origin(pose).norm();
-  const Eigen::Vector3d half_size = oriented_bounds(primitive).half_size;
-  return pose.position.norm() + (half_size.allFinite() ? 2 * half_size.norm() : 0.0);
-}
-
 bool is_single_enough(const AlignedBox& box, const PrimitiveSet& primitives, const PointPassOptions& options) {
   if (options.precision != Precision::automatic) return options.precision == Precision::single;
   // From the far side, an angle near 180 degrees counts as it is, not its square: its cosine does not tell it in
   // single.
-  if (far_side_counts(options.objective.gamma)) return false;
-  double length = box.diagonal().norm();
-  for (const Primitive& primitive : primitives) length = std::max(length, reach_from(box.center(), primitive));
-  return options.noise >= k_single_precision_noise * length;
+  return !far_side_counts(options.objective.gamma) && is_single_enough(box, primitives, options.noise);
 }
 
 /// Whether the gradient has length one wherever it is defined: all but what a user's formula or a displacement bends.
@@ -83,11 +59,8 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
     if (root.region) root.region->translate(-PointBlocks<Real>::origin(box));
   }
   link_roots(input);
-  for (Primitive& primitive : input.primitives) {
-    primitive.pose.position -= PointBlocks<Real>::origin(box);
-    if (sizeof(Real) < sizeof(double) && is_plain_half_space(primitive)) {
-      primitive.pose.position = foot_of_origin(primitive.pose);
-    }
+  move_to_frame<Real>(input.primitives, PointBlocks<Real>::origin(box));
+  for (const Primitive& primitive : input.primitives) {
     input.parameters.push_back({scale.beta, scale.gamma, options.tolerances, has_unit_gradient(primitive)});
   }
   if (primitives.size() > k_many_primitives) {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "synth/triangle_sampler.hpp"
+#include "primitive/triangle_sampler.hpp"
 
 namespace cloud2csg {
 namespace {

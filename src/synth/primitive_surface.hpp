@@ -3,18 +3,11 @@
 #include <functional>
 #include <vector>
 
-#include "base/random.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/point_cloud.hpp"
-#include "cloud2csg/primitive.hpp"
+#include "primitive/plain_surface.hpp"
 
 namespace cloud2csg {
-
-/// A point of a primitive's own surface and the outward normal of that primitive there, in the world.
-struct SurfacePoint {
-  Eigen::Vector3d position;
-  Eigen::Vector3d normal;
-};
 
 /// The surface of one primitive, to draw points from, uniformly by area.
 struct PrimitiveSurface {

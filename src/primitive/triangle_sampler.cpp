@@ -1,4 +1,4 @@
-#include "synth/triangle_sampler.hpp"
+#include "primitive/triangle_sampler.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

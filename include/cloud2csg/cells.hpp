@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/rank_classes.hpp"
+#include "cloud2csg/segmentation.hpp"
+
+/// Cells: the pieces into which the primitives cut space, and what a cloud says of them. A tree says of each cell
+/// whether it is in the solid, and nothing else; few of the 2^n combinations of n primitives occur in space.
+namespace cloud2csg {
+
+/// The primitives that a place is inside of, ascending.
+using Cell = std::vector<PrimitiveIndex>;
+using CellIndex = std::uint32_t;
+
+/// Where two cells meet: at the surface of the primitives that only one of them is inside of; more than one where
+/// surfaces coincide.
+struct Patch {
+  CellIndex first, second;  ///< first < second
+  /// Points on it whose normals say that the first cell is in the solid and the second is not, and the other way
+  /// round. A point that is nearly on the surface of other primitives, too, counts a quarter.
+  double first_in = 0, second_in = 0;
+  double area = 0;  ///< estimated from samples of the primitives' surfaces; in the same sense of counting
+};
+
+struct CellComplex {
+  std::vector<Cell> cells;                       ///< in lexicographic order; the first is outside of all primitives
+  std::vector<Patch> patches;                    ///< ascending by (first, second)
+  std::vector<std::size_t> points_of_primitive;  ///< how many points are on the surface of each primitive
+  std::size_t unassigned = 0;                    ///< points that are on none
+  std::vector<std::uint32_t> order;              ///< all points, so that neighbours are near each other
+};
+
+struct CellOptions {
+  SegmentationTolerances tolerances;
+  double noise;  ///< see estimate_noise()
+  Precision precision = Precision::automatic;
+  /// Points drawn on the surface of each primitive, at least, to find cells and patches without points.
+  std::size_t samples = 256;
+};
+
+/// The cells that points and samples of the primitives' surfaces meet, with what they say. A point speaks where it is
+/// clear on which side of each other primitive it lies: of the cell just inside and just outside of the surface that it
+/// is on. O(points x primitives near each) time. The result does not depend on the number of threads or the instruction
+/// set. Precondition: the cloud has normals and points. @throws Cancelled
+[[nodiscard]] CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                     const CellOptions& options, const RunContext& run = {});
+
+enum class CellLabel : std::uint8_t { out, in, unknown };
+
+struct LabelOptions {
+  /// What the absence of points costs: where a patch between a cell of the solid and one that is not has fewer points
+  /// than this share of what its area lets expect, those that are missing. Half: a surface of which two thirds were
+  /// not seen is still believed.
+  double absence = 0.5;
+  /// A label that costs less than so many points to change is not sure: the cell may become anything. As much as a node
+  /// costs in E(t), so that no part of a formula stands for less.
+  double least_evidence = 12;
+};
+
+struct CellLabels {
+  std::vector<CellLabel> labels = {};  ///< by cell
+  std::vector<double> evidence = {};   ///< by cell: how many points more it costs to change its label alone; at least 0
+  double density = 0;                  ///< points per area of what is surface
+  double points = 0;                   ///< that speak
+  double contradicting = 0;  ///< of these, those that say the opposite of the labels, or only half of what they say
+};
+
+/// Tells which cells are in the solid: points want the cell under them in and the one over them out, patches without
+/// points want both sides equal. The labels with the least cost, exactly: by a minimum cut (Boykov and Kolmogorov 2004)
+/// between the cells. The cell outside of all primitives is out. O(cells + patches) and the cut, which is nearly linear
+/// in practice.
+[[nodiscard]] CellLabels label_cells(const CellComplex& complex, const LabelOptions& options = {});
+
+struct CellSolution {
+  CsgTree tree = {};       ///< over the primitives
+  std::size_t peeled = 0;  ///< primitives that were split off since they are wholly in, or wholly out of, the rest
+  std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
+  std::size_t least_leaves = 0;         ///< no tree that agrees with all sure labels has fewer
+  [[nodiscard]] bool is_minimal() const { return leaf_count(tree) == least_leaves; }
+};
+
+/// A small tree that has the label of each cell that is sure. Primitives that no label depends on are left out; those
+/// that are wholly in the solid, or wholly out of it, but for what others add or take, are split off, again and again,
+/// until nothing or a core is left; parts of it that share no cell are solved one by one. Absent when one of them has
+/// more than 64 primitives. O(size of all cells) but for the cores.
+[[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels);
+
+}  // namespace cloud2csg

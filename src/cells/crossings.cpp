@@ -1,0 +1,259 @@
+#include "cells/crossings.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/parallel.hpp"
+#include "cells/side_kernels.hpp"
+#include "fitness/frame.hpp"
+#include "fitness/point_blocks.hpp"
+
+namespace cloud2csg {
+namespace {
+
+template <class Operation>
+BlockMask combine(const BlockMask& a, const BlockMask& b, const Operation& operation) {
+  BlockMask result{};
+  for (std::size_t w = 0; w < result.size(); ++w) result[w] = operation(a[w], b[w]);
+  return result;
+}
+BlockMask both(const BlockMask& a, const BlockMask& b) {
+  return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x & y; });
+}
+BlockMask either(const BlockMask& a, const BlockMask& b) {
+  return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x | y; });
+}
+BlockMask without(const BlockMask& a, const BlockMask& b) {
+  return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x & ~y; });
+}
+bool is_empty(const BlockMask& mask) {
+  return std::ranges::all_of(mask, [](std::uint64_t word) { return word == 0; });
+}
+std::uint64_t count(const BlockMask& mask) {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t word : mask) sum += static_cast<std::uint64_t>(std::popcount(word));
+  return sum;
+}
+BlockMask first_points(std::size_t points) {
+  BlockMask mask{};
+  for (std::size_t i = 0; i < points; ++i) mask[i / 64] |= std::uint64_t{1} << (i % 64);
+  return mask;
+}
+
+/// Whether the distance changes by no more than one moves: then a block may be told to be far from one point of it.
+bool is_distance_steady(const Primitive& primitive) {
+  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
+}
+
+template <class Real>
+struct Input {
+  const PointCloud& cloud;
+  std::span<const std::uint32_t> order;
+  AlignedBox box;
+  PrimitiveSet primitives;        // in the frame of the blocks
+  std::vector<AlignedBox> reach;  // where points may be on each, in the frame of the blocks
+  SegmentationTolerances tolerances;
+};
+
+/// A primitive whose surface may be in a block.
+struct ActivePrimitive {
+  PrimitiveIndex primitive;
+  BlockSides sides;
+};
+
+template <class Real>
+class CrossingCounter {
+ public:
+  explicit CrossingCounter(const Input<Real>& input) : input_(input), blocks_(input.cloud, input.box, input.order) {
+    crossings_.points_of_primitive.resize(input.primitives.size());
+  }
+
+  void process(std::size_t chunk) {
+    blocks_.load(chunk);
+    look_around();
+    for (std::size_t block = 0; block < blocks_.count(); ++block) {
+      find_active(block);
+      tally(blocks_.size(block));
+    }
+  }
+
+  [[nodiscard]] Crossings& crossings() { return crossings_; }
+
+ private:
+  /// Distances of a primitive at the middle of each block of the chunk.
+  struct NearPrimitive {
+    PrimitiveIndex primitive = 0;
+    std::vector<double> at_middle;  // empty where they say nothing of the rest of the block
+  };
+
+  void look_around() {
+    boxes_.clear();
+    Points middles;
+    for (std::size_t block = 0; block < blocks_.count(); ++block) {
+      boxes_.push_back(blocks_.bounds(block));
+      middles.push_back(boxes_.back().center());
+    }
+    const AlignedBox box = blocks_.bounds();
+    near_.clear();
+    for (PrimitiveIndex p = 0; p < input_.primitives.size(); ++p) {
+      if (!input_.reach[p].intersects(box)) continue;
+      NearPrimitive& near = near_.emplace_back();
+      near.primitive = p;
+      if (!is_distance_steady(input_.primitives[p])) continue;
+      near.at_middle.resize(middles.size());
+      evaluate_distance(input_.primitives[p], middles, near.at_middle);
+    }
+  }
+
+  /// Finds the primitives whose surface may be in the block, and those that hold all of it.
+  void find_active(std::size_t block) {
+    active_.clear();
+    around_.clear();
+    const double radius = boxes_[block].diagonal().norm() / 2;
+    const double margin = 1.001 * (radius + input_.tolerances.distance);
+    for (const NearPrimitive& near : near_) {
+      if (!input_.reach[near.primitive].intersects(boxes_[block])) continue;
+      if (!near.at_middle.empty() && std::abs(near.at_middle[block]) > margin) {
+        if (near.at_middle[block] < 0) around_.push_back(near.primitive);
+        continue;
+      }
+      active_.push_back({near.primitive, sides_of(near.primitive, block)});
+    }
+  }
+
+  BlockSides sides_of(PrimitiveIndex p, std::size_t block) {
+    evaluate_field(input_.primitives[p], blocks_.positions(block),
+                   BasicFieldSpans<Real>{.distance = field_.distance,
+                                         .gradient_x = field_.gradient_x,
+                                         .gradient_y = field_.gradient_y,
+                                         .gradient_z = field_.gradient_z});
+    BlockSides sides;
+    compute_sides(field_, blocks_.normals(block), input_.tolerances, sides);
+    return sides;
+  }
+
+  /// Counts the points of a block of which each active primitive tells something.
+  void tally(std::size_t points) {
+    const BlockMask all = first_points(points);
+    BlockMask on_any{};
+    BlockMask open{};
+    unsure_ = {};
+    for (const ActivePrimitive& active : active_) {
+      const BlockMask on = both(all, either(active.sides.along, active.sides.against));
+      crossings_.points_of_primitive[active.primitive] += count(on);
+      on_any = either(on_any, on);
+      open = either(open, without(active.sides.open, on));
+      unsure_ = either(unsure_, without(active.sides.near, on));
+    }
+    crossings_.unassigned += points - count(on_any);
+    split(0, without(on_any, open));
+  }
+
+  /// Takes apart points by the side of one active primitive after the other.
+  void split(std::size_t next, const BlockMask& points) {
+    if (is_empty(points)) return;
+    if (next == active_.size()) return add(points);
+    const BlockSides& sides = active_[next].sides;
+    const auto follow = [&](Side side, const BlockMask& some) {
+      path_.push_back(side);
+      split(next + 1, some);
+      path_.pop_back();
+    };
+    follow(Side::along, both(points, sides.along));
+    follow(Side::against, both(points, sides.against));
+    const BlockMask clear = without(points, either(sides.along, sides.against));
+    follow(Side::inside, both(clear, sides.inside));
+    follow(Side::outside, without(clear, sides.inside));
+  }
+
+  /// Points that are all on the sides of the path.
+  void add(const BlockMask& points) {
+    inner_ = around_;
+    outer_ = around_;
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+      const PrimitiveIndex p = active_[i].primitive;
+      if (path_[i] == Side::inside || path_[i] == Side::along) inner_.push_back(p);
+      if (path_[i] == Side::inside || path_[i] == Side::against) outer_.push_back(p);
+    }
+    std::ranges::sort(inner_);
+    std::ranges::sort(outer_);
+    const CellIndex inner = crossings_.cells.find_or_insert(inner_);
+    const CellIndex outer = crossings_.cells.find_or_insert(outer_);
+    const std::uint64_t unsure = count(both(points, unsure_));
+    crossings_.units[Crossings::pair(inner, outer)] += k_sure_units * (count(points) - unsure) + unsure;
+  }
+
+  enum class Side : std::uint8_t { inside, outside, along, against };
+
+  const Input<Real>& input_;
+  PointBlocks<Real> blocks_;
+  std::vector<AlignedBox> boxes_;  // by block of the chunk
+  std::vector<NearPrimitive> near_;
+  std::vector<ActivePrimitive> active_;
+  Cell around_;  // holds all of the block
+  BlockField<Real> field_;
+  BlockMask unsure_{};
+  std::vector<Side> path_;
+  Cell inner_, outer_;
+  Crossings crossings_;
+};
+
+/// Chunks a thread; the sums do not depend on how many.
+template <class Real>
+Crossings count_in(const PointCloud& cloud, std::span<const std::uint32_t> order, const AlignedBox& box,
+                   const PrimitiveSet& primitives, const CellOptions& options, const RunContext& run) {
+  Input<Real> input{cloud, order, box, primitives, {}, options.tolerances};
+  move_to_frame<Real>(input.primitives, PointBlocks<Real>::origin(box));
+  // Room for what rounding does.
+  const double distance = 1.01 * options.tolerances.distance + 1e-9 * (box.diagonal().norm() + box.center().norm());
+  for (const Primitive& primitive : input.primitives) input.reach.push_back(reach(primitive, distance));
+  const std::size_t chunks = chunk_count(cloud.size());
+  const std::size_t parts = std::clamp<std::size_t>(chunks, 1, static_cast<std::size_t>(usable_threads(run)));
+  std::vector<Crossings> shares(parts);
+  for_each_index(parts, run, [&](std::size_t k) {
+    CrossingCounter<Real> counter(input);
+    for (std::size_t chunk = chunks * k / parts; chunk < chunks * (k + 1) / parts; ++chunk) {
+      run.throw_if_stopped();
+      if (k == 0) run.report("cells", chunk, chunks / parts);
+      counter.process(chunk);
+    }
+    shares[k] = std::move(counter.crossings());
+  });
+  for (std::size_t k = 1; k < parts; ++k) shares.front().absorb(shares[k]);
+  return std::move(shares.front());
+}
+
+}  // namespace
+
+std::size_t CellSet::Hash::operator()(const Cell& cell) const {
+  std::uint64_t hash = cell.size();
+  for (const PrimitiveIndex p : cell) hash = std::rotl((hash ^ p) * 0x9e37'79b9'7f4a'7c15ULL, 29);
+  return hash;
+}
+
+CellIndex CellSet::find_or_insert(const Cell& cell) {
+  const auto [place, is_new] = index_.try_emplace(cell, static_cast<CellIndex>(cells_.size()));
+  if (is_new) cells_.push_back(&place->first);
+  return place->second;
+}
+
+void Crossings::absorb(const Crossings& other) {
+  for (const auto& [pair_of_other, count] : other.units) {
+    const CellIndex in = cells.find_or_insert(other.cells[inner(pair_of_other)]);
+    const CellIndex out = cells.find_or_insert(other.cells[outer(pair_of_other)]);
+    units[pair(in, out)] += count;
+  }
+  for (std::size_t p = 0; p < points_of_primitive.size(); ++p) points_of_primitive[p] += other.points_of_primitive[p];
+  unassigned += other.unassigned;
+}
+
+Crossings count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order, const PrimitiveSet& primitives,
+                          const CellOptions& options, const RunContext& run) {
+  const AlignedBox box = bounds_of(cloud.positions);
+  const bool is_single = options.precision == Precision::automatic ? is_single_enough(box, primitives, options.noise)
+                                                                   : options.precision == Precision::single;
+  return is_single ? count_in<float>(cloud, order, box, primitives, options, run)
+                   : count_in<double>(cloud, order, box, primitives, options, run);
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <unordered_map>
+
+#include "cloud2csg/cells.hpp"
+
+/// What points say of the cells on either side of the surface that they are on.
+namespace cloud2csg {
+
+/// Cells by number, in the order in which they were met.
+class CellSet {
+ public:
+  CellIndex find_or_insert(const Cell& cell);
+  [[nodiscard]] const Cell& operator[](CellIndex i) const { return *cells_[i]; }
+  [[nodiscard]] std::size_t size() const { return cells_.size(); }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Cell& cell) const;
+  };
+  std::unordered_map<Cell, CellIndex, Hash> index_;
+  std::vector<const Cell*> cells_;  // keys of index_, which stay where they are
+};
+
+/// A point counts so many units; one where it is not sure on which side of some primitive it is.
+inline constexpr std::uint64_t k_sure_units = 4;
+
+struct Crossings {
+  CellSet cells;
+  std::unordered_map<std::uint64_t, std::uint64_t> units;  ///< by (inner cell, outer cell), packed
+  std::vector<std::size_t> points_of_primitive;
+  std::size_t unassigned = 0;
+
+  [[nodiscard]] static std::uint64_t pair(CellIndex inner, CellIndex outer) {
+    return std::uint64_t{inner} << 32U | outer;
+  }
+  [[nodiscard]] static CellIndex inner(std::uint64_t pair) { return static_cast<CellIndex>(pair >> 32U); }
+  [[nodiscard]] static CellIndex outer(std::uint64_t pair) { return static_cast<CellIndex>(pair); }
+
+  void absorb(const Crossings& other);
+};
+
+/// `order`: see spatial_order(). @throws Cancelled
+[[nodiscard]] Crossings count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
+                                        const PrimitiveSet& primitives, const CellOptions& options,
+                                        const RunContext& run);
+
+}  // namespace cloud2csg

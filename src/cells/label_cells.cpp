@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <boost/graph/boykov_kolmogorov_max_flow.hpp>
+#include <boost/graph/compressed_sparse_row_graph.hpp>
+#include <cmath>
+#include <limits>
+
+#include "cloud2csg/cells.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// Points per area of what is surface: the median over the points.
+double density_of(const CellComplex& complex) {
+  struct Seen {
+    double density, points;
+  };
+  std::vector<Seen> seen;
+  double all = 0;
+  for (const Patch& patch : complex.patches) {
+    const double points = patch.first_in + patch.second_in;
+    if (!(points > 0) || !(patch.area > 0)) continue;
+    seen.push_back({points / patch.area, points});
+    all += points;
+  }
+  std::ranges::sort(seen, {}, &Seen::density);
+  double sum = 0;
+  for (const Seen& patch : seen) {
+    sum += patch.points;
+    if (2 * sum >= all) return patch.density;
+  }
+  return 0;
+}
+
+/// The least cut between two sides, of a graph that is given edge by edge.
+class MinimumCut {
+ public:
+  explicit MinimumCut(std::size_t nodes) : to_source_(nodes), to_sink_(nodes) {}
+
+  /// What it costs to have the node on the far side of each.
+  void add_source(CellIndex node, double cost) { to_source_[node] += cost; }
+  void add_sink(CellIndex node, double cost) { to_sink_[node] += cost; }
+  /// What it costs to have two nodes on different sides.
+  void add_edge(CellIndex a, CellIndex b, double cost) {
+    if (cost > 0) edges_.push_back({a, b, cost});
+  }
+
+  /// Whether each node is on the source's side.
+  [[nodiscard]] std::vector<bool> solve() const {
+    const std::size_t nodes = to_source_.size();
+    const std::size_t source = nodes;
+    const std::size_t sink = nodes + 1;
+    std::vector<Arc> arcs;
+    arcs.reserve(2 * (edges_.size() + 2 * nodes));
+    const auto connect = [&arcs](std::size_t a, std::size_t b, double there, double back) {
+      arcs.push_back({a, b, there});
+      arcs.push_back({b, a, back});
+    };
+    for (std::size_t node = 0; node < nodes; ++node) {
+      // Only the difference matters.
+      const double both = std::min(to_source_[node], to_sink_[node]);
+      if (to_source_[node] > both) connect(source, node, to_source_[node] - both, 0);
+      if (to_sink_[node] > both) connect(node, sink, to_sink_[node] - both, 0);
+    }
+    for (const Edge& edge : edges_) connect(edge.a, edge.b, edge.cost, edge.cost);
+    return cut(nodes + 2, source, sink, arcs);
+  }
+
+ private:
+  struct Edge {
+    CellIndex a, b;
+    double cost;
+  };
+  struct Arc {
+    std::size_t from, to;
+    double capacity;
+  };
+
+  static std::vector<bool> cut(std::size_t nodes, std::size_t source, std::size_t sink, const std::vector<Arc>& arcs) {
+    using Graph = boost::compressed_sparse_row_graph<boost::directedS>;
+    using ArcOfGraph = boost::graph_traits<Graph>::edge_descriptor;
+    // The graph keeps its arcs by where they start: `order` says which one comes when.
+    std::vector<std::size_t> order(arcs.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, {}, [&arcs](std::size_t i) { return arcs[i].from; });
+    std::vector<std::pair<std::size_t, std::size_t>> ends;
+    std::vector<std::size_t> place(arcs.size());
+    ends.reserve(arcs.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      ends.emplace_back(arcs[order[k]].from, arcs[order[k]].to);
+      place[order[k]] = k;
+    }
+    const Graph graph(boost::edges_are_sorted, ends.begin(), ends.end(), nodes);
+    std::vector<double> capacity(arcs.size());
+    std::vector<ArcOfGraph> reverse(arcs.size());
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+      const std::size_t twin = i ^ 1U;
+      capacity[place[i]] = arcs[i].capacity;
+      reverse[place[i]] = ArcOfGraph(arcs[twin].from, place[twin]);
+    }
+    std::vector<double> residual(arcs.size());
+    std::vector<ArcOfGraph> predecessor(nodes);
+    std::vector<boost::default_color_type> colour(nodes);
+    std::vector<std::size_t> distance(nodes);
+    const auto by_arc = boost::get(boost::edge_index, graph);
+    const auto by_node = boost::get(boost::vertex_index, graph);
+    const auto map = [](auto& values, const auto& index) {
+      return boost::make_iterator_property_map(values.begin(), index);
+    };
+    boost::boykov_kolmogorov_max_flow(graph, map(capacity, by_arc), map(residual, by_arc), map(reverse, by_arc),
+                                      map(predecessor, by_node), map(colour, by_node), map(distance, by_node), by_node,
+                                      source, sink);
+    std::vector<bool> is_source(nodes - 2);
+    for (std::size_t node = 0; node < is_source.size(); ++node) is_source[node] = colour[node] == boost::black_color;
+    return is_source;
+  }
+
+  std::vector<double> to_source_, to_sink_;
+  std::vector<Edge> edges_;
+};
+
+class Labeller {
+ public:
+  Labeller(const CellComplex& complex, const LabelOptions& options)
+      : complex_(complex),
+        options_(options),
+        density_(density_of(complex)),
+        in_(complex.cells.size()),
+        out_(complex.cells.size()) {
+    for (const Patch& patch : complex.patches) {
+      in_[patch.first] += patch.first_in;
+      out_[patch.second] += patch.first_in;
+      in_[patch.second] += patch.second_in;
+      out_[patch.first] += patch.second_in;
+      points_ += patch.first_in + patch.second_in;
+    }
+  }
+
+  CellLabels label() const {
+    MinimumCut cut(complex_.cells.size());
+    for (CellIndex cell = 0; cell < complex_.cells.size(); ++cell) {
+      cut.add_source(cell, in_[cell]);
+      cut.add_sink(cell, out_[cell]);
+    }
+    cut.add_sink(0, 1e12);  // all solids are bounded
+    for (const Patch& patch : complex_.patches) cut.add_edge(patch.first, patch.second, missing_points(patch));
+    const std::vector<bool> is_in = cut.solve();
+    return judged(is_in);
+  }
+
+ private:
+  /// Points that would be on a patch, were it surface, and are not.
+  [[nodiscard]] double missing_points(const Patch& patch) const {
+    return std::max(0.0, options_.absence * density_ * patch.area - (patch.first_in + patch.second_in));
+  }
+
+  [[nodiscard]] CellLabels judged(const std::vector<bool>& is_in) const {
+    CellLabels result{.density = density_, .points = points_};
+    // What it costs to turn a cell, the others being as they are.
+    result.evidence.resize(is_in.size());
+    for (CellIndex cell = 0; cell < is_in.size(); ++cell) {
+      result.evidence[cell] = is_in[cell] ? in_[cell] - out_[cell] : out_[cell] - in_[cell];
+      result.contradicting += (is_in[cell] ? out_[cell] : in_[cell]) / 2;
+    }
+    for (const Patch& patch : complex_.patches) {
+      const double change = is_in[patch.first] == is_in[patch.second] ? missing_points(patch) : -missing_points(patch);
+      result.evidence[patch.first] += change;
+      result.evidence[patch.second] += change;
+    }
+    result.evidence[0] = std::numeric_limits<double>::infinity();
+    for (std::size_t cell = 0; cell < is_in.size(); ++cell) {
+      result.evidence[cell] = std::max(0.0, result.evidence[cell]);
+      const bool is_sure = result.evidence[cell] >= options_.least_evidence;
+      result.labels.push_back(!is_sure ? CellLabel::unknown : is_in[cell] ? CellLabel::in : CellLabel::out);
+    }
+    return result;
+  }
+
+  const CellComplex& complex_;
+  const LabelOptions& options_;
+  double density_;
+  std::vector<double> in_, out_;  // points that want a cell in, and out
+  double points_ = 0;
+};
+
+}  // namespace
+
+CellLabels label_cells(const CellComplex& complex, const LabelOptions& options) {
+  return Labeller(complex, options).label();
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,251 @@
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+
+#include "cells/decompose.hpp"
+#include "cloud2csg/cells.hpp"
+#include "cloud2csg/simplify.hpp"
+
+namespace cloud2csg {
+namespace {
+
+struct CellHash {
+  std::size_t operator()(const Cell& cell) const {
+    std::uint64_t hash = cell.size();
+    for (const PrimitiveIndex p : cell) hash = (hash ^ p) * 0x9e37'79b9'7f4a'7c15ULL + (hash >> 32U);
+    return hash;
+  }
+};
+
+Cell without(const Cell& cell, PrimitiveIndex primitive) {
+  Cell rest = cell;
+  std::erase(rest, primitive);
+  return rest;
+}
+
+/// A cell of which it is sure whether it is in the solid.
+struct KnownCell {
+  Cell cell;
+  bool is_in = false;
+  bool is_open = true;  ///< no primitive that was split off decides it
+};
+
+/// The sure cells, without primitives on which no label depends.
+class KnownCells {
+ public:
+  KnownCells(const CellComplex& complex, const CellLabels& labels) : cells_of_(complex.points_of_primitive.size()) {
+    for (CellIndex c = 0; c < complex.cells.size(); ++c) {
+      if (labels.labels[c] == CellLabel::unknown) continue;
+      is_in_.emplace(complex.cells[c], labels.labels[c] == CellLabel::in);
+      for (const PrimitiveIndex p : complex.cells[c]) cells_of_[p].push_back(complex.cells[c]);
+    }
+    for (const PrimitiveIndex p : least_seen_first(complex)) {
+      if (is_needed(p)) {
+        ++essential_;
+      } else {
+        leave_out(p);
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<KnownCell> sorted() const {
+    std::vector<KnownCell> cells;
+    cells.reserve(is_in_.size());
+    for (const auto& [cell, is_in] : is_in_) cells.push_back({cell, is_in});
+    std::ranges::sort(cells, {}, &KnownCell::cell);
+    return cells;
+  }
+
+  /// How many primitives are needed in any tree.
+  [[nodiscard]] std::size_t essential() const { return essential_; }
+
+ private:
+  /// By the points on the patches between a cell that they hold and one that they do not.
+  static std::vector<PrimitiveIndex> least_seen_first(const CellComplex& complex) {
+    std::vector<double> seen(complex.points_of_primitive.size());
+    Cell between;
+    for (const Patch& patch : complex.patches) {
+      between.clear();
+      std::ranges::set_symmetric_difference(complex.cells[patch.first], complex.cells[patch.second],
+                                            std::back_inserter(between));
+      for (const PrimitiveIndex p : between) seen[p] += patch.first_in + patch.second_in;
+    }
+    std::vector<PrimitiveIndex> order(seen.size());
+    std::iota(order.begin(), order.end(), PrimitiveIndex{0});
+    std::ranges::stable_sort(order, {}, [&seen](PrimitiveIndex p) { return seen[p]; });
+    return order;
+  }
+
+  /// Whether two cells differ in nothing but the primitive, and in their label.
+  [[nodiscard]] bool is_needed(PrimitiveIndex p) const {
+    return std::ranges::any_of(cells_of_[p], [&](const Cell& cell) {
+      const auto self = is_in_.find(cell);
+      const auto other = is_in_.find(without(cell, p));
+      return self != is_in_.end() && other != is_in_.end() && self->second != other->second;
+    });
+  }
+
+  void leave_out(PrimitiveIndex p) {
+    for (const Cell& cell : cells_of_[p]) {
+      const auto found = is_in_.find(cell);
+      if (found == is_in_.end()) continue;
+      const bool is_in = found->second;
+      is_in_.erase(found);
+      Cell rest = without(cell, p);
+      if (!is_in_.try_emplace(rest, is_in).second) continue;
+      for (const PrimitiveIndex other : rest) cells_of_[other].push_back(rest);
+    }
+  }
+
+  std::unordered_map<Cell, bool, CellHash> is_in_;
+  std::vector<std::vector<Cell>> cells_of_;  // by primitive; some of them are no longer in is_in_
+  std::size_t essential_ = 0;
+};
+
+/// Splits off what is wholly in, or wholly out.
+class Peeler {
+ public:
+  Peeler(std::vector<KnownCell> cells, std::size_t primitives)
+      : cells_(std::move(cells)), cells_of_(primitives), in_(primitives), out_(primitives) {
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      for (const PrimitiveIndex p : cells_[c].cell) {
+        cells_of_[p].push_back(c);
+        ++(cells_[c].is_in ? in_ : out_)[p];
+      }
+    }
+  }
+
+  /// Primitives that were split off at once: all united with the rest, or all taken from it.
+  struct Round {
+    bool are_in;
+    std::vector<PrimitiveIndex> primitives;
+  };
+
+  /// What is split off first stands outermost. Differences first.
+  [[nodiscard]] std::vector<Round> peel() {
+    std::vector<Round> rounds;
+    bool are_in = false;
+    for (int idle = 0; idle < 2; are_in = !are_in) {
+      Round round{.are_in = are_in, .primitives = {}};
+      for (const PrimitiveIndex p : candidates(are_in)) {
+        // One whose cells have all been decided meanwhile is not needed.
+        if ((are_in ? in_ : out_)[p] == 0) continue;
+        round.primitives.push_back(p);
+        close_cells_of(p);
+      }
+      std::ranges::sort(round.primitives);
+      idle = round.primitives.empty() ? idle + 1 : 0;
+      if (!round.primitives.empty()) rounds.push_back(std::move(round));
+    }
+    return rounds;
+  }
+
+  [[nodiscard]] const std::vector<KnownCell>& cells() const { return cells_; }
+
+ private:
+  /// Those with most cells first: they may decide those of others.
+  [[nodiscard]] std::vector<PrimitiveIndex> candidates(bool are_in) const {
+    const std::vector<std::size_t>& right = are_in ? in_ : out_;
+    const std::vector<std::size_t>& wrong = are_in ? out_ : in_;
+    std::vector<PrimitiveIndex> found;
+    for (PrimitiveIndex p = 0; p < cells_of_.size(); ++p) {
+      if (right[p] > 0 && wrong[p] == 0) found.push_back(p);
+    }
+    std::ranges::stable_sort(found, std::greater<>(), [&right](PrimitiveIndex p) { return right[p]; });
+    return found;
+  }
+
+  void close_cells_of(PrimitiveIndex p) {
+    for (const std::size_t c : cells_of_[p]) {
+      KnownCell& known = cells_[c];
+      if (!known.is_open) continue;
+      known.is_open = false;
+      for (const PrimitiveIndex other : known.cell) --(known.is_in ? in_ : out_)[other];
+    }
+  }
+
+  std::vector<KnownCell> cells_;
+  std::vector<std::vector<std::size_t>> cells_of_;  // by primitive
+  std::vector<std::size_t> in_, out_;               // by primitive: open cells with it
+};
+
+/// Open cells that share primitives, and these.
+struct Core {
+  std::vector<PrimitiveIndex> primitives;  ///< ascending
+  std::vector<const KnownCell*> cells;
+};
+
+std::vector<Core> cores_of(const std::vector<KnownCell>& cells, std::size_t primitives) {
+  std::vector<PrimitiveIndex> leader(primitives);
+  std::iota(leader.begin(), leader.end(), PrimitiveIndex{0});
+  const auto find = [&leader](PrimitiveIndex p) {
+    while (leader[p] != p) p = leader[p] = leader[leader[p]];
+    return p;
+  };
+  std::vector<bool> is_used(primitives, false);
+  for (const KnownCell& known : cells) {
+    if (!known.is_open || known.cell.empty()) continue;
+    for (const PrimitiveIndex p : known.cell) {
+      is_used[p] = true;
+      leader[find(p)] = find(known.cell.front());
+    }
+  }
+  std::vector<Core> cores;
+  std::unordered_map<PrimitiveIndex, std::size_t> place;
+  for (PrimitiveIndex p = 0; p < primitives; ++p) {
+    if (!is_used[p]) continue;
+    const auto [found, is_new] = place.try_emplace(find(p), cores.size());
+    if (is_new) cores.emplace_back();
+    cores[found->second].primitives.push_back(p);
+  }
+  for (const KnownCell& known : cells) {
+    if (known.is_open && !known.cell.empty()) cores[place.at(find(known.cell.front()))].cells.push_back(&known);
+  }
+  return cores;
+}
+
+CsgTree solve_core(const Core& core) {
+  KnownRows rows{.on = {}, .off = {0}};
+  for (const KnownCell* known : core.cells) {
+    Assignment row = 0;
+    for (const PrimitiveIndex p : known->cell) {
+      const auto place = std::ranges::lower_bound(core.primitives, p) - core.primitives.begin();
+      row |= Assignment{1} << static_cast<std::size_t>(place);
+    }
+    (known->is_in ? rows.on : rows.off).push_back(row);
+  }
+  return renumber(decompose(rows), core.primitives);
+}
+
+std::vector<CsgTree> leaves(const std::vector<PrimitiveIndex>& primitives) {
+  std::vector<CsgTree> trees;
+  trees.reserve(primitives.size());
+  for (const PrimitiveIndex p : primitives) trees.push_back(CsgTree::leaf(p));
+  return trees;
+}
+
+}  // namespace
+
+std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels) {
+  const KnownCells known(complex, labels);
+  const std::size_t primitives = complex.points_of_primitive.size();
+  Peeler peeler(known.sorted(), primitives);
+  const std::vector<Peeler::Round> rounds = peeler.peel();
+  CellSolution solution{.least_leaves = known.essential()};
+  std::vector<CsgTree> trees;
+  for (const Core& core : cores_of(peeler.cells(), primitives)) {
+    if (core.primitives.size() > k_most_variables) return std::nullopt;
+    solution.cores.push_back(core.primitives.size());
+    trees.push_back(solve_core(core));
+  }
+  CsgTree tree = unite_all(trees);
+  for (auto round = rounds.rbegin(); round != rounds.rend(); ++round) {
+    const CsgTree split = unite_all(leaves(round->primitives));
+    solution.peeled += round->primitives.size();
+    tree = round->are_in ? unite(tree, split) : subtract(tree, split);
+  }
+  solution.tree = simplify(tree);
+  return solution;
+}
+
+}  // namespace cloud2csg

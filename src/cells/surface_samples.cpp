@@ -1,0 +1,121 @@
+#include "cells/surface_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "primitive/plain_surface.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::uint64_t k_stream = 0x63656c6c73'00;
+
+bool is_plain(const Primitive& primitive) {
+  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
+}
+
+struct Field {
+  explicit Field(std::size_t count) : distances(count), slopes(count) {}
+  std::vector<double> distances;
+  Points slopes;
+};
+
+void evaluate(const Primitive& primitive, const Points& points, Field& field) {
+  evaluate_field(primitive, points,
+                 {.distance = field.distances,
+                  .gradient_x = field.slopes.x,
+                  .gradient_y = field.slopes.y,
+                  .gradient_z = field.slopes.z});
+}
+
+/// Moves points onto f = 0 along the gradient and gives them its direction; those that do not get there are left out.
+PointCloud settled(const Primitive& primitive, Points points, double scale) {
+  constexpr int k_steps = 12;
+  constexpr double k_arrived = 1e-6;
+  Field field(points.size());
+  for (int step = 0; step <= k_steps; ++step) {
+    evaluate(primitive, points, field);
+    if (step == k_steps) break;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d slope = field.slopes[i];
+      const double square = slope.squaredNorm();
+      if (square > 0) points.set(i, points[i] - field.distances[i] / square * slope);
+    }
+  }
+  PointCloud cloud;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d slope = field.slopes[i];
+    if (!(std::abs(field.distances[i]) <= k_arrived * scale) || !(slope.norm() > 0)) continue;
+    cloud.positions.push_back(points[i]);
+    cloud.normals.push_back(slope.normalized());
+  }
+  return cloud;
+}
+
+/// Samples of one surface, and what each stands for.
+struct Drawn {
+  PointCloud points;
+  double area_of_one = 0;
+};
+
+Drawn draw_plain(const Primitive& primitive, const AlignedBox& region, std::size_t samples, RandomStream& random) {
+  const PlainSurface surface = make_plain_surface(primitive, region);
+  Drawn drawn{.points = {}, .area_of_one = surface.area / static_cast<double>(samples)};
+  if (!(surface.area > 0)) return drawn;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const SurfacePoint point = surface.draw(random);
+    drawn.points.positions.push_back(point.position);
+    drawn.points.normals.push_back(point.normal);
+  }
+  return drawn;
+}
+
+/// Where only the field is known: places in a thin layer around the surface, moved onto it. The layer is as much of the
+/// bounds as chance says.
+Drawn draw_from_field(const Primitive& primitive, std::size_t samples, RandomStream& random) {
+  constexpr std::size_t k_places_a_sample = 16;
+  constexpr double k_layer = 0.01;  // half its thickness, of the diagonal
+  const AlignedBox box = bounds(primitive);
+  const double scale = box.diagonal().norm();
+  const std::size_t places = k_places_a_sample * samples;
+  Points all;
+  all.reserve(places);
+  for (std::size_t i = 0; i < places; ++i) {
+    Eigen::Vector3d place;
+    for (int axis = 0; axis < 3; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
+    all.push_back(place);
+  }
+  Field field(places);
+  evaluate(primitive, all, field);
+  Points near;
+  for (std::size_t i = 0; i < places; ++i) {
+    if (std::abs(field.distances[i]) <= k_layer * scale * field.slopes[i].norm()) near.push_back(all[i]);
+  }
+  const double layer = box.volume() * static_cast<double>(near.size()) / static_cast<double>(places);
+  near.resize(std::min(near.size(), samples));
+  Drawn drawn{.points = settled(primitive, std::move(near), scale)};
+  const double area = layer / (2 * k_layer * scale);
+  drawn.area_of_one = area / std::max(1.0, static_cast<double>(drawn.points.size()));
+  return drawn;
+}
+
+}  // namespace
+
+SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, const AlignedBox& region, std::size_t samples) {
+  SurfaceSamples result;
+  result.points.positions.reserve(samples * primitives.size());
+  result.points.normals.reserve(samples * primitives.size());
+  for (std::size_t p = 0; p < primitives.size(); ++p) {
+    RandomStream random(0, k_stream, p);
+    const Drawn drawn = is_plain(primitives[p]) ? draw_plain(primitives[p], region, samples, random)
+                                                : draw_from_field(primitives[p], samples, random);
+    result.area_of_sample.push_back(drawn.area_of_one);
+    for (std::size_t i = 0; i < drawn.points.size(); ++i) {
+      result.points.positions.push_back(drawn.points.positions[i]);
+      result.points.normals.push_back(drawn.points.normals[i]);
+    }
+  }
+  return result;
+}
+
+}  // namespace cloud2csg
