@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/run_context.hpp"
 
 /// Small formulas for what is known of a solid: which combinations of primitives are in it, which are not.
 namespace cloud2csg {
@@ -44,5 +45,34 @@ class PartialFunction {
 [[nodiscard]] std::vector<std::uint64_t> evaluate(const CsgTree& formula, const PartialFunction& function);
 /// Whether the formula has the function's value in every row. O(size x words)
 [[nodiscard]] bool agrees(const CsgTree& formula, const PartialFunction& function);
+
+/// How much work to do at most: counted, never timed, so that the same function gives the same formula everywhere.
+struct MinimalFormulaOptions {
+  /// Functions of few leaves that are listed, some 30 bytes each and 8 more a word. All of up to five leaves over eight
+  /// variables are below the default.
+  std::size_t table_limit = std::size_t{1} << 20;
+  /// Pairs of such functions that are tried, times the words. The default takes two or three seconds.
+  std::uint64_t combination_limit = 2'000'000'000;
+};
+
+struct MinimalFormula {
+  CsgTree tree;                  ///< over the function's variables, as simplify() leaves it
+  bool is_minimal = false;       ///< whether it is proved that no formula of fewer leaves agrees with the function
+  std::size_t least_leaves = 0;  ///< no formula of fewer leaves agrees: this is proved in any case
+};
+
+/// A smallest formula of unions, intersections and differences, and maybe a complement at the root, that agrees with
+/// the function; leaves count as often as they appear. When the work or the run ends before one is found, or proved to
+/// be, a small one that need not be smallest; it agrees all the same. None only for a function of more than 512
+/// different assignments, once variables that are equal (or complements) in all rows count as one.
+///
+/// A formula over all of space, with the complement, is as good as any other: who wants a bounded solid adds the row
+/// without true variables. Of several smallest formulas always the same is taken.
+///
+/// The work is exponential in the leaves, not in the variables or rows: mostly well below a second for ten leaves over
+/// eight variables. Memory is in proportion to the limit of tables.
+[[nodiscard]] std::optional<MinimalFormula> minimal_formula(const PartialFunction& function,
+                                                            const MinimalFormulaOptions& options = {},
+                                                            const RunContext& run = {});
 
 }  // namespace cloud2csg
