@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr std::uint64_t k_stream = 0x646566656374;
 constexpr double k_noise_of_diagonal = 0.005;
 constexpr double k_missing_share = 0.2;
-constexpr double k_patch_of_diagonal = 0.04;  ///< radius
+constexpr double k_patch_of_primitive = 0.25;  ///< points in a patch, of those that a primitive has on average
 constexpr double k_outlier_share = 0.05;
 constexpr double k_enlarged = 0.1;  ///< of the bounds, for outliers
 
@@ -37,12 +37,22 @@ PointCloud select_points(const PointCloud& cloud, const std::vector<bool>& is_ke
   return selected;
 }
 
-PointCloud without_patches(const PointCloud& cloud, RandomStream& random) {
-  const double radius = k_patch_of_diagonal * bounds_of(cloud.positions).diagonal().norm();
+/// The distance within which a share of the points lies.
+double radius_around(const Vector3d& middle, const PointCloud& cloud, double share) {
+  std::vector<double> distances(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) distances[i] = (cloud.positions[i] - middle).norm();
+  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(cloud.size()));
+  std::ranges::nth_element(distances, nth);
+  return *nth;
+}
+
+/// Balls that each hold `patch_share` of the points.
+PointCloud without_patches(const PointCloud& cloud, double patch_share, RandomStream& random) {
   const auto wanted = static_cast<std::size_t>(k_missing_share * static_cast<double>(cloud.size()));
   std::vector<bool> is_kept(cloud.size(), true);
   for (std::size_t gone = 0; gone < wanted;) {
     const Vector3d middle = cloud.positions[random.below(cloud.size())];
+    const double radius = radius_around(middle, cloud, patch_share);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       if (!is_kept[i] || (cloud.positions[i] - middle).norm() > radius) continue;
       is_kept[i] = false;
@@ -97,7 +107,10 @@ PointCloud defective_cloud(const Model& model, Defect defect, const DefectOption
     sample.noise = k_noise_of_diagonal * bounds_of(*model.tree, model.primitives).diagonal().norm();
   }
   PointCloud cloud = sample_surface(*model.tree, model.primitives, sample);
-  if (defect == Defect::patches) return without_patches(cloud, random);
+  if (defect == Defect::patches) {
+    const double patch_share = k_patch_of_primitive / static_cast<double>(model.primitives.size());
+    return without_patches(cloud, patch_share, random);
+  }
   if (defect == Defect::outliers) return with_outliers(std::move(cloud), random);
   return cloud;
 }
