@@ -11,6 +11,9 @@ for name in micro overlap evaluation extraction recovery; do
   step "bench_$name, to out/bench/$name.md"
   "build/release/bench/bench_$name" | tee "out/bench/$name.md"
 done
+# The baseline takes half an hour more: bench_quality without options.
+step "bench_quality, to out/bench/quality.md"
+build/release/bench/bench_quality --strategies auto,paper | tee out/bench/quality.md
 for name in paper scaling; do
   step "cloud2csg bench $name, to out/$name"
   "$program" bench "$name" -o "out/$name"

@@ -1,0 +1,78 @@
+// How right and how compact extracted trees are: on the shipped models, on random ones, and with defects in the input.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+
+#include "quality/parts.hpp"
+
+namespace cloud2csg::bench {
+namespace {
+
+struct Arguments {
+  std::string part = "all";
+  std::vector<std::string> settings;
+  std::size_t models = 0;  ///< 0: the defaults
+  QualityOptions options;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  std::vector<std::string> names;
+  for (const Setting& setting : all_settings()) names.push_back(setting.name);
+  arguments.settings = names;
+  QualityOptions& options = arguments.options;
+  app.add_option("--part", arguments.part, "What to measure")
+      ->check(CLI::IsMember({"judge", "models", "random", "defects", "all"}))
+      ->capture_default_str();
+  app.add_option("--strategies", arguments.settings, "Settings of the extraction, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  app.add_option("--seeds", options.seeds, "Runs a shipped model")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--models", arguments.models, "Random models [500; 50 with defects]")->check(CLI::PositiveNumber);
+  app.add_option("--first-seed", options.first_seed, "Seed of the first random model")->capture_default_str();
+  app.add_option("--noise", options.noise, "Noise of random models")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--threads", options.run.threads, "Tasks at a time, 0: one a core; only times depend on it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+void print_part(const std::string& part, const QualityOptions& options) {
+  const auto is_wanted = [&part](const char* name) { return part == name || part == "all"; };
+  if (is_wanted("judge")) print_judge_check();
+  if (is_wanted("models")) print_models(options);
+  if (is_wanted("random")) print_random(options);
+  if (is_wanted("defects")) print_defects(options);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Prints how right and how compact extracted trees are.");
+  Arguments arguments;
+  add_options(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  QualityOptions& options = arguments.options;
+  if (arguments.models > 0) options.random_models = options.defect_models = arguments.models;
+  for (const Setting& setting : all_settings()) {
+    if (std::ranges::count(arguments.settings, setting.name) > 0) options.run.settings.push_back(setting);
+  }
+  // Tables appear one by one, also in a file.
+  (void)std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+  print_part(arguments.part, options);
+  return 0;
+}
+
+}  // namespace
+}  // namespace cloud2csg::bench
+
+int main(int argc, char** argv) {
+  try {
+    return cloud2csg::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    (void)std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

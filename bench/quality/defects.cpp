@@ -1,0 +1,158 @@
+#include "quality/defects.hpp"
+
+#include <algorithm>
+
+#include "base/random.hpp"
+#include "cloud2csg/mesh.hpp"
+#include "cloud2csg/restrict.hpp"
+#include "cloud2csg/sample.hpp"
+#include "primitive/overloaded.hpp"
+
+namespace cloud2csg::bench {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t k_stream = 0x646566656374;
+constexpr double k_noise_of_diagonal = 0.005;
+constexpr double k_missing_share = 0.2;
+constexpr double k_patch_of_primitive = 0.25;  ///< points in a patch, of those that a primitive has on average
+constexpr double k_outlier_share = 0.05;
+constexpr double k_enlarged = 0.1;  ///< of the bounds, for outliers
+
+Vector3d random_direction(RandomStream& random) {
+  for (;;) {
+    const Vector3d direction(random.normal(), random.normal(), random.normal());
+    if (direction.norm() > 0) return direction.normalized();
+  }
+}
+
+PointCloud select_points(const PointCloud& cloud, const std::vector<bool>& is_kept) {
+  PointCloud selected;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_kept[i]) continue;
+    selected.positions.push_back(cloud.positions[i]);
+    selected.normals.push_back(cloud.normals[i]);
+  }
+  return selected;
+}
+
+/// The distance within which a share of the points lies.
+double radius_around(const Vector3d& middle, const PointCloud& cloud, double share) {
+  std::vector<double> distances(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) distances[i] = (cloud.positions[i] - middle).norm();
+  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(cloud.size()));
+  std::ranges::nth_element(distances, nth);
+  return *nth;
+}
+
+/// Balls that each hold `patch_share` of the points.
+PointCloud without_patches(const PointCloud& cloud, double patch_share, RandomStream& random) {
+  const auto wanted = static_cast<std::size_t>(k_missing_share * static_cast<double>(cloud.size()));
+  std::vector<bool> is_kept(cloud.size(), true);
+  for (std::size_t gone = 0; gone < wanted;) {
+    const Vector3d middle = cloud.positions[random.below(cloud.size())];
+    const double radius = radius_around(middle, cloud, patch_share);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!is_kept[i] || (cloud.positions[i] - middle).norm() > radius) continue;
+      is_kept[i] = false;
+      ++gone;
+    }
+  }
+  return select_points(cloud, is_kept);
+}
+
+PointCloud with_outliers(PointCloud cloud, RandomStream& random) {
+  AlignedBox box = bounds_of(cloud.positions);
+  const Vector3d margin = 0.5 * k_enlarged * box.sizes();
+  box.extend(Vector3d(box.max() + margin));
+  box.extend(Vector3d(box.min() - margin));
+  const auto count =
+      static_cast<std::size_t>(static_cast<double>(cloud.size()) * k_outlier_share / (1 - k_outlier_share));
+  for (std::size_t i = 0; i < count; ++i) {
+    Vector3d position;
+    for (int axis = 0; axis < 3; ++axis) position[axis] = random.uniform(box.min()[axis], box.max()[axis]);
+    cloud.positions.push_back(position);
+    cloud.normals.push_back(random_direction(random));
+  }
+  return cloud;
+}
+
+void scale(Shape& shape, double factor) {
+  std::visit(
+      Overloaded{[&](Box& box) { box.size *= factor; }, [&](Sphere& sphere) { sphere.radius *= factor; },
+                 [&](Cylinder& cylinder) { cylinder.radius *= factor, cylinder.height *= factor; },
+                 [&](Cone& cone) { cone.radius_bottom *= factor, cone.radius_top *= factor, cone.height *= factor; },
+                 [&](Torus& torus) { torus.major_radius *= factor, torus.minor_radius *= factor; },
+                 [&](Polytope& polytope) {
+                   for (Plane& plane : polytope.planes) plane.offset *= factor;
+                 },
+                 [](HalfSpace&) {}, [](Expression&) {}},
+      shape);
+}
+
+/// Shifted by less than half of its least width, so that it overlaps what it is a copy of.
+Primitive spurious_copy(const PrimitiveSet& primitives, RandomStream& random) {
+  Primitive copy = primitives[random.below(primitives.size())];
+  copy.id = "spurious";
+  const double half_width = oriented_bounds(copy).half_size.minCoeff();
+  scale(copy.shape, random.uniform(0.6, 1.4));
+  copy.pose.position += half_width * random.uniform(0.3, 0.9) * random_direction(random);
+  return copy;
+}
+
+PointCloud defective_cloud(const Model& model, Defect defect, const DefectOptions& options, RandomStream& random) {
+  SampleOptions sample{.count = options.points, .noise = options.noise, .seed = options.seed};
+  if (defect == Defect::noise) {
+    sample.noise = k_noise_of_diagonal * bounds_of(*model.tree, model.primitives).diagonal().norm();
+  }
+  PointCloud cloud = sample_surface(*model.tree, model.primitives, sample);
+  if (defect == Defect::patches) {
+    const double patch_share = k_patch_of_primitive / static_cast<double>(model.primitives.size());
+    return without_patches(cloud, patch_share, random);
+  }
+  if (defect == Defect::outliers) return with_outliers(std::move(cloud), random);
+  return cloud;
+}
+
+}  // namespace
+
+std::string_view to_string(Defect defect) {
+  switch (defect) {
+    case Defect::none:
+      return "none";
+    case Defect::noise:
+      return "noise, 0.5 % of the diagonal";
+    case Defect::patches:
+      return "20 % of the points missing";
+    case Defect::outliers:
+      return "5 % outliers";
+    case Defect::spurious:
+      return "a spurious primitive";
+    case Defect::missing:
+      return "a missing primitive";
+  }
+  return "";
+}
+
+Task make_defective_task(const Model& model, Defect defect, const DefectOptions& options) {
+  RandomStream random(options.seed, k_stream);
+  PointCloud cloud = defective_cloud(model, defect, options, random);
+  Model judged = model;
+  if (defect == Defect::spurious) judged.primitives.push_back(spurious_copy(model.primitives, random));
+  auto judge = std::make_shared<const Judge>(judged.primitives, *judged.tree);
+  Task task = make_task(judged, std::move(cloud), std::move(judge), options.seed);
+  if (defect == Defect::missing) {
+    const std::size_t gone = random.below(model.primitives.size());
+    task.judge_index.erase(task.judge_index.begin() + static_cast<std::ptrdiff_t>(gone));
+    task.primitives.clear();
+    for (const PrimitiveIndex p : task.judge_index) task.primitives.push_back(model.primitives[p]);
+  }
+  return task;
+}
+
+double iou_of_given(const Model& model, const Task& task) {
+  return task.judge->intersection_over_union(restrict_to(*model.tree, task.judge_index));
+}
+
+}  // namespace cloud2csg::bench

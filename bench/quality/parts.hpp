@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "quality/task.hpp"
+
+/// The parts of the benchmark; each prints its tables.
+namespace cloud2csg::bench {
+
+struct QualityOptions {
+  RunOptions run;
+  std::size_t seeds = 50;           ///< runs a shipped model
+  std::size_t random_models = 500;  ///< of part random
+  std::size_t defect_models = 50;   ///< of part defects, beside the shipped ones
+  std::uint64_t first_seed = 1;     ///< of random models; the others follow
+  double noise = 0.01;              ///< of random models
+};
+
+/// The sampled IoU against that of compare().
+void print_judge_check();
+void print_models(const QualityOptions& options);
+void print_random(const QualityOptions& options);
+void print_defects(const QualityOptions& options);
+
+}  // namespace cloud2csg::bench

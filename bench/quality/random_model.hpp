@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cloud2csg/family.hpp"
+
+namespace cloud2csg::bench {
+
+/// What make_family() needs to make a model.
+struct RandomModel {
+  Family family = Family::random;
+  FamilyOptions options = {};
+};
+
+inline constexpr std::size_t k_points_per_primitive = 400;
+
+/// The family of a seed: of ten in turn, six are of family random, one each nest, plate, chain and panel.
+[[nodiscard]] Family family_of_seed(std::uint64_t seed);
+/// A model of 5 to 40 primitives, clusters of up to 2 to 12, nests of 2 to 5 levels; a function of family and seed.
+[[nodiscard]] RandomModel draw_model(Family family, std::uint64_t seed);
+
+/// "random, cliques of 2-7": what goes into one row.
+[[nodiscard]] std::string kind_of(const RandomModel& model);
+/// As in source code: "make_family(Family::random, {.primitives = 23, .clique_size = 7, ...})".
+[[nodiscard]] std::string source_of(const RandomModel& model);
+
+}  // namespace cloud2csg::bench

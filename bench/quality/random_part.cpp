@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+#include "cloud2csg/sample.hpp"
+#include "quality/parts.hpp"
+#include "quality/random_model.hpp"
+
+namespace cloud2csg::bench {
+namespace {
+
+constexpr double k_right = 0.995;
+constexpr std::size_t k_worst = 10;
+
+Task make_random_task(const RandomModel& random_model, double noise) {
+  const Model model = make_family(random_model.family, random_model.options);
+  const std::uint64_t seed = random_model.options.seed;
+  PointCloud cloud =
+      sample_surface(*model.tree, model.primitives,
+                     {.count = k_points_per_primitive * model.primitives.size(), .noise = noise, .seed = seed});
+  return make_task(model, std::move(cloud), std::make_shared<Judge>(model.primitives, *model.tree), seed);
+}
+
+/// Where models of one kind stand in the table: families in their order, cliques by size.
+using Kind = std::pair<Family, std::size_t>;
+
+Kind kind(const RandomModel& model) {
+  return {model.family, model.family == Family::random ? model.options.clique_size : 0};
+}
+
+std::vector<Cell> row_of(const std::string& name, std::span<const Outcome> outcomes) {
+  const Summary summary = summarise(outcomes, k_right);
+  return {name,
+          share_text(summary.right, summary),
+          share_text(summary.no_larger, summary),
+          share_text(summary.right_and_no_larger, summary),
+          iou_text(summary.worst_iou),
+          ratio_text(summary.mean_ratio),
+          milliseconds_text(summary.median_milliseconds),
+          failures_text(outcomes)};
+}
+
+Table table_of(const Setting& setting, std::span<const RandomModel> models, std::span<const Outcome> outcomes,
+               double noise) {
+  Table table{
+      .name = "random",
+      .title = fmt::format("Random models, {}", setting.name),
+      .note = fmt::format("{} points a primitive, noise {}.\n{}", k_points_per_primitive, noise, legend(k_right)),
+      .columns = {"models", "right", "no larger", "both", "worst IoU", "mean ratio", "ms", "failures"}};
+  std::set<Kind> kinds;
+  for (const RandomModel& model : models) kinds.insert(kind(model));
+  for (const Kind& one : kinds) {
+    std::string name;
+    std::vector<Outcome> members;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      if (kind(models[i]) != one) continue;
+      name = kind_of(models[i]);
+      members.push_back(outcomes[i]);
+    }
+    table.rows.push_back(row_of(name, members));
+  }
+  table.rows.push_back(row_of("all", outcomes));
+  return table;
+}
+
+/// Wrong ones first, the most wrong before all, then those that are larger than the truth, the largest first.
+Table worst_models(const Setting& setting, std::span<const RandomModel> models, std::span<const Outcome> outcomes) {
+  Table table{.name = "worst",
+              .title = fmt::format("Worst models, {}", setting.name),
+              .note = "Of those that are wrong or larger than the truth. The seed is that of cloud and search as well.",
+              .columns = {"IoU", "ratio", "model", "failure"}};
+  std::vector<std::size_t> order(models.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::erase_if(order, [&](std::size_t i) { return outcomes[i].iou >= k_right && outcomes[i].size_ratio <= 1; });
+  const auto badness = [&](std::size_t i) {
+    return std::tuple(outcomes[i].iou < k_right ? outcomes[i].iou : 1, -outcomes[i].size_ratio, i);
+  };
+  std::ranges::sort(order, {}, badness);
+  if (order.size() > k_worst) order.resize(k_worst);
+  for (const std::size_t i : order) {
+    table.rows.push_back(
+        {iou_text(outcomes[i].iou), ratio_text(outcomes[i].size_ratio), source_of(models[i]), outcomes[i].failure});
+  }
+  return table;
+}
+
+}  // namespace
+
+void print_random(const QualityOptions& options) {
+  std::vector<RandomModel> models;
+  for (std::size_t i = 0; i < options.random_models; ++i) {
+    const std::uint64_t seed = options.first_seed + i;
+    models.push_back(draw_model(family_of_seed(seed), seed));
+  }
+  const auto make = [&](std::size_t i) { return make_random_task(models[i], options.noise); };
+  const auto outcomes = run_tasks("random models", models.size(), make, options.run);
+  for (std::size_t s = 0; s < outcomes.size(); ++s) {
+    const Setting& setting = options.run.settings[s];
+    fmt::print("{}\n", to_markdown(table_of(setting, models, outcomes[s], options.noise)));
+    const Table worst = worst_models(setting, models, outcomes[s]);
+    if (!worst.rows.empty()) fmt::print("{}\n", to_markdown(worst));
+  }
+}
+
+}  // namespace cloud2csg::bench
