@@ -12,7 +12,7 @@
 namespace cloud2csg::app {
 namespace {
 
-constexpr std::array k_strategies{Strategy::automatic, Strategy::partition, Strategy::baseline};
+constexpr std::array k_strategies{Strategy::automatic, Strategy::cells, Strategy::partition, Strategy::baseline};
 constexpr std::array k_precisions{Precision::automatic, Precision::full, Precision::single};
 constexpr std::array k_parallels{Parallel::none, Parallel::population, Parallel::partitions, Parallel::both};
 

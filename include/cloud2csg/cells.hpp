@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/formula.hpp"
 #include "cloud2csg/rank_classes.hpp"
 #include "cloud2csg/segmentation.hpp"
 
@@ -49,37 +50,50 @@ struct CellOptions {
 [[nodiscard]] CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const CellOptions& options, const RunContext& run = {});
 
-enum class CellLabel : std::uint8_t { out, in, unknown };
-
 struct LabelOptions {
   /// What the absence of points costs: where a patch between a cell of the solid and one that is not has fewer points
-  /// than this share of what its area lets expect, those that are missing. Half: a surface of which two thirds were
+  /// than this share of what its area lets expect, those that are missing. A half: a surface of which two thirds were
   /// not seen is still believed.
   double absence = 0.5;
-  /// A label that costs less than so many points to change is not sure: the cell may become anything. As much as a node
-  /// costs in E(t), so that no part of a formula stands for less.
-  double least_evidence = 12;
 };
 
 struct CellLabels {
-  std::vector<CellLabel> labels = {};  ///< by cell
-  std::vector<double> evidence = {};   ///< by cell: how many points more it costs to change its label alone; at least 0
-  double density = 0;                  ///< points per area of what is surface
-  double points = 0;                   ///< that speak
-  double contradicting = 0;  ///< of these, those that say the opposite of the labels, or only half of what they say
+  std::vector<bool> is_in = {};       ///< by cell: whether it is in the solid
+  std::vector<double> evidence = {};  ///< by cell: how many points more it costs to change its label alone; at least 0
+  double density = 0;                 ///< points per area of what is surface
+  double points = 0;                  ///< that speak
+  double cost = 0;                    ///< see cost_of()
 };
 
-/// Tells which cells are in the solid: points want the cell under them in and the one over them out, patches without
-/// points want both sides equal. The labels with the least cost, exactly: by a minimum cut (Boykov and Kolmogorov 2004)
-/// between the cells. The cell outside of all primitives is out. O(cells + patches) and the cut, which is nearly linear
-/// in practice.
+/// Tells which cells are in the solid: the labels with the least cost, exactly, by a minimum cut between the cells
+/// (Boykov and Kolmogorov 2004). The cell outside of all primitives is out. O(cells + patches) and the cut, which is
+/// nearly linear in practice.
 [[nodiscard]] CellLabels label_cells(const CellComplex& complex, const LabelOptions& options = {});
 
+/// What it costs to have just these cells in the solid, in points: those that say the opposite of one of their two
+/// cells, a half for each, and those that are missing on patches between a cell that is in and one that is not.
+/// `density` as in CellLabels. O(cells + patches)
+[[nodiscard]] double cost_of(const CellComplex& complex, const std::vector<bool>& is_in, double density,
+                             const LabelOptions& options = {});
+
+struct CellSolveOptions {
+  LabelOptions labels = {};
+  /// Of cells whose labels cost fewer points to change, the formula may make what it likes. Each is tried, and that
+  /// formula taken that costs least, leaves included.
+  std::vector<double> least_evidence = {12, 3, 1, 0.3};
+  double leaf_cost = 3;  ///< of a leaf, in points
+  /// Where the formula that was taken may not be minimal, a minimal one is looked for, core by core.
+  MinimalFormulaOptions minimal = {.table_limit = std::size_t{1} << 18U, .combination_limit = 20'000'000};
+};
+
 struct CellSolution {
-  CsgTree tree = {};       ///< over the primitives
-  std::size_t peeled = 0;  ///< primitives that were split off since they are wholly in, or wholly out of, the rest
+  CsgTree tree = {};           ///< over the primitives
+  double least_evidence = 0;   ///< the one that was taken
+  double cost = 0;             ///< of the tree's cells: see cost_of()
+  std::size_t open_cells = 0;  ///< those whose labels were not sure enough
+  std::size_t peeled = 0;      ///< primitives that were split off since they are wholly in, or wholly out of, the rest
   std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
-  std::size_t least_leaves = 0;         ///< no tree that agrees with all sure labels has fewer
+  std::size_t least_leaves = 0;         ///< no tree that agrees with all labels that are sure has fewer
   [[nodiscard]] bool is_minimal() const { return leaf_count(tree) == least_leaves; }
 };
 
@@ -87,6 +101,7 @@ struct CellSolution {
 /// that are wholly in the solid, or wholly out of it, but for what others add or take, are split off, again and again,
 /// until nothing or a core is left; parts of it that share no cell are solved one by one. Absent when one of them has
 /// more than 64 primitives. O(size of all cells) but for the cores.
-[[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels);
+[[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
+                                                      const CellSolveOptions& options = {}, const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -15,7 +15,8 @@
 namespace cloud2csg {
 
 enum class Strategy {
-  automatic,  ///< whatever is best: partitions, checked and polished on the whole cloud
+  automatic,  ///< whatever is best: by cells where the points bear that out, else partitions, checked and polished
+  cells,      ///< space cut into cells, labelled by the points, and the solid taken apart: see cells.hpp
   partition,  ///< the paper's: a tree per maximal clique, merged
   baseline,   ///< the paper's baseline: all primitives in one genetic algorithm
 };
@@ -28,7 +29,7 @@ enum class Parallel {
   both,
 };
 
-/// "auto", "partition", "baseline"; "none", "population", "partitions", "both".
+/// "auto", "cells", "partition", "baseline"; "none", "population", "partitions", "both".
 [[nodiscard]] std::string_view to_string(Strategy strategy);
 [[nodiscard]] std::string_view to_string(Parallel parallel);
 
@@ -39,6 +40,9 @@ struct ExtractOptions {
   ObjectiveOptions objective = {};
   Precision precision = Precision::automatic;  ///< of distances and angles in the pass over the points
   GaOptions search = {};                       ///< its seed is not used: see below
+  /// automatic: try cells first, and take their tree where points speak for it by this share at least (of what a tree
+  /// and its cells could contradict: CellSolution::cost of CellLabels::points). Above 1: never.
+  double cell_trust = 0.97;
   /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
   std::optional<double> overlap_tolerance = {};
   /// Judge the trees of a partition without the points inside primitives of other partitions, where no tree over its
@@ -98,6 +102,17 @@ struct MergeStatistics {
   double worst_shortfall = 0;  ///< of the result: share of a primitive's promised score that is missing, worst one
 };
 
+/// Of the strategy by cells.
+struct CellStatistics {
+  std::size_t cells = 0, patches = 0;  ///< that occur in space
+  std::size_t open_cells = 0;          ///< of which it is not sure whether they are in the solid
+  double speaking_points = 0;          ///< points that say something of the cells
+  double contradicted_points = 0;      ///< of these, those that the tree contradicts, and those that it would need more
+  std::size_t peeled = 0;              ///< primitives that were split off
+  std::vector<std::size_t> cores;      ///< how many primitives the rests had that were solved by formula
+  bool is_minimal = false;             ///< it is proved that no smaller tree has the label of each sure cell
+};
+
 struct TreeStatistics {
   std::size_t size = 0, leaves = 0, depth = 0;
 };
@@ -125,6 +140,7 @@ struct ExtractStatistics {
   std::size_t components = 0;
   std::vector<PartitionStatistics> partitions;
   MergeStatistics merge;
+  std::optional<CellStatistics> cells;  ///< when the tree is that of the cells
   TreeStatistics before_simplification, tree;
   FitStatistics fit;
   StageSeconds seconds;

@@ -118,24 +118,20 @@ class MinimumCut {
   std::vector<Edge> edges_;
 };
 
-class Labeller {
+/// What each choice of labels costs.
+class LabelCosts {
  public:
-  Labeller(const CellComplex& complex, const LabelOptions& options)
-      : complex_(complex),
-        options_(options),
-        density_(density_of(complex)),
-        in_(complex.cells.size()),
-        out_(complex.cells.size()) {
+  LabelCosts(const CellComplex& complex, double density, const LabelOptions& options)
+      : complex_(complex), expected_(options.absence * density), in_(complex.cells.size()), out_(complex.cells.size()) {
     for (const Patch& patch : complex.patches) {
-      in_[patch.first] += patch.first_in;
-      out_[patch.second] += patch.first_in;
-      in_[patch.second] += patch.second_in;
-      out_[patch.first] += patch.second_in;
-      points_ += patch.first_in + patch.second_in;
+      in_[patch.first] += patch.first_in / 2;
+      out_[patch.second] += patch.first_in / 2;
+      in_[patch.second] += patch.second_in / 2;
+      out_[patch.first] += patch.second_in / 2;
     }
   }
 
-  CellLabels label() const {
+  [[nodiscard]] std::vector<bool> cheapest() const {
     MinimumCut cut(complex_.cells.size());
     for (CellIndex cell = 0; cell < complex_.cells.size(); ++cell) {
       cut.add_source(cell, in_[cell]);
@@ -143,49 +139,60 @@ class Labeller {
     }
     cut.add_sink(0, 1e12);  // all solids are bounded
     for (const Patch& patch : complex_.patches) cut.add_edge(patch.first, patch.second, missing_points(patch));
-    const std::vector<bool> is_in = cut.solve();
-    return judged(is_in);
+    return cut.solve();
+  }
+
+  [[nodiscard]] double cost(const std::vector<bool>& is_in) const {
+    double sum = 0;
+    for (CellIndex cell = 0; cell < is_in.size(); ++cell) sum += is_in[cell] ? out_[cell] : in_[cell];
+    for (const Patch& patch : complex_.patches) {
+      if (is_in[patch.first] != is_in[patch.second]) sum += missing_points(patch);
+    }
+    return sum;
+  }
+
+  /// What it costs to turn each cell, the others being as they are.
+  [[nodiscard]] std::vector<double> evidence(const std::vector<bool>& is_in) const {
+    std::vector<double> change(is_in.size());
+    for (CellIndex cell = 0; cell < is_in.size(); ++cell) {
+      change[cell] = is_in[cell] ? in_[cell] - out_[cell] : out_[cell] - in_[cell];
+    }
+    for (const Patch& patch : complex_.patches) {
+      const double more = is_in[patch.first] == is_in[patch.second] ? missing_points(patch) : -missing_points(patch);
+      change[patch.first] += more;
+      change[patch.second] += more;
+    }
+    for (double& value : change) value = std::max(0.0, value);
+    change[0] = std::numeric_limits<double>::infinity();
+    return change;
   }
 
  private:
   /// Points that would be on a patch, were it surface, and are not.
   [[nodiscard]] double missing_points(const Patch& patch) const {
-    return std::max(0.0, options_.absence * density_ * patch.area - (patch.first_in + patch.second_in));
-  }
-
-  [[nodiscard]] CellLabels judged(const std::vector<bool>& is_in) const {
-    CellLabels result{.density = density_, .points = points_};
-    // What it costs to turn a cell, the others being as they are.
-    result.evidence.resize(is_in.size());
-    for (CellIndex cell = 0; cell < is_in.size(); ++cell) {
-      result.evidence[cell] = is_in[cell] ? in_[cell] - out_[cell] : out_[cell] - in_[cell];
-      result.contradicting += (is_in[cell] ? out_[cell] : in_[cell]) / 2;
-    }
-    for (const Patch& patch : complex_.patches) {
-      const double change = is_in[patch.first] == is_in[patch.second] ? missing_points(patch) : -missing_points(patch);
-      result.evidence[patch.first] += change;
-      result.evidence[patch.second] += change;
-    }
-    result.evidence[0] = std::numeric_limits<double>::infinity();
-    for (std::size_t cell = 0; cell < is_in.size(); ++cell) {
-      result.evidence[cell] = std::max(0.0, result.evidence[cell]);
-      const bool is_sure = result.evidence[cell] >= options_.least_evidence;
-      result.labels.push_back(!is_sure ? CellLabel::unknown : is_in[cell] ? CellLabel::in : CellLabel::out);
-    }
-    return result;
+    return std::max(0.0, expected_ * patch.area - (patch.first_in + patch.second_in));
   }
 
   const CellComplex& complex_;
-  const LabelOptions& options_;
-  double density_;
-  std::vector<double> in_, out_;  // points that want a cell in, and out
-  double points_ = 0;
+  double expected_;               // points per area
+  std::vector<double> in_, out_;  // what points have against a cell's being out, and in
 };
 
 }  // namespace
 
 CellLabels label_cells(const CellComplex& complex, const LabelOptions& options) {
-  return Labeller(complex, options).label();
+  CellLabels result{.density = density_of(complex)};
+  const LabelCosts costs(complex, result.density, options);
+  result.is_in = costs.cheapest();
+  result.evidence = costs.evidence(result.is_in);
+  result.cost = costs.cost(result.is_in);
+  for (const Patch& patch : complex.patches) result.points += patch.first_in + patch.second_in;
+  return result;
+}
+
+double cost_of(const CellComplex& complex, const std::vector<bool>& is_in, double density,
+               const LabelOptions& options) {
+  return LabelCosts(complex, density, options).cost(is_in);
 }
 
 }  // namespace cloud2csg

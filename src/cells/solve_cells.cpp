@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <unordered_map>
 
@@ -33,10 +34,11 @@ struct KnownCell {
 /// The sure cells, without primitives on which no label depends.
 class KnownCells {
  public:
-  KnownCells(const CellComplex& complex, const CellLabels& labels) : cells_of_(complex.points_of_primitive.size()) {
+  KnownCells(const CellComplex& complex, const CellLabels& labels, double least_evidence)
+      : cells_of_(complex.points_of_primitive.size()) {
     for (CellIndex c = 0; c < complex.cells.size(); ++c) {
-      if (labels.labels[c] == CellLabel::unknown) continue;
-      is_in_.emplace(complex.cells[c], labels.labels[c] == CellLabel::in);
+      if (labels.evidence[c] < least_evidence) continue;
+      is_in_.emplace(complex.cells[c], labels.is_in[c]);
       for (const PrimitiveIndex p : complex.cells[c]) cells_of_[p].push_back(complex.cells[c]);
     }
     for (const PrimitiveIndex p : least_seen_first(complex)) {
@@ -204,7 +206,7 @@ std::vector<Core> cores_of(const std::vector<KnownCell>& cells, std::size_t prim
   return cores;
 }
 
-CsgTree solve_core(const Core& core) {
+KnownRows rows_of(const Core& core) {
   KnownRows rows{.on = {}, .off = {0}};
   for (const KnownCell* known : core.cells) {
     Assignment row = 0;
@@ -214,7 +216,41 @@ CsgTree solve_core(const Core& core) {
     }
     (known->is_in ? rows.on : rows.off).push_back(row);
   }
-  return renumber(decompose(rows), core.primitives);
+  return rows;
+}
+
+PartialFunction function_of(const KnownRows& rows, std::size_t variables) {
+  PartialFunction function(variables);
+  std::vector<PrimitiveIndex> inside;
+  for (const bool value : {false, true}) {
+    for (const Assignment row : value ? rows.on : rows.off) {
+      inside.clear();
+      for (PrimitiveIndex p = 0; p < variables; ++p) {
+        if ((row >> p & 1U) != 0) inside.push_back(p);
+      }
+      function.add(inside, value);
+    }
+  }
+  return function;
+}
+
+/// A formula over the primitives, and how many leaves it needs at least.
+struct CoreSolution {
+  CsgTree tree;
+  std::size_t least_leaves;
+};
+
+/// `minimal`: how much work to spend on a formula that is smaller than what decompose() finds.
+CoreSolution solve_core(const Core& core, const MinimalFormulaOptions* minimal, const RunContext& run) {
+  const KnownRows rows = rows_of(core);
+  CoreSolution solution{decompose(rows), static_cast<std::size_t>(std::popcount(essential_variables(rows)))};
+  if (minimal != nullptr && leaf_count(solution.tree) > solution.least_leaves) {
+    const auto smallest = minimal_formula(function_of(rows, core.primitives.size()), *minimal, run);
+    if (smallest && leaf_count(smallest->tree) < leaf_count(solution.tree)) solution.tree = smallest->tree;
+    if (smallest) solution.least_leaves = std::max(solution.least_leaves, smallest->least_leaves);
+  }
+  solution.tree = renumber(solution.tree, core.primitives);
+  return solution;
 }
 
 std::vector<CsgTree> leaves(const std::vector<PrimitiveIndex>& primitives) {
@@ -224,19 +260,21 @@ std::vector<CsgTree> leaves(const std::vector<PrimitiveIndex>& primitives) {
   return trees;
 }
 
-}  // namespace
-
-std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels) {
-  const KnownCells known(complex, labels);
+std::optional<CellSolution> solve_sure_cells(const CellComplex& complex, const CellLabels& labels,
+                                             double least_evidence, const MinimalFormulaOptions* minimal,
+                                             const RunContext& run) {
+  const KnownCells known(complex, labels, least_evidence);
   const std::size_t primitives = complex.points_of_primitive.size();
   Peeler peeler(known.sorted(), primitives);
   const std::vector<Peeler::Round> rounds = peeler.peel();
-  CellSolution solution{.least_leaves = known.essential()};
+  CellSolution solution{.least_evidence = least_evidence};
   std::vector<CsgTree> trees;
   for (const Core& core : cores_of(peeler.cells(), primitives)) {
     if (core.primitives.size() > k_most_variables) return std::nullopt;
     solution.cores.push_back(core.primitives.size());
-    trees.push_back(solve_core(core));
+    CoreSolution solved = solve_core(core, minimal, run);
+    solution.least_leaves += solved.least_leaves;
+    trees.push_back(std::move(solved.tree));
   }
   CsgTree tree = unite_all(trees);
   for (auto round = rounds.rbegin(); round != rounds.rend(); ++round) {
@@ -244,8 +282,42 @@ std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLa
     solution.peeled += round->primitives.size();
     tree = round->are_in ? unite(tree, split) : subtract(tree, split);
   }
+  solution.least_leaves = std::max(solution.least_leaves, known.essential());
   solution.tree = simplify(tree);
   return solution;
+}
+
+/// Which cells are in a tree.
+std::vector<bool> cells_in(const CsgTree& tree, const CellComplex& complex) {
+  PartialFunction cells(complex.points_of_primitive.size());
+  for (const Cell& cell : complex.cells) cells.add(cell, false);
+  const std::vector<std::uint64_t> values = evaluate(tree, cells);
+  std::vector<bool> result(complex.cells.size());
+  for (std::size_t c = 0; c < result.size(); ++c) result[c] = (values[c / 64] >> (c % 64) & 1U) != 0;
+  return result;
+}
+
+}  // namespace
+
+std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
+                                        const CellSolveOptions& options, const RunContext& run) {
+  std::optional<CellSolution> best;
+  const auto try_with = [&](double least_evidence, const MinimalFormulaOptions* minimal) {
+    std::optional<CellSolution> solution = solve_sure_cells(complex, labels, least_evidence, minimal, run);
+    if (!solution) return;
+    solution->cost = cost_of(complex, cells_in(solution->tree, complex), labels.density, options.labels);
+    const auto total = [&options](const CellSolution& of) {
+      return of.cost + options.leaf_cost * static_cast<double>(leaf_count(of.tree));
+    };
+    if (!best || total(*solution) <= total(*best)) best = std::move(solution);
+  };
+  for (const double least_evidence : options.least_evidence) try_with(least_evidence, nullptr);
+  if (!best) return best;
+  const double least = best->least_evidence;
+  if (!best->is_minimal()) try_with(least, &options.minimal);
+  best->open_cells = static_cast<std::size_t>(
+      std::ranges::count_if(labels.evidence, [least](double evidence) { return evidence < least; }));
+  return best;
 }
 
 }  // namespace cloud2csg

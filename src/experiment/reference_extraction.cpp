@@ -75,8 +75,8 @@ class ReferenceExtractor {
     statistics_.points = cloud_.size();
     statistics_.tree = statistics_of(tree);
     if (!primitives_of(tree).empty()) {
-      const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
-      statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.noise, run_);
+      const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.scale.noise);
+      statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.scale.noise, run_);
     }
     return {.tree = tree, .statistics = std::move(statistics_)};
   }
@@ -89,9 +89,10 @@ class ReferenceExtractor {
   /// The graph and the cliques are timed by the preparation; its tables are not part of the paper's method, only their
   /// weights are taken, and the segmentation is made without them.
   void prepare_partitions() {
-    prepared_ = prepare(cloud_, input_, options_, with_threads_if(false), statistics_);
+    const Scale scale = measure_scale(cloud_, input_, options_, with_threads_if(false), statistics_);
+    prepared_ = prepare(cloud_, input_, scale, options_, with_threads_if(false), statistics_);
     Stopwatch watch;
-    segmentation_ = segment_points(cloud_, prepared_.primitives, prepared_.tolerances,
+    segmentation_ = segment_points(cloud_, prepared_.primitives, prepared_.scale.tolerances,
                                    with_threads_if(options_.parallel != Parallel::none));
     statistics_.seconds.segment = watch.lap();
     statistics_.seconds.classes = 0;

@@ -13,6 +13,7 @@
 #include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/simplify.hpp"
+#include "pipeline/cell_extraction.hpp"
 #include "pipeline/component.hpp"
 #include "pipeline/fit.hpp"
 #include "pipeline/preparation.hpp"
@@ -86,14 +87,14 @@ class Extractor {
     statistics_.points = cloud_.size();
     statistics_.primitives = input_.size();
     const RunContext pass_run = with_threads(options_.parallel == Parallel::none ? 1 : run_.threads);
-    prepared_ = prepare(cloud_, input_, options_, pass_run, statistics_);
-    limit_.enforce();
-    solve_partitions();
-    const CsgTree tree = simplified(merge_components());
+    scale_ = measure_scale(cloud_, input_, options_, pass_run, statistics_);
+    std::optional<CsgTree> tree = solve_by_cells(pass_run);
+    if (!tree) tree = solve_by_partitions(pass_run);
+    const CsgTree result = simplified(*tree);
     statistics_.seconds.extraction = total.lap();
-    finish(tree, pass_run);
+    finish(result, pass_run);
     statistics_.seconds.total = statistics_.seconds.extraction + total.lap();
-    return {.tree = tree, .statistics = std::move(statistics_)};
+    return {.tree = result, .statistics = std::move(statistics_)};
   }
 
  private:
@@ -101,6 +102,43 @@ class Extractor {
     RunContext run = run_;
     run.threads = threads;
     return run;
+  }
+
+  /// The tree of the cells where it is asked for, or the points bear it out. Else none, and it is kept for comparison.
+  std::optional<CsgTree> solve_by_cells(const RunContext& run) {
+    const bool is_asked_for = options_.strategy == Strategy::cells;
+    if (!is_asked_for && (options_.strategy != Strategy::automatic || options_.cell_trust > 1)) return std::nullopt;
+    by_cells_ = extract_by_cells(cloud_, input_, scale_, options_, run, statistics_.seconds);
+    limit_.enforce();
+    if (!by_cells_) return std::nullopt;
+    if (!is_asked_for && by_cells_->trust() < options_.cell_trust) return std::nullopt;
+    return take_cells();
+  }
+
+  CsgTree take_cells() {
+    statistics_.cells = by_cells_->statistics;
+    statistics_.unassigned_points = by_cells_->unassigned_points;
+    statistics_.warnings = by_cells_->warnings;
+    order_ = std::move(by_cells_->order);
+    return by_cells_->tree;
+  }
+
+  CsgTree solve_by_partitions(const RunContext& run) {
+    prepared_ = prepare(cloud_, input_, scale_, options_, run, statistics_);
+    order_ = std::move(prepared_.pass.order);
+    limit_.enforce();
+    solve_partitions();
+    CsgTree tree = renumber(merge_components(), prepared_.original);
+    if (!by_cells_) return tree;
+    const auto objective_of = [&](const CsgTree& some) { return fit_of(some, run).objective; };
+    return objective_of(by_cells_->tree) > objective_of(tree) ? take_cells() : tree;
+  }
+
+  [[nodiscard]] FitStatistics fit_of(const CsgTree& tree, const RunContext& run) const {
+    RunContext to_the_end = run;
+    to_the_end.stop = {};  // the tree of an interrupted search has a fit, too
+    const Objective objective = resolve(options_.objective, cloud_.size(), scale_.noise);
+    return measure_fit(tree, input_, cloud_, objective, scale_.noise, to_the_end, order_);
   }
 
   /// How a single search runs: its population in parallel, or not.
@@ -190,7 +228,7 @@ class Extractor {
       for (const PrimitiveIndex p : table.primitives()) window.primitives.push_back(local[p]);
       points += table.point_count();
     }
-    component.alpha = resolve(options_.objective, points, prepared_.noise).alpha;
+    component.alpha = resolve(options_.objective, points, scale_.noise).alpha;
     return component;
   }
 
@@ -206,9 +244,9 @@ class Extractor {
     RunContext pass_run = search_run();
     pass_run.stop = {};  // a pass is short, and the search after it sees the stop
     const PointPass pass = build_rank_classes(cloud_, members, std::span(&request, 1),
-                                              {.tolerances = prepared_.tolerances,
+                                              {.tolerances = scale_.tolerances,
                                                .objective = options_.objective,
-                                               .noise = prepared_.noise,
+                                               .noise = scale_.noise,
                                                .precision = options_.precision},
                                               pass_run);
     const Evolution evolution =
@@ -234,7 +272,7 @@ class Extractor {
   CsgTree simplified(const CsgTree& tree) {
     Stopwatch watch;
     statistics_.before_simplification = statistics_of(tree);
-    CsgTree result = renumber(simplify(tree), prepared_.original);
+    CsgTree result = simplify(tree);
     statistics_.tree = statistics_of(result);
     statistics_.seconds.simplify += watch.lap();
     return result;
@@ -245,10 +283,8 @@ class Extractor {
       statistics_.warnings.emplace_back("the result is empty: no formula over the primitives explains the points");
       return;
     }
-    const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.noise);
-    RunContext to_the_end = run;
-    to_the_end.stop = {};  // the tree of an interrupted search has a fit, too
-    statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.noise, to_the_end, prepared_.pass.order);
+    statistics_.fit = fit_of(tree, run);
+    if (statistics_.clique_histogram.empty()) describe_overlaps(run);
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
@@ -262,13 +298,23 @@ class Extractor {
     if (!statistics_.complete) statistics_.warnings.emplace_back("stopped early: this is the best tree so far");
   }
 
+  /// The cells do without the overlap graph; who reads the statistics wants to see it.
+  void describe_overlaps(const RunContext& run) {
+    const OverlapGraph graph = overlap_graph_of(cloud_, input_, scale_, options_, run);
+    statistics_.clique_histogram = clique_histogram(maximal_cliques(graph));
+    statistics_.components = connected_components(graph).size();
+  }
+
   const PointCloud& cloud_;
   const PrimitiveSet& input_;
   ExtractOptions options_;
   const RunContext& run_;
   const TimeLimit& limit_;
   ExtractStatistics statistics_;
+  Scale scale_{};
+  std::optional<CellExtraction> by_cells_;
   Preparation prepared_;
+  std::vector<std::uint32_t> order_;  // of the points: neighbours are near each other
   std::vector<Evolution> evolutions_;
   std::uint64_t joint_solutions_ = 0;
 };

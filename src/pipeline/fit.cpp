@@ -7,7 +7,6 @@
 
 #include "base/parallel.hpp"
 #include "cloud2csg/restrict.hpp"
-#include "fitness/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -25,7 +24,7 @@ class FitMeasure {
              const RunContext& run, std::span<const std::uint32_t> order)
       : tree_(tree), restriction_(tree), primitives_(primitives), cloud_(cloud), run_(run), order_(order) {
     const std::vector<PrimitiveIndex> used = primitives_of(tree);
-    if (used.size() > k_many_primitives) {
+    if (used.size() > k_few_primitives) {
       const double diagonal = bounds_of(cloud.positions).diagonal().norm();
       double radius = std::max(k_first_radius * noise, 1e-9 * diagonal);
       while (radius < diagonal) {
@@ -47,7 +46,8 @@ class FitMeasure {
 
  private:
   static constexpr std::size_t k_block = 1024;
-  static constexpr double k_first_radius = 4;  // of the noise
+  static constexpr std::size_t k_few_primitives = 4;  // are evaluated everywhere
+  static constexpr double k_first_radius = 4;         // of the noise
   static constexpr double k_growth = 8;
 
   /// All primitives of the tree, and where they are nearer than a radius.

@@ -48,6 +48,8 @@ std::string_view to_string(Strategy strategy) {
   switch (strategy) {
     case Strategy::automatic:
       return "auto";
+    case Strategy::cells:
+      return "cells";
     case Strategy::partition:
       return "partition";
     case Strategy::baseline:
@@ -116,6 +118,7 @@ void validate(const ExtractOptions& options) {
     require(std::isfinite(*options.overlap_tolerance) && *options.overlap_tolerance >= 0, "overlap_tolerance",
             fmt::format("expected a number >= 0, found {}", *options.overlap_tolerance));
   }
+  require_positive(options.cell_trust, "cell_trust");
   if (options.time_limit_seconds) require_positive(*options.time_limit_seconds, "time_limit");
   validate(options.search);
 }

@@ -13,20 +13,15 @@
 namespace cloud2csg {
 namespace {
 
-void take_all(const PrimitiveSet& primitives, Preparation& preparation) {
-  preparation.primitives = primitives;
-  preparation.original.resize(primitives.size());
-  std::iota(preparation.original.begin(), preparation.original.end(), PrimitiveIndex{0});
-}
-
 /// The oriented bounds of the points on each unbounded primitive, in its own frame: what of it matters for overlap.
-std::vector<std::optional<OrientedBox>> extents_of_unbounded(const PointCloud& cloud, const Preparation& preparation,
+std::vector<std::optional<OrientedBox>> extents_of_unbounded(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                                             const SegmentationTolerances& tolerances,
                                                              const RunContext& run) {
-  std::vector<std::optional<OrientedBox>> extents(preparation.primitives.size());
+  std::vector<std::optional<OrientedBox>> extents(primitives.size());
   for (std::size_t p = 0; p < extents.size(); ++p) {
-    const Primitive& primitive = preparation.primitives[p];
+    const Primitive& primitive = primitives[p];
     if (!std::holds_alternative<HalfSpace>(primitive.shape)) continue;
-    const Segmentation segmentation = segment_points(cloud, {primitive}, preparation.tolerances, run);
+    const Segmentation segmentation = segment_points(cloud, {primitive}, tolerances, run);
     AlignedBox local;
     for (const std::uint32_t point : segmentation.points_of.front()) {
       local.extend(primitive.pose.to_local(cloud.positions[point]));
@@ -41,10 +36,7 @@ std::vector<std::optional<OrientedBox>> extents_of_unbounded(const PointCloud& c
 void build_partitions(const PointCloud& cloud, const ExtractOptions& options, const RunContext& run,
                       Preparation& preparation, StageSeconds& seconds) {
   Stopwatch watch;
-  preparation.graph = build_overlap_graph(preparation.primitives,
-                                          {.tolerance = options.overlap_tolerance.value_or(preparation.noise),
-                                           .extents = extents_of_unbounded(cloud, preparation, run)},
-                                          run);
+  preparation.graph = overlap_graph_of(cloud, preparation.primitives, preparation.scale, options, run);
   seconds.overlap += watch.lap();
   preparation.cliques = maximal_cliques(preparation.graph);
   preparation.components = connected_components(preparation.graph);
@@ -92,7 +84,7 @@ class Requests {
   Requests(const PointCloud& cloud, const ExtractOptions& options, const Preparation& preparation)
       : cloud_(cloud), options_(options), preparation_(preparation) {
     for (const Primitive& primitive : preparation.primitives) {
-      reach_.push_back(reach(primitive, preparation.tolerances.distance));
+      reach_.push_back(reach(primitive, preparation.scale.tolerances.distance));
     }
   }
 
@@ -180,9 +172,9 @@ void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, co
   Stopwatch watch;
   preparation.pass = {};  // of primitives that were dropped: not two of them in memory
   preparation.pass = build_rank_classes(cloud, preparation.primitives, requests_for(cloud, options, preparation),
-                                        {.tolerances = preparation.tolerances,
+                                        {.tolerances = preparation.scale.tolerances,
                                          .objective = options.objective,
-                                         .noise = preparation.noise,
+                                         .noise = preparation.scale.noise,
                                          .precision = options.precision},
                                         run);
   const PointPass& pass = preparation.pass;
@@ -195,33 +187,6 @@ void pass_over_points(const PointCloud& cloud, const ExtractOptions& options, co
 /// So many of the primitives that are left out are told by name.
 constexpr std::size_t k_named_warnings = 10;
 
-/// Takes out the primitives without points. Whether there were any.
-bool drop_unsupported(Preparation& preparation, ExtractStatistics& statistics) {
-  const std::vector<std::size_t>& points = preparation.pass.points_of_primitive;
-  PrimitiveSet kept;
-  std::vector<PrimitiveIndex> original;
-  std::size_t named = 0;
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    if (points[p] == 0) {
-      if (named++ < k_named_warnings) {
-        statistics.warnings.push_back(
-            fmt::format("no point supports primitive '{}': it is left out", preparation.primitives[p].id));
-      }
-      continue;
-    }
-    kept.push_back(preparation.primitives[p]);
-    original.push_back(preparation.original[p]);
-  }
-  if (kept.size() == points.size()) return false;
-  if (named > k_named_warnings) {
-    statistics.warnings.push_back(
-        fmt::format("no point supports {} more primitives: they are left out", named - k_named_warnings));
-  }
-  preparation.primitives = std::move(kept);
-  preparation.original = std::move(original);
-  return true;
-}
-
 }  // namespace
 
 std::size_t stride_for(std::size_t primitives, std::size_t points) {
@@ -230,25 +195,64 @@ std::size_t stride_for(std::size_t primitives, std::size_t points) {
   return std::max<std::size_t>(1, points * row_bytes / k_table_bytes);
 }
 
-Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+Scale measure_scale(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
                     const RunContext& run, ExtractStatistics& statistics) {
-  Preparation preparation;
-  take_all(primitives, preparation);
   Stopwatch watch;
-  preparation.noise = estimate_noise(cloud, primitives, options.segmentation.angle_tolerance_deg, run);
-  preparation.tolerances = segmentation_tolerances(options.segmentation, preparation.noise);
+  const double noise = estimate_noise(cloud, primitives, options.segmentation.angle_tolerance_deg, run);
+  statistics.noise = noise;
   statistics.seconds.segment += watch.lap();
-  do {
-    if (preparation.primitives.empty()) {
-      throw Error({.file = {},
-                   .where = {},
-                   .expected = "no point of the cloud is near any primitive",
-                   .remedy = "check that cloud and primitives are in the same frame and units"});
+  return {.noise = noise, .tolerances = segmentation_tolerances(options.segmentation, noise)};
+}
+
+SupportedPrimitives take_all(const PrimitiveSet& primitives) {
+  SupportedPrimitives all{primitives, std::vector<PrimitiveIndex>(primitives.size())};
+  std::iota(all.original.begin(), all.original.end(), PrimitiveIndex{0});
+  return all;
+}
+
+bool drop_unsupported(std::span<const std::size_t> points_of_primitive, SupportedPrimitives& supported,
+                      std::vector<std::string>& warnings) {
+  SupportedPrimitives kept;
+  std::size_t dropped = 0;
+  for (std::size_t p = 0; p < points_of_primitive.size(); ++p) {
+    if (points_of_primitive[p] > 0) {
+      kept.primitives.push_back(supported.primitives[p]);
+      kept.original.push_back(supported.original[p]);
+    } else if (dropped++ < k_named_warnings) {
+      warnings.push_back(fmt::format("no point supports primitive '{}': it is left out", supported.primitives[p].id));
     }
+  }
+  if (dropped > k_named_warnings) {
+    warnings.push_back(
+        fmt::format("no point supports {} more primitives: they are left out", dropped - k_named_warnings));
+  }
+  if (kept.primitives.empty()) {
+    throw Error({.file = {},
+                 .where = {},
+                 .expected = "no point of the cloud is near any primitive",
+                 .remedy = "check that cloud and primitives are in the same frame and units"});
+  }
+  supported = std::move(kept);
+  return dropped > 0;
+}
+
+OverlapGraph overlap_graph_of(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
+                              const ExtractOptions& options, const RunContext& run) {
+  return build_overlap_graph(primitives,
+                             {.tolerance = options.overlap_tolerance.value_or(scale.noise),
+                              .extents = extents_of_unbounded(cloud, primitives, scale.tolerances, run)},
+                             run);
+}
+
+Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
+                    const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics) {
+  Preparation preparation;
+  static_cast<SupportedPrimitives&>(preparation) = take_all(primitives);
+  preparation.scale = scale;
+  do {
     build_partitions(cloud, options, run, preparation, statistics.seconds);
     pass_over_points(cloud, options, run, preparation, statistics.seconds);
-  } while (drop_unsupported(preparation, statistics));
-  statistics.noise = preparation.noise;
+  } while (drop_unsupported(preparation.pass.points_of_primitive, preparation, statistics.warnings));
   statistics.unassigned_points = preparation.pass.unassigned;
   statistics.clique_histogram = clique_histogram(preparation.cliques);
   statistics.components = preparation.components.size();

@@ -14,12 +14,34 @@ struct TableWindow {
   std::optional<PrimitiveIndex> judged = {};  ///< index in the component
 };
 
-/// Everything the search needs, over the primitives that points support.
-struct Preparation {
+/// How exact the points are.
+struct Scale {
+  double noise;
+  SegmentationTolerances tolerances;
+};
+
+/// Fills in the noise in the statistics, and its seconds.
+[[nodiscard]] Scale measure_scale(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                  const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics);
+
+/// Primitives that points support, and which of the input's each is.
+struct SupportedPrimitives {
   PrimitiveSet primitives;
-  std::vector<PrimitiveIndex> original;  ///< index in the input of each of them
-  double noise = 0;
-  SegmentationTolerances tolerances{};
+  std::vector<PrimitiveIndex> original;
+};
+[[nodiscard]] SupportedPrimitives take_all(const PrimitiveSet& primitives);
+/// Takes out those without points, with a warning each (of many, for some). Whether there were any.
+/// @throws Error when there are only such.
+bool drop_unsupported(std::span<const std::size_t> points_of_primitive, SupportedPrimitives& supported,
+                      std::vector<std::string>& warnings);
+
+/// The overlap graph; of unbounded primitives, that of what their points extend over.
+[[nodiscard]] OverlapGraph overlap_graph_of(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
+                                            const ExtractOptions& options, const RunContext& run);
+
+/// Everything the search needs, over the primitives that points support.
+struct Preparation : SupportedPrimitives {
+  Scale scale{};
   OverlapGraph graph;
   std::vector<Clique> cliques;  ///< of the whole graph
   std::vector<std::vector<PrimitiveIndex>> components;
@@ -30,10 +52,10 @@ struct Preparation {
   std::vector<std::vector<TableWindow>> windows_of;     ///< by component: see Component::windows
 };
 
-/// Noise, overlap graph, partitions and the pass over the points. Primitives without a single point are dropped, with a
+/// Overlap graph, partitions and the pass over the points. Primitives without a single point are dropped, with a
 /// warning in `statistics`, and the rest is prepared anew. Fills in the statistics of its stages.
 /// @throws Error when no point is near any primitive; Cancelled.
-[[nodiscard]] Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives,
+[[nodiscard]] Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
                                   const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics);
 
 /// How many bytes a table may take while it is made, when each of its points may be a class of its own.

@@ -67,6 +67,17 @@ Json merge_json(const MergeStatistics& merge) {
           {"evaluations", merge.evaluations}};
 }
 
+Json cells_json(const CellStatistics& s) {
+  return {{"cells", s.cells},
+          {"patches", s.patches},
+          {"open_cells", s.open_cells},
+          {"speaking_points", s.speaking_points},
+          {"contradicted_points", s.contradicted_points},
+          {"peeled", s.peeled},
+          {"cores", s.cores},
+          {"is_minimal", s.is_minimal}};
+}
+
 Json tree_json(const TreeStatistics& tree) {
   return {{"size", tree.size}, {"leaves", tree.leaves}, {"depth", tree.depth}};
 }
@@ -90,6 +101,7 @@ std::string to_json(const ExtractStatistics& s) {
                      {"share", share_json(s.seconds)},
                      {"search", search_json(s.partitions)},
                      {"merge", merge_json(s.merge)},
+                     {"cells", s.cells ? cells_json(*s.cells) : Json(nullptr)},
                      {"tree_before_simplification", tree_json(s.before_simplification)},
                      {"tree", tree_json(s.tree)},
                      {"fit",

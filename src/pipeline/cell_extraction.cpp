@@ -1,0 +1,44 @@
+#include "pipeline/cell_extraction.hpp"
+
+#include <algorithm>
+
+#include "base/stopwatch.hpp"
+#include "cloud2csg/cells.hpp"
+
+namespace cloud2csg {
+
+double CellExtraction::trust() const {
+  return 1 - statistics.contradicted_points / std::max(1.0, statistics.speaking_points);
+}
+
+std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                               const Scale& scale, const ExtractOptions& options, const RunContext& run,
+                                               StageSeconds& seconds) {
+  Stopwatch watch;
+  SupportedPrimitives supported = take_all(primitives);
+  CellExtraction result{};
+  CellComplex complex;
+  do {
+    complex = find_cells(cloud, supported.primitives,
+                         {.tolerances = scale.tolerances, .noise = scale.noise, .precision = options.precision}, run);
+  } while (drop_unsupported(complex.points_of_primitive, supported, result.warnings));
+  seconds.segment += watch.lap();
+  const CellLabels labels = label_cells(complex);
+  const std::optional<CellSolution> solution = solve_cells(complex, labels, {}, run);
+  seconds.search += watch.lap();
+  if (!solution) return std::nullopt;
+  result.tree = renumber(solution->tree, supported.original);
+  result.unassigned_points = complex.unassigned;
+  result.order = std::move(complex.order);
+  result.statistics = {.cells = complex.cells.size(),
+                       .patches = complex.patches.size(),
+                       .open_cells = solution->open_cells,
+                       .speaking_points = labels.points,
+                       .contradicted_points = solution->cost,
+                       .peeled = solution->peeled,
+                       .cores = solution->cores,
+                       .is_minimal = solution->is_minimal()};
+  return result;
+}
+
+}  // namespace cloud2csg

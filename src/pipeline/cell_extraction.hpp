@@ -1,0 +1,25 @@
+#pragma once
+
+#include "pipeline/preparation.hpp"
+
+namespace cloud2csg {
+
+/// The tree of the cells.
+struct CellExtraction {
+  CsgTree tree;  ///< over the input's primitives
+  CellStatistics statistics;
+  std::size_t unassigned_points;
+  std::vector<std::string> warnings;
+  std::vector<std::uint32_t> order;  ///< all points, so that neighbours are near each other
+
+  /// The share of what the points say that the tree does not contradict.
+  [[nodiscard]] double trust() const;
+};
+
+/// Absent when what is left after splitting off is too large to be solved. Fills in the seconds of its stages.
+/// @throws Error when no point is near any primitive; Cancelled.
+[[nodiscard]] std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                                             const Scale& scale, const ExtractOptions& options,
+                                                             const RunContext& run, StageSeconds& seconds);
+
+}  // namespace cloud2csg
