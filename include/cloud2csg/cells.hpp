@@ -35,12 +35,19 @@ struct CellComplex {
   std::vector<std::uint32_t> order;              ///< all points, so that neighbours are near each other
 };
 
+/// How many samples of its surface a primitive gets, to find cells and patches without points.
+struct SampleCounts {
+  std::size_t base = 48;  ///< each
+  std::size_t a_neighbour =
+      40;  ///< and so many for each other one whose bounds meet its own: there it is cut in pieces
+  std::size_t most = 1024;
+};
+
 struct CellOptions {
   SegmentationTolerances tolerances;
   double noise;  ///< see estimate_noise()
   Precision precision = Precision::automatic;
-  /// Points drawn on the surface of each primitive, at least, to find cells and patches without points.
-  std::size_t samples = 256;
+  SampleCounts samples = {};
 };
 
 /// The cells that points and samples of the primitives' surfaces meet, with what they say. A point speaks where it is

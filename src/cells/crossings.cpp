@@ -93,7 +93,8 @@ class CrossingCounter {
       boxes_.push_back(blocks_.bounds(block));
       middles.push_back(boxes_.back().center());
     }
-    const AlignedBox box = blocks_.bounds();
+    AlignedBox box;
+    for (const AlignedBox& of_block : boxes_) box.extend(of_block);
     near_.clear();
     for (PrimitiveIndex p = 0; p < input_.primitives.size(); ++p) {
       if (!input_.reach[p].intersects(box)) continue;
@@ -201,12 +202,12 @@ class CrossingCounter {
 /// Chunks a thread; the sums do not depend on how many.
 template <class Real>
 Crossings count_in(const PointCloud& cloud, std::span<const std::uint32_t> order, const AlignedBox& box,
-                   const PrimitiveSet& primitives, const CellOptions& options, const RunContext& run) {
-  Input<Real> input{cloud, order, box, primitives, {}, options.tolerances};
-  move_to_frame<Real>(input.primitives, PointBlocks<Real>::origin(box));
-  // Room for what rounding does.
-  const double distance = 1.01 * options.tolerances.distance + 1e-9 * (box.diagonal().norm() + box.center().norm());
-  for (const Primitive& primitive : input.primitives) input.reach.push_back(reach(primitive, distance));
+                   const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
+                   const RunContext& run) {
+  Input<Real> input{cloud, order, box, reaching.primitives, reaching.reach, tolerances};
+  const Eigen::Vector3d origin = PointBlocks<Real>::origin(box);
+  move_to_frame<Real>(input.primitives, origin);
+  for (AlignedBox& reached : input.reach) reached.translate(-origin);
   const std::size_t chunks = chunk_count(cloud.size());
   const std::size_t parts = std::clamp<std::size_t>(chunks, 1, static_cast<std::size_t>(usable_threads(run)));
   std::vector<Crossings> shares(parts);
@@ -247,13 +248,25 @@ void Crossings::absorb(const Crossings& other) {
   unassigned += other.unassigned;
 }
 
-Crossings count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order, const PrimitiveSet& primitives,
-                          const CellOptions& options, const RunContext& run) {
-  const AlignedBox box = bounds_of(cloud.positions);
-  const bool is_single = options.precision == Precision::automatic ? is_single_enough(box, primitives, options.noise)
+ReachingPrimitives reaching_primitives(const PrimitiveSet& primitives, const AlignedBox& points,
+                                       const CellOptions& options) {
+  // Room for what rounding does.
+  const double distance =
+      1.01 * options.tolerances.distance + 1e-9 * (points.diagonal().norm() + points.center().norm());
+  std::vector<AlignedBox> boxes;
+  boxes.reserve(primitives.size());
+  for (const Primitive& primitive : primitives) boxes.push_back(reach(primitive, distance));
+  const bool is_single = options.precision == Precision::automatic ? is_single_enough(points, primitives, options.noise)
                                                                    : options.precision == Precision::single;
-  return is_single ? count_in<float>(cloud, order, box, primitives, options, run)
-                   : count_in<double>(cloud, order, box, primitives, options, run);
+  return {.primitives = primitives, .reach = std::move(boxes), .is_single = is_single};
+}
+
+Crossings count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
+                          const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
+                          const RunContext& run) {
+  const AlignedBox box = bounds_of(cloud.positions);
+  return reaching.is_single ? count_in<float>(cloud, order, box, reaching, tolerances, run)
+                            : count_in<double>(cloud, order, box, reaching, tolerances, run);
 }
 
 }  // namespace cloud2csg

@@ -41,9 +41,18 @@ struct Crossings {
   void absorb(const Crossings& other);
 };
 
+/// Primitives and what is worked out of them once for several sets of points.
+struct ReachingPrimitives {
+  const PrimitiveSet& primitives;  ///< must outlive this
+  std::vector<AlignedBox> reach;   ///< by primitive: where points may be on it
+  bool is_single;                  ///< distances are computed in single precision
+};
+[[nodiscard]] ReachingPrimitives reaching_primitives(const PrimitiveSet& primitives, const AlignedBox& points,
+                                                     const CellOptions& options);
+
 /// `order`: see spatial_order(). @throws Cancelled
 [[nodiscard]] Crossings count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
-                                        const PrimitiveSet& primitives, const CellOptions& options,
+                                        const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
                                         const RunContext& run);
 
 }  // namespace cloud2csg

@@ -75,15 +75,16 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
                        const RunContext& run) {
   const AlignedBox box = bounds_of(cloud.positions);
   std::vector<std::uint32_t> order = spatial_order(cloud.positions, box, run);
-  const Crossings of_points = count_crossings(cloud, order, primitives, options, run);
-  const SurfaceSamples samples = sample_surfaces(primitives, box, options.samples);
+  const ReachingPrimitives reaching = reaching_primitives(primitives, box, options);
+  const Crossings of_points = count_crossings(cloud, order, reaching, options.tolerances, run);
+  const SurfaceSamples samples = sample_surfaces(primitives, reaching.reach, box, options.samples);
   ComplexBuilder builder;
   builder.add_cells(of_points);
   Crossings of_samples;
   if (samples.points.size() > 0) {
     const PointCloud& points = samples.points;
-    of_samples = count_crossings(points, spatial_order(points.positions, bounds_of(points.positions), run), primitives,
-                                 options, run);
+    of_samples = count_crossings(points, spatial_order(points.positions, bounds_of(points.positions), run), reaching,
+                                 options.tolerances, run);
     builder.add_cells(of_samples);
   }
   builder.index_cells();

@@ -5,6 +5,7 @@
 
 #include "cells/decompose.hpp"
 #include "cloud2csg/cells.hpp"
+#include "cloud2csg/restrict.hpp"
 #include "cloud2csg/simplify.hpp"
 
 namespace cloud2csg {
@@ -287,13 +288,13 @@ std::optional<CellSolution> solve_sure_cells(const CellComplex& complex, const C
   return solution;
 }
 
-/// Which cells are in a tree.
+/// Which cells are in a tree. O(size of all cells x log of the tree's size)
 std::vector<bool> cells_in(const CsgTree& tree, const CellComplex& complex) {
-  PartialFunction cells(complex.points_of_primitive.size());
-  for (const Cell& cell : complex.cells) cells.add(cell, false);
-  const std::vector<std::uint64_t> values = evaluate(tree, cells);
-  std::vector<bool> result(complex.cells.size());
-  for (std::size_t c = 0; c < result.size(); ++c) result[c] = (values[c / 64] >> (c % 64) & 1U) != 0;
+  const TreeRestriction restriction(tree);
+  const std::vector<bool> everywhere(complex.points_of_primitive.size(), true);
+  std::vector<bool> result;
+  result.reserve(complex.cells.size());
+  for (const Cell& cell : complex.cells) result.push_back(contains(restriction.restrict_to(cell), everywhere));
   return result;
 }
 
@@ -302,16 +303,25 @@ std::vector<bool> cells_in(const CsgTree& tree, const CellComplex& complex) {
 std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
                                         const CellSolveOptions& options, const RunContext& run) {
   std::optional<CellSolution> best;
+  const auto total = [&options](const CellSolution& of) {
+    return of.cost + options.leaf_cost * static_cast<double>(leaf_count(of.tree));
+  };
   const auto try_with = [&](double least_evidence, const MinimalFormulaOptions* minimal) {
     std::optional<CellSolution> solution = solve_sure_cells(complex, labels, least_evidence, minimal, run);
     if (!solution) return;
     solution->cost = cost_of(complex, cells_in(solution->tree, complex), labels.density, options.labels);
-    const auto total = [&options](const CellSolution& of) {
-      return of.cost + options.leaf_cost * static_cast<double>(leaf_count(of.tree));
-    };
     if (!best || total(*solution) <= total(*best)) best = std::move(solution);
   };
-  for (const double least_evidence : options.least_evidence) try_with(least_evidence, nullptr);
+  std::size_t sure = complex.cells.size() + 1;
+  for (const double least_evidence : options.least_evidence) {
+    const std::size_t as_sure = static_cast<std::size_t>(std::ranges::count_if(
+        labels.evidence, [least_evidence](double evidence) { return evidence >= least_evidence; }));
+    if (as_sure == sure) continue;  // the same cells as before
+    sure = as_sure;
+    try_with(least_evidence, nullptr);
+    // More cells that are sure need no fewer leaves, and no labels cost less than those of the cut.
+    if (best && total(*best) <= labels.cost + options.leaf_cost * static_cast<double>(best->least_leaves) + 1e-9) break;
+  }
   if (!best) return best;
   const double least = best->least_evidence;
   if (!best->is_minimal()) try_with(least, &options.minimal);

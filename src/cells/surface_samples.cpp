@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "primitive/bounds_index.hpp"
 #include "primitive/plain_surface.hpp"
 
 namespace cloud2csg {
@@ -72,10 +73,9 @@ Drawn draw_plain(const Primitive& primitive, const AlignedBox& region, std::size
 
 /// Where only the field is known: places in a thin layer around the surface, moved onto it. The layer is as much of the
 /// bounds as chance says.
-Drawn draw_from_field(const Primitive& primitive, std::size_t samples, RandomStream& random) {
+Drawn draw_from_field(const Primitive& primitive, const AlignedBox& box, std::size_t samples, RandomStream& random) {
   constexpr std::size_t k_places_a_sample = 16;
   constexpr double k_layer = 0.01;  // half its thickness, of the diagonal
-  const AlignedBox box = bounds(primitive);
   const double scale = box.diagonal().norm();
   const std::size_t places = k_places_a_sample * samples;
   Points all;
@@ -99,16 +99,38 @@ Drawn draw_from_field(const Primitive& primitive, std::size_t samples, RandomStr
   return drawn;
 }
 
+/// A box that may be infinite, cut down to what the index can hold.
+IndexBox finite(const AlignedBox& box, const AlignedBox& region) {
+  const Eigen::Vector3d far = Eigen::Vector3d::Constant(1e3 * (1 + region.diagonal().norm()));
+  return to_index_box(AlignedBox(box.min().cwiseMax(region.min() - far), box.max().cwiseMin(region.max() + far)), 0);
+}
+
+BoundsIndex index_of(std::span<const AlignedBox> boxes, const AlignedBox& region) {
+  std::vector<IndexEntry> entries;
+  entries.reserve(boxes.size());
+  for (PrimitiveIndex p = 0; p < boxes.size(); ++p) entries.emplace_back(finite(boxes[p], region), p);
+  return BoundsIndex(entries);
+}
+
+std::size_t count_meeting(const BoundsIndex& index, const AlignedBox& box, const AlignedBox& region) {
+  namespace bgi = boost::geometry::index;
+  return static_cast<std::size_t>(std::distance(index.qbegin(bgi::intersects(finite(box, region))), index.qend()));
+}
+
 }  // namespace
 
-SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, const AlignedBox& region, std::size_t samples) {
+SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, std::span<const AlignedBox> boxes,
+                               const AlignedBox& region, const SampleCounts& counts) {
   SurfaceSamples result;
-  result.points.positions.reserve(samples * primitives.size());
-  result.points.normals.reserve(samples * primitives.size());
+  const BoundsIndex index = index_of(boxes, region);
   for (std::size_t p = 0; p < primitives.size(); ++p) {
+    const std::size_t neighbours = count_meeting(index, boxes[p], region) - 1;
+    const std::size_t samples = std::min(counts.base + counts.a_neighbour * neighbours, counts.most);
     RandomStream random(0, k_stream, p);
+    const bool is_formula = std::holds_alternative<Expression>(primitives[p].shape);  // and reaches anywhere
+    const AlignedBox box = is_formula ? bounds(primitives[p]) : boxes[p];
     const Drawn drawn = is_plain(primitives[p]) ? draw_plain(primitives[p], region, samples, random)
-                                                : draw_from_field(primitives[p], samples, random);
+                                                : draw_from_field(primitives[p], box, samples, random);
     result.area_of_sample.push_back(drawn.area_of_one);
     for (std::size_t i = 0; i < drawn.points.size(); ++i) {
       result.points.positions.push_back(drawn.points.positions[i]);

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "cloud2csg/point_cloud.hpp"
-#include "cloud2csg/primitive.hpp"
+#include "cloud2csg/cells.hpp"
 
 namespace cloud2csg {
 
@@ -13,9 +13,9 @@ struct SurfaceSamples {
   std::vector<double> area_of_sample;  ///< by primitive: what each of its samples stands for
 };
 
-/// So many a primitive, the same always. `region` bounds what is drawn of half-spaces. Uniform by area;
-/// of expressions and displaced solids nearly so.
-[[nodiscard]] SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, const AlignedBox& region,
-                                             std::size_t samples);
+/// The same always. `boxes` hold the primitives' surfaces, one each; `region` bounds what is drawn
+/// of half-spaces. Uniform by area; of expressions and displaced solids nearly so.
+[[nodiscard]] SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, std::span<const AlignedBox> boxes,
+                                             const AlignedBox& region, const SampleCounts& counts);
 
 }  // namespace cloud2csg

@@ -1,6 +1,6 @@
 #include "fitness/point_blocks.hpp"
 
-#include <numeric>
+#include <type_traits>
 
 namespace cloud2csg {
 namespace {
@@ -11,10 +11,10 @@ AlignedBox bounds_of_rows(const Columns& columns, std::size_t begin, std::size_t
   AlignedBox box;
   for (int axis = 0; axis < 3; ++axis) {
     const auto& values = columns[static_cast<std::size_t>(axis)].values;
-    const auto [least, most] = std::minmax_element(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                   values.begin() + static_cast<std::ptrdiff_t>(end));
-    box.min()[axis] = static_cast<double>(*least);
-    box.max()[axis] = static_cast<double>(*most);
+    using Row = Eigen::Array<typename std::decay_t<decltype(values)>::value_type, Eigen::Dynamic, 1>;
+    const Eigen::Map<const Row> rows(&values[begin], static_cast<Eigen::Index>(end - begin));
+    box.min()[axis] = static_cast<double>(rows.minCoeff());
+    box.max()[axis] = static_cast<double>(rows.maxCoeff());
   }
   return box;
 }

@@ -68,11 +68,19 @@ Sample one_of_every_few(const PointCloud& cloud, std::size_t most) {
 /// Lowers `nearest` to the distances from the primitives whose slope agrees with the normal.
 void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& primitives, double least_cosine,
                   std::span<double> nearest) {
+  const double least_square = least_cosine * least_cosine;
   for (const Primitive& primitive : primitives) {
     const Field field = field_of(primitive, positions);
+    // As Field::agrees(), without roots and branches.
     for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const double gx = field.slopes.x[i];
+      const double gy = field.slopes.y[i];
+      const double gz = field.slopes.z[i];
+      const double dot = gx * normals.x[i] + gy * normals.y[i] + gz * normals.z[i];
+      const double square = gx * gx + gy * gy + gz * gz;
+      const bool agrees = (dot * dot >= least_square * square) & (square > 0);
       const double distance = std::abs(field.distances[i]);
-      if (distance < nearest[i] && field.agrees(i, normals[i], least_cosine)) nearest[i] = distance;
+      nearest[i] = agrees & (distance < nearest[i]) ? distance : nearest[i];
     }
   }
 }
