@@ -71,30 +71,47 @@ Drawn draw_plain(const Primitive& primitive, const AlignedBox& region, std::size
   return drawn;
 }
 
+/// Places in a box near a surface, of which only the field is known.
+struct Layer {
+  Points points;
+  double volume;  ///< estimated
+};
+
+/// Draws places until so many are within `depth` of the surface, or there is hardly any.
+Layer draw_layer(const Primitive& primitive, const AlignedBox& box, double depth, std::size_t samples,
+                 RandomStream& random) {
+  constexpr std::size_t k_places_a_sample = 16;
+  constexpr int k_rounds = 8;
+  const std::size_t places = k_places_a_sample * samples;
+  Points drawn(places);
+  Field field(places);
+  Points near;
+  int rounds = 0;
+  while (rounds < k_rounds && near.size() < samples) {
+    ++rounds;
+    for (std::size_t i = 0; i < places; ++i) {
+      Eigen::Vector3d place;
+      for (int axis = 0; axis < 3; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
+      drawn.set(i, place);
+    }
+    evaluate(primitive, drawn, field);
+    for (std::size_t i = 0; i < places; ++i) {
+      if (std::abs(field.distances[i]) <= depth * field.slopes[i].norm()) near.push_back(drawn[i]);
+    }
+  }
+  const double share = static_cast<double>(near.size()) / (rounds * static_cast<double>(places));
+  return {.points = std::move(near), .volume = share * box.volume()};
+}
+
 /// Where only the field is known: places in a thin layer around the surface, moved onto it. The layer is as much of the
 /// bounds as chance says.
 Drawn draw_from_field(const Primitive& primitive, const AlignedBox& box, std::size_t samples, RandomStream& random) {
-  constexpr std::size_t k_places_a_sample = 16;
   constexpr double k_layer = 0.01;  // half its thickness, of the diagonal
   const double scale = box.diagonal().norm();
-  const std::size_t places = k_places_a_sample * samples;
-  Points all;
-  all.reserve(places);
-  for (std::size_t i = 0; i < places; ++i) {
-    Eigen::Vector3d place;
-    for (int axis = 0; axis < 3; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
-    all.push_back(place);
-  }
-  Field field(places);
-  evaluate(primitive, all, field);
-  Points near;
-  for (std::size_t i = 0; i < places; ++i) {
-    if (std::abs(field.distances[i]) <= k_layer * scale * field.slopes[i].norm()) near.push_back(all[i]);
-  }
-  const double layer = box.volume() * static_cast<double>(near.size()) / static_cast<double>(places);
-  near.resize(std::min(near.size(), samples));
-  Drawn drawn{.points = settled(primitive, std::move(near), scale)};
-  const double area = layer / (2 * k_layer * scale);
+  Layer layer = draw_layer(primitive, box, k_layer * scale, samples, random);
+  layer.points.resize(std::min(layer.points.size(), samples));
+  Drawn drawn{.points = settled(primitive, std::move(layer.points), scale)};
+  const double area = layer.volume / (2 * k_layer * scale);
   drawn.area_of_one = area / std::max(1.0, static_cast<double>(drawn.points.size()));
   return drawn;
 }

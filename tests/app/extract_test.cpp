@@ -84,6 +84,7 @@ TEST_F(Extract, PresetsAndStrategiesAreTaken) {
     return json::parse(read_file(path("s.json")))["strategy"].get<std::string>();
   };
   EXPECT_EQ(strategy_of({}), "auto");
+  EXPECT_EQ(strategy_of({"--strategy", "cells"}), "cells");
   EXPECT_EQ(strategy_of({"--preset", "paper"}), "partition");
   EXPECT_EQ(strategy_of({"--preset", "paper", "--strategy", "baseline"}), "baseline");
 }
@@ -92,7 +93,7 @@ TEST_F(Extract, PrecisionIsTaken) {
   const std::string cloud = sampled("m1.json", "3000");
   const auto objective_of = [&](const std::string& precision) {
     const Outcome outcome = run({"extract", cloud, "--primitives", shipped("m1.json"), "-o", path("m.json"), "--stats",
-                                 path("s.json"), "--precision", precision});
+                                 path("s.json"), "--strategy", "partition", "--precision", precision});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(read_file(path("s.json")))["search"]["partitions"][0]["objective"].get<double>();
   };

@@ -6,6 +6,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
 #include "cloud2csg/simplify.hpp"
+#include "pipeline/strategies.hpp"
 #include "support/scene.hpp"
 #include "tree/random_trees.hpp"
 
@@ -15,8 +16,10 @@ namespace {
 /// Searches of a moment, some of them as in the paper.
 ExtractOptions random_options(RandomStream& random) {
   ExtractOptions options = random.chance(0.3) ? paper_options() : ExtractOptions{};
-  constexpr std::array k_strategies{Strategy::automatic, Strategy::partition, Strategy::baseline};
+  constexpr std::array k_strategies{Strategy::automatic, Strategy::cells, Strategy::partition, Strategy::baseline};
+  constexpr std::array k_trusts{0.01, 0.97, test::k_never_by_cells};
   options.strategy = k_strategies[random.below(k_strategies.size())];
+  options.cell_trust = k_trusts[random.below(k_trusts.size())];
   options.search.population = 2 + static_cast<int>(random.below(40));
   options.search.elites = static_cast<int>(random.below(2));
   options.search.idle_generations = 1 + static_cast<int>(random.below(5));
@@ -33,7 +36,9 @@ void expect_valid(const Extraction& result, std::size_t primitives) {
   RC_ASSERT(test::is_well_formed(result.tree));
   RC_ASSERT(simplify(result.tree) == result.tree);
   for (const PrimitiveIndex p : primitives_of(result.tree)) RC_ASSERT(p < primitives);
-  RC_ASSERT(result.statistics.merge.ways.size() == result.statistics.components);
+  const bool is_searched = !result.statistics.partitions.empty();
+  RC_ASSERT(is_searched || result.statistics.cells);
+  RC_ASSERT(result.statistics.merge.ways.size() == (is_searched ? result.statistics.components : 0));
   RC_ASSERT(std::isfinite(result.statistics.fit.objective));
   RC_ASSERT(result.statistics.merge.worst_shortfall <= 1.0);
 }

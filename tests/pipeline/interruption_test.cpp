@@ -3,10 +3,12 @@
 #include <numeric>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
+#include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 #include "tree/random_trees.hpp"
 
@@ -28,6 +30,7 @@ Input small_input(const char* name) {
 ExtractOptions endless(Strategy strategy) {
   ExtractOptions options;
   options.strategy = strategy;
+  options.cell_trust = test::k_never_by_cells;
   options.search.listing_limit = 1;
   options.search.seeds = false;  // or a local search may find what needs no more
   options.search.idle_generations = 1'000'000;
@@ -48,10 +51,11 @@ TEST(Interruption, BeforeTheSearchThereIsNothingToGive) {
   const Input input = small_input("m0");
   std::stop_source stop;
   stop.request_stop();
-  for (const int threads : {1, 2}) {
-    EXPECT_THROW(
-        (void)extract_csg(input.cloud, input.model.primitives, {}, {.stop = stop.get_token(), .threads = threads}),
-        Cancelled);
+  for (const ExtractOptions& options : test::all_strategies()) {
+    for (const int threads : {1, 2}) {
+      const RunContext run{.stop = stop.get_token(), .threads = threads};
+      EXPECT_THROW((void)extract_csg(input.cloud, input.model.primitives, options, run), Cancelled);
+    }
   }
 }
 
@@ -59,14 +63,14 @@ TEST(Interruption, BeforeTheSearchThereIsNothingToGive) {
 TEST(Interruption, DuringTheSearchGivesTheBestSoFar) {
   const Input input = small_input("m0");
   for (const Strategy strategy : {Strategy::automatic, Strategy::partition}) {
+    const ExtractOptions options{.strategy = strategy, .cell_trust = test::k_never_by_cells};
     for (const int threads : {1, 2}) {
       std::stop_source stop;
       const auto stop_at_first = [&stop](const Progress& progress) {
         if (progress.stage == "search" && progress.done > 0) stop.request_stop();
       };
       const RunContext run{.stop = stop.get_token(), .on_progress = stop_at_first, .threads = threads};
-      expect_the_best_so_far(extract_csg(input.cloud, input.model.primitives, {.strategy = strategy}, run),
-                             input.model.primitives);
+      expect_the_best_so_far(extract_csg(input.cloud, input.model.primitives, options, run), input.model.primitives);
     }
   }
 }
@@ -86,14 +90,28 @@ TEST_P(TimeLimit, EndsEverySearchWithATree) {
   }
 }
 
+/// The tree of the cells comes with the pass over the points, which is always completed.
+TEST_P(TimeLimit, LeavesTheTreeOfTheCells) {
+  const Input input = small_input(GetParam());
+  for (const Strategy strategy : {Strategy::automatic, Strategy::cells}) {
+    const Extraction expected = extract_csg(input.cloud, input.model.primitives, {.strategy = strategy});
+    const Extraction result =
+        extract_csg(input.cloud, input.model.primitives, {.strategy = strategy, .time_limit_seconds = 1e-9});
+    EXPECT_EQ(result.tree, expected.tree);
+    EXPECT_TRUE(result.statistics.complete);
+    EXPECT_TRUE(result.statistics.warnings.empty());
+  }
+}
+
 TEST(TimeLimitThatIsLong, ChangesNothing) {
   const Input input = small_input("m1");
-  ExtractOptions options;
-  const Extraction expected = extract_csg(input.cloud, input.model.primitives, options);
-  options.time_limit_seconds = 3600;
-  const Extraction result = extract_csg(input.cloud, input.model.primitives, options);
-  EXPECT_EQ(result.tree, expected.tree);
-  EXPECT_TRUE(result.statistics.complete);
+  for (ExtractOptions options : test::with_and_without_cells()) {
+    const Extraction expected = extract_csg(input.cloud, input.model.primitives, options);
+    options.time_limit_seconds = 3600;
+    const Extraction result = extract_csg(input.cloud, input.model.primitives, options);
+    EXPECT_EQ(result.tree, expected.tree);
+    EXPECT_TRUE(result.statistics.complete);
+  }
 }
 
 TEST(Progress, CountsPartitionsAndComponents) {
@@ -108,7 +126,8 @@ TEST(Progress, CountsPartitionsAndComponents) {
                              EXPECT_LE(progress.done, progress.total);
                            },
                        .threads = 3};
-  const Extraction result = extract_csg(input.cloud, input.model.primitives, {}, run);
+  const ExtractOptions options{.cell_trust = test::k_never_by_cells};
+  const Extraction result = extract_csg(input.cloud, input.model.primitives, options, run);
   std::vector<std::size_t> expected(result.statistics.partitions.size() + 1);
   std::iota(expected.begin(), expected.end(), std::size_t{0});
   EXPECT_EQ(search, expected);
@@ -136,13 +155,15 @@ TEST(Progress, ASingleSearchTellsItsGenerations) {
 TEST(Progress, ErrorsOfTheCallerComeThrough) {
   const Input input = small_input("m0");
   struct Mine {};
-  const RunContext run{.stop = {},
-                       .on_progress =
-                           [](const Progress& progress) {
-                             if (progress.stage == "search") throw Mine{};
-                           },
-                       .threads = 2};
-  EXPECT_THROW((void)extract_csg(input.cloud, input.model.primitives, {}, run), Mine);
+  const auto extract_until = [&input](std::string_view stage, const ExtractOptions& options) {
+    const auto throw_at = [stage](const Progress& progress) {
+      if (progress.stage == stage) throw Mine{};
+    };
+    (void)extract_csg(input.cloud, input.model.primitives, options,
+                      {.stop = {}, .on_progress = throw_at, .threads = 2});
+  };
+  EXPECT_THROW(extract_until("cells", {}), Mine);
+  EXPECT_THROW(extract_until("search", {.cell_trust = test::k_never_by_cells}), Mine);
 }
 
 }  // namespace

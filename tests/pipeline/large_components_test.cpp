@@ -7,6 +7,7 @@
 #include "base/random.hpp"
 #include "cloud2csg/extract.hpp"
 #include "cloud2csg/simplify.hpp"
+#include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 
 /// Components that are too large for one table.
@@ -75,14 +76,30 @@ Known plate_with_features(int columns, int rows) {
   return known;
 }
 
-/// One primitive that overlaps all others is judged region by region.
-TEST(Hub, IsRightAndAsSmallAsTheTruth) {
-  const Known known = plate_with_features(9, 8);
-  const Extraction result = extract_csg(known.cloud, known.primitives);
-  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 60), 0.9999);
+/// The tree is right, as small as the truth, and nothing is to be said about it.
+void expect_truth(const Extraction& result, const Known& known) {
+  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 60), 0.9999)
+      << to_text(result.tree, known.primitives);
   EXPECT_EQ(result.tree.size(), simplify(known.truth).size()) << to_text(result.tree, known.primitives);
   EXPECT_LT(result.statistics.merge.worst_shortfall, 0.05);
+  EXPECT_TRUE(result.statistics.complete);
   EXPECT_TRUE(result.statistics.warnings.empty());
+}
+
+TEST(Hub, IsRightByCells) {
+  const Known known = plate_with_features(9, 8);
+  const Extraction result = extract_csg(known.cloud, known.primitives);
+  expect_truth(result, known);
+  ASSERT_TRUE(result.statistics.cells.has_value());
+  EXPECT_TRUE(result.statistics.cells->is_minimal);
+}
+
+/// One primitive that overlaps all others is judged region by region.
+TEST(Hub, IsRightByPartitions) {
+  const Known known = plate_with_features(9, 8);
+  const Extraction result = extract_csg(known.cloud, known.primitives, {.cell_trust = test::k_never_by_cells});
+  expect_truth(result, known);
+  EXPECT_FALSE(result.statistics.partitions.empty());
   for (const PartitionStatistics& partition : result.statistics.partitions) {
     EXPECT_LT(partition.points, known.cloud.size() / 8);  // not all of the plate's
   }
@@ -90,9 +107,12 @@ TEST(Hub, IsRightAndAsSmallAsTheTruth) {
 
 TEST(Hub, IsTheSameOnAnyNumberOfThreads) {
   const Known known = plate_with_features(6, 6);
-  const Extraction expected = extract_csg(known.cloud, known.primitives, {}, {.threads = 1});
-  for (const int threads : {2, 0}) {
-    EXPECT_EQ(extract_csg(known.cloud, known.primitives, {}, {.threads = threads}).tree, expected.tree) << threads;
+  for (const ExtractOptions& options : test::with_and_without_cells()) {
+    const Extraction expected = extract_csg(known.cloud, known.primitives, options, {.threads = 1});
+    for (const int threads : {2, 0}) {
+      EXPECT_EQ(extract_csg(known.cloud, known.primitives, options, {.threads = threads}).tree, expected.tree)
+          << threads;
+    }
   }
 }
 
@@ -106,41 +126,47 @@ class Lattice : public ::testing::Test {
   [[nodiscard]] static Extraction extract(const ExtractOptions& options = {}, const RunContext& run = {}) {
     return extract_csg(known().cloud, known().primitives, options, run);
   }
-
-  static void expect_truth(const Extraction& result) {
-    EXPECT_GE(test::membership_iou(result.tree, known().truth, known().primitives, 60), 0.9999);
-    EXPECT_EQ(result.tree.size(), simplify(known().truth).size()) << to_text(result.tree, known().primitives);
-    EXPECT_TRUE(result.statistics.complete);
-  }
 };
 
-TEST_F(Lattice, IsRightAndAsSmallAsTheTruth) {
+TEST_F(Lattice, IsRightByCells) {
   const Extraction result = extract();
-  expect_truth(result);
+  expect_truth(result, known());
+  EXPECT_EQ(result.statistics.components, 1U);
+  ASSERT_TRUE(result.statistics.cells.has_value());
+  EXPECT_TRUE(result.statistics.cells->is_minimal);
+  EXPECT_TRUE(result.statistics.partitions.empty());
+}
+
+TEST_F(Lattice, IsRightByPartitions) {
+  const Extraction result = extract({.cell_trust = test::k_never_by_cells});
+  expect_truth(result, known());
   EXPECT_EQ(result.statistics.components, 1U);
   EXPECT_EQ(result.statistics.merge.ways, std::vector{MergeWay::dominance});
-  EXPECT_LT(result.statistics.merge.worst_shortfall, 0.05);
   EXPECT_GT(result.statistics.partitions.size(), 10U);
 }
 
 TEST_F(Lattice, IsTheSameForAnyThreadsAndModes) {
-  const Extraction expected = extract({.parallel = Parallel::none}, {.threads = 1});
-  for (const Parallel parallel : {Parallel::none, Parallel::population, Parallel::partitions, Parallel::both}) {
-    const Extraction result = extract({.parallel = parallel}, {.threads = 2});
-    EXPECT_EQ(result.tree, expected.tree) << to_string(parallel);
-    EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
-    EXPECT_EQ(result.statistics.merge.worst_shortfall, expected.statistics.merge.worst_shortfall);
+  for (ExtractOptions options : test::with_and_without_cells()) {
+    options.parallel = Parallel::none;
+    const Extraction expected = extract(options, {.threads = 1});
+    for (const Parallel parallel : {Parallel::none, Parallel::population, Parallel::partitions, Parallel::both}) {
+      options.parallel = parallel;
+      const Extraction result = extract(options, {.threads = 2});
+      EXPECT_EQ(result.tree, expected.tree) << to_string(parallel);
+      EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
+      EXPECT_EQ(result.statistics.merge.worst_shortfall, expected.statistics.merge.worst_shortfall);
+    }
   }
 }
 
 TEST_F(Lattice, OfPartitionsJudgedByAllTheirPointsGivesATreeThatFits) {
-  const Extraction result = extract({.without_strangers = false});
+  const Extraction result = extract({.cell_trust = test::k_never_by_cells, .without_strangers = false});
   EXPECT_GE(test::membership_iou(result.tree, known().truth, known().primitives), 0.95);
   EXPECT_TRUE(result.statistics.complete);
 }
 
 TEST_F(Lattice, EndsAtTheTimeLimitWithATree) {
-  const Extraction result = extract({.time_limit_seconds = 1e-6});
+  const Extraction result = extract({.cell_trust = test::k_never_by_cells, .time_limit_seconds = 1e-6});
   EXPECT_FALSE(result.statistics.complete);
   EXPECT_FALSE(primitives_of(result.tree).empty());
 }
@@ -169,11 +195,15 @@ Known row_of_bores_that_are_filled(int blocks) {
 
 TEST(FilledBores, AreCutOnlyWhereTheyShow) {
   const Known known = row_of_bores_that_are_filled(15);
-  const Extraction result = extract_csg(known.cloud, known.primitives);
-  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 80), 0.9999)
-      << to_text(result.tree, known.primitives);
-  EXPECT_EQ(result.tree.size(), known.truth.size());
-  EXPECT_EQ(result.statistics.merge.ways, std::vector{MergeWay::dominance});
+  for (const ExtractOptions& options : test::with_and_without_cells()) {
+    const Extraction result = extract_csg(known.cloud, known.primitives, options);
+    EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 80), 0.9999)
+        << to_text(result.tree, known.primitives);
+    EXPECT_EQ(result.tree.size(), known.truth.size());
+    if (!result.statistics.cells) {
+      EXPECT_EQ(result.statistics.merge.ways, std::vector{MergeWay::dominance});
+    }
+  }
 }
 
 /// A row of boxes of which only what two neighbours share is solid: each partition's tree is an intersection, and no
@@ -196,9 +226,17 @@ Known row_of_intersections(int count) {
   return known;
 }
 
+TEST(BlockedComponent, IsRightByCells) {
+  const Known known = row_of_intersections(30);
+  const Extraction result = extract_csg(known.cloud, known.primitives);
+  EXPECT_EQ(test::membership_iou(result.tree, known.truth, known.primitives, 60), 1.0);
+  EXPECT_LE(result.tree.size(), known.truth.size());
+}
+
 TEST(BlockedComponent, StillGivesATreeInTime) {
   const Known known = row_of_intersections(30);
   ExtractOptions options;
+  options.cell_trust = test::k_never_by_cells;
   options.time_limit_seconds = 5;
   options.search.generation_limit = 3;
   const Extraction result = extract_csg(known.cloud, known.primitives, options, {.threads = 2});
@@ -210,7 +248,8 @@ TEST(BlockedComponent, StillGivesATreeInTime) {
 
 TEST(BlockedComponent, EndsAtATimeLimitThatIsShort) {
   const Known known = row_of_intersections(30);
-  const Extraction result = extract_csg(known.cloud, known.primitives, {.time_limit_seconds = 1e-6});
+  const ExtractOptions options{.cell_trust = test::k_never_by_cells, .time_limit_seconds = 1e-6};
+  const Extraction result = extract_csg(known.cloud, known.primitives, options);
   EXPECT_FALSE(result.statistics.complete);
   EXPECT_FALSE(primitives_of(result.tree).empty());
 }

@@ -4,6 +4,7 @@
 
 #include "cloud2csg/extract.hpp"
 #include "pipeline/component.hpp"
+#include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"
 
@@ -31,12 +32,16 @@ TEST_P(Chain, IsRightHoweverItIsMerged) {
   const PrimitiveSet primitives = a_chain();
   const CsgTree truth = parse_tree(GetParam(), primitives);
   const PointCloud cloud = cloud_of(GetParam(), primitives);
-  for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
-    const Extraction result = extract_csg(cloud, primitives, {.strategy = strategy});
+  for (const ExtractOptions& options : test::all_strategies()) {
+    const Extraction result = extract_csg(cloud, primitives, options);
     EXPECT_GE(test::membership_iou(result.tree, truth, primitives), 0.999)
-        << to_string(strategy) << ": " << to_text(result.tree, primitives);
+        << to_string(options.strategy) << ": " << to_text(result.tree, primitives);
+    if (result.statistics.cells) {
+      EXPECT_TRUE(result.statistics.merge.ways.empty());
+      continue;
+    }
     ASSERT_EQ(result.statistics.merge.ways.size(), result.statistics.components);
-    if (strategy != Strategy::partition) {
+    if (options.strategy != Strategy::partition) {
       EXPECT_EQ(result.statistics.merge.ways.front(), MergeWay::single);
     }
   }

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cloud2csg/extract.hpp"
+#include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {
@@ -15,6 +16,7 @@ constexpr std::array k_parallel{Parallel::none, Parallel::population, Parallel::
 ExtractOptions short_options(Strategy strategy, std::uint64_t seed) {
   ExtractOptions options;
   options.strategy = strategy;
+  options.cell_trust = test::k_never_by_cells;
   options.search.population = 40;
   options.search.idle_generations = 5;
   options.search.generation_limit = 12;
@@ -41,7 +43,7 @@ class Modes : public ::testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Paper, Modes, ::testing::Values("m0", "m1", "m2"));
 
 TEST_P(Modes, GiveTheSameTreeForAnyThreads) {
-  for (const Strategy strategy : {Strategy::partition, Strategy::baseline, Strategy::automatic}) {
+  for (const Strategy strategy : {Strategy::cells, Strategy::partition, Strategy::baseline, Strategy::automatic}) {
     ExtractOptions options = short_options(strategy, 3);
     options.parallel = Parallel::none;
     const Extraction expected = extract(options, 1);
@@ -84,6 +86,7 @@ TEST_P(Modes, ThePapersOptionsGiveATreeToo) {
 
 TEST(Names, AreThoseOfTheCommandLine) {
   EXPECT_EQ(to_string(Strategy::automatic), "auto");
+  EXPECT_EQ(to_string(Strategy::cells), "cells");
   EXPECT_EQ(to_string(Strategy::partition), "partition");
   EXPECT_EQ(to_string(Strategy::baseline), "baseline");
   EXPECT_EQ(to_string(Parallel::none), "none");

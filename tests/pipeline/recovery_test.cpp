@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "cloud2csg/extract.hpp"
+#include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {
@@ -20,11 +21,15 @@ class RecoversThePapersModels : public ::testing::TestWithParam<ModelAndSeed> {
   void expect_recovered(double noise) {
     const auto& [name, seed] = GetParam();
     const Model model = test::paper_model(name);
-    const Extraction result = extract_csg(cloud_of(model, noise, seed), model.primitives, {.seed = seed});
-    EXPECT_GE(test::membership_iou(result.tree, *model.tree, model.primitives), 0.999)
-        << to_text(result.tree, model.primitives);
-    EXPECT_LE(4 * result.tree.size(), 5 * model.tree->size()) << to_text(result.tree, model.primitives);
-    EXPECT_TRUE(result.statistics.complete);
+    const PointCloud cloud = cloud_of(model, noise, seed);
+    for (ExtractOptions options : test::with_and_without_cells()) {
+      options.seed = seed;
+      const Extraction result = extract_csg(cloud, model.primitives, options);
+      EXPECT_GE(test::membership_iou(result.tree, *model.tree, model.primitives), 0.999)
+          << to_text(result.tree, model.primitives);
+      EXPECT_LE(4 * result.tree.size(), 5 * model.tree->size()) << to_text(result.tree, model.primitives);
+      EXPECT_TRUE(result.statistics.complete);
+    }
   }
 };
 
@@ -55,9 +60,12 @@ INSTANTIATE_TEST_SUITE_P(Paper, CliqueHistogram,
 TEST_P(CliqueHistogram, IsThatOfThePaper) {
   const Model model = test::paper_model(GetParam().name);
   for (const double noise : {0.0, 0.01}) {
-    const Extraction result =
-        extract_csg(cloud_of(model, noise, 3, 4000), model.primitives, {.search = paper_ga_options()});
-    EXPECT_EQ(result.statistics.clique_histogram, GetParam().cliques) << noise;
+    const PointCloud cloud = cloud_of(model, noise, 3, 4000);
+    for (ExtractOptions options : test::with_and_without_cells()) {
+      options.search = paper_ga_options();
+      const Extraction result = extract_csg(cloud, model.primitives, options);
+      EXPECT_EQ(result.statistics.clique_histogram, GetParam().cliques) << noise;
+    }
   }
 }
 
@@ -68,11 +76,11 @@ TEST(ExtractCsg, UnitesComponentsThatDoNotTouch) {
       test::placed("e", Sphere{0.3}, {0, 5, 0})};
   const CsgTree truth = parse_tree("(a - b) | (c - d) | e", primitives);
   const PointCloud cloud = sample_surface(truth, primitives, {.count = 6000, .noise = 0.003, .seed = 1});
-  for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
-    const Extraction result = extract_csg(cloud, primitives, {.strategy = strategy});
+  for (const ExtractOptions& options : test::all_strategies()) {
+    const Extraction result = extract_csg(cloud, primitives, options);
     EXPECT_EQ(test::membership_iou(result.tree, truth, primitives, 60), 1.0) << to_text(result.tree, primitives);
     EXPECT_EQ(result.tree.size(), truth.size());
-    EXPECT_EQ(result.statistics.components, strategy == Strategy::baseline ? 1U : 3U);
+    EXPECT_EQ(result.statistics.components, options.strategy == Strategy::baseline ? 1U : 3U);
     EXPECT_EQ(result.statistics.clique_histogram, (std::vector<std::size_t>{1, 2}));
   }
 }
@@ -80,8 +88,8 @@ TEST(ExtractCsg, UnitesComponentsThatDoNotTouch) {
 TEST(ExtractCsg, SolvesASinglePrimitive) {
   const PrimitiveSet primitives{test::placed("ball", Sphere{1}, {0, 0, 0})};
   const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 500, .noise = 0.01});
-  for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
-    EXPECT_EQ(extract_csg(cloud, primitives, {.strategy = strategy}).tree, CsgTree::leaf(0));
+  for (const ExtractOptions& options : test::all_strategies()) {
+    EXPECT_EQ(extract_csg(cloud, primitives, options).tree, CsgTree::leaf(0));
   }
 }
 
@@ -90,9 +98,11 @@ TEST(ExtractCsg, TakesASinglePoint) {
   PointCloud cloud;
   cloud.positions.push_back({1, 0, 0});
   cloud.normals.push_back({1, 0, 0});
-  const Extraction result = extract_csg(cloud, primitives);
-  EXPECT_EQ(result.tree, CsgTree::leaf(0));
-  EXPECT_DOUBLE_EQ(result.statistics.fit.objective, 2.0);
+  for (const ExtractOptions& options : test::with_and_without_cells()) {
+    const Extraction result = extract_csg(cloud, primitives, options);
+    EXPECT_EQ(result.tree, CsgTree::leaf(0));
+    EXPECT_DOUBLE_EQ(result.statistics.fit.objective, 2.0);
+  }
 }
 
 TEST(ExtractCsg, CutsWithHalfSpaces) {
@@ -100,8 +110,8 @@ TEST(ExtractCsg, CutsWithHalfSpaces) {
                           test::placed("post", Cylinder{0.3, 4}, {0, 0, 0})};
   const CsgTree truth = parse_tree("(ball & below) - post", primitives);
   const PointCloud cloud = sample_surface(truth, primitives, {.count = 5000, .noise = 0.004, .seed = 4});
-  for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
-    const Extraction result = extract_csg(cloud, primitives, {.strategy = strategy});
+  for (const ExtractOptions& options : test::all_strategies()) {
+    const Extraction result = extract_csg(cloud, primitives, options);
     EXPECT_EQ(test::membership_iou(result.tree, truth, primitives), 1.0) << to_text(result.tree, primitives);
   }
 }
@@ -130,11 +140,13 @@ TEST(ExtractCsg, GivesTheSameTreeAtEveryScale) {
   for (const char* name : {"m0", "m2"}) {
     const Model model = test::paper_model(name);
     const PointCloud cloud = cloud_of(model, 0.005, 7, 6000);
-    const Extraction expected = extract_csg(cloud, model.primitives);
-    for (const double factor : {0.01, 1000.0}) {
-      const Extraction result = extract_csg(scaled(cloud, factor), scaled(model.primitives, factor));
-      EXPECT_EQ(result.tree, expected.tree) << name << ' ' << factor;
-      EXPECT_NEAR(result.statistics.noise, factor * expected.statistics.noise, 1e-6 * factor);
+    for (const ExtractOptions& options : test::with_and_without_cells()) {
+      const Extraction expected = extract_csg(cloud, model.primitives, options);
+      for (const double factor : {0.01, 1000.0}) {
+        const Extraction result = extract_csg(scaled(cloud, factor), scaled(model.primitives, factor), options);
+        EXPECT_EQ(result.tree, expected.tree) << name << ' ' << factor;
+        EXPECT_NEAR(result.statistics.noise, factor * expected.statistics.noise, 1e-6 * factor);
+      }
     }
   }
 }
@@ -148,12 +160,14 @@ TEST(ExtractCsg, NamesOnlyTheFirstOfManyPrimitivesThatNoPointSupports) {
     id += std::to_string(k);
     primitives.push_back(test::placed(id, Sphere{0.2}, {9.0 + k, 9, 9}));
   }
-  const Extraction result = extract_csg(cloud, primitives);
-  EXPECT_EQ(result.tree, CsgTree::leaf(0));
-  const std::vector<std::string>& warnings = result.statistics.warnings;
-  ASSERT_EQ(warnings.size(), 11U);
-  EXPECT_NE(warnings.front().find("'far0'"), std::string::npos);
-  EXPECT_NE(warnings.back().find("490 more"), std::string::npos);
+  for (const ExtractOptions& options : test::with_and_without_cells()) {
+    const Extraction result = extract_csg(cloud, primitives, options);
+    EXPECT_EQ(result.tree, CsgTree::leaf(0));
+    const std::vector<std::string>& warnings = result.statistics.warnings;
+    ASSERT_EQ(warnings.size(), 11U);
+    EXPECT_NE(warnings.front().find("'far0'"), std::string::npos);
+    EXPECT_NE(warnings.back().find("490 more"), std::string::npos);
+  }
 }
 
 TEST(ExtractCsg, DropsPrimitivesThatNoPointSupports) {
@@ -161,8 +175,8 @@ TEST(ExtractCsg, DropsPrimitivesThatNoPointSupports) {
                           test::placed("hidden", Sphere{0.2}, {0, 0, 0}), test::placed("b", Sphere{0.4}, {0.5, 0, 0})};
   const CsgTree truth = parse_tree("a - b", primitives);
   const PointCloud cloud = sample_surface(truth, primitives, {.count = 3000, .noise = 0.002, .seed = 1});
-  for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
-    const Extraction result = extract_csg(cloud, primitives, {.strategy = strategy});
+  for (const ExtractOptions& options : test::all_strategies()) {
+    const Extraction result = extract_csg(cloud, primitives, options);
     EXPECT_EQ(result.tree, truth);
     EXPECT_EQ(result.statistics.primitives, 4U);
     ASSERT_EQ(result.statistics.warnings.size(), 2U);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "cloud2csg/extract.hpp"
+#include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {
@@ -85,8 +86,9 @@ TEST(Statistics, ObjectiveIsThatOfTheReference) {
 }
 
 TEST(Statistics, PartitionsCoverThePrimitives) {
-  for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
-    const Extraction result = extraction_of("m1", {.strategy = strategy, .search = paper_ga_options()});
+  for (ExtractOptions options : test::all_searches()) {
+    options.search = paper_ga_options();
+    const Extraction result = extraction_of("m1", options);
     std::vector<bool> covered(4, false);
     for (const PartitionStatistics& partition : result.statistics.partitions) {
       for (const PrimitiveIndex p : partition.primitives) covered[p] = true;
@@ -96,18 +98,20 @@ TEST(Statistics, PartitionsCoverThePrimitives) {
       EXPECT_GT(partition.tree_size, 0U);
     }
     EXPECT_EQ(covered, std::vector<bool>(4, true));
-    EXPECT_EQ(result.statistics.partitions.size(), strategy == Strategy::baseline ? 1U : 2U);
+    EXPECT_EQ(result.statistics.partitions.size(), options.strategy == Strategy::baseline ? 1U : 2U);
   }
 }
 
 TEST(Statistics, ExtractionTakesAsLongAsItsStages) {
-  const StageSeconds seconds = extraction_of("m0").statistics.seconds;
-  const double stages = seconds.segment + seconds.overlap + seconds.partition + seconds.classes + seconds.search +
-                        seconds.merge + seconds.simplify;
-  EXPECT_LE(stages, 1.001 * seconds.extraction);
-  EXPECT_GE(seconds.total, seconds.extraction);
-  EXPECT_EQ(seconds.read, 0.0);
-  EXPECT_EQ(seconds.write, 0.0);
+  for (const ExtractOptions& options : test::with_and_without_cells()) {
+    const StageSeconds seconds = extraction_of("m0", options).statistics.seconds;
+    const double stages = seconds.segment + seconds.overlap + seconds.partition + seconds.classes + seconds.search +
+                          seconds.merge + seconds.simplify;
+    EXPECT_LE(stages, 1.001 * seconds.extraction);
+    EXPECT_GE(seconds.total, seconds.extraction);
+    EXPECT_EQ(seconds.read, 0.0);
+    EXPECT_EQ(seconds.write, 0.0);
+  }
 }
 
 }  // namespace
