@@ -28,8 +28,11 @@ struct Patch {
 };
 
 struct CellComplex {
-  std::vector<Cell> cells;                       ///< in lexicographic order; the first is outside of all primitives
-  std::vector<Patch> patches;                    ///< ascending by (first, second)
+  std::vector<Cell> cells;     ///< in lexicographic order; the first is outside of all primitives
+  std::vector<Patch> patches;  ///< ascending by (first, second)
+  /// Those that reach to infinity, ascending: they cannot be in a bounded solid. The first cell, but where half-spaces
+  /// shut it in.
+  std::vector<CellIndex> unbounded;
   std::vector<std::size_t> points_of_primitive;  ///< how many points are on the surface of each primitive
   std::size_t unassigned = 0;                    ///< points that are on none
   std::vector<std::uint32_t> order;              ///< all points, so that neighbours are near each other
@@ -38,8 +41,8 @@ struct CellComplex {
 /// How many samples of its surface a primitive gets, to find cells and patches without points.
 struct SampleCounts {
   std::size_t base = 48;  ///< each
-  std::size_t a_neighbour =
-      40;  ///< and so many for each other one whose bounds meet its own: there it is cut in pieces
+  /// And so many for each other one whose bounds meet its own: there it is cut in pieces.
+  std::size_t a_neighbour = 40;
   std::size_t most = 1024;
 };
 
@@ -73,7 +76,7 @@ struct CellLabels {
 };
 
 /// Tells which cells are in the solid: the labels with the least cost, exactly, by a minimum cut between the cells
-/// (Boykov and Kolmogorov 2004). The cell outside of all primitives is out. O(cells + patches) and the cut, which is
+/// (Boykov and Kolmogorov 2004). Cells that reach to infinity are out. O(cells + patches) and the cut, which is
 /// nearly linear in practice.
 [[nodiscard]] CellLabels label_cells(const CellComplex& complex, const LabelOptions& options = {});
 
@@ -100,14 +103,15 @@ struct CellSolution {
   std::size_t open_cells = 0;  ///< those whose labels were not sure enough
   std::size_t peeled = 0;      ///< primitives that were split off since they are wholly in, or wholly out of, the rest
   std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
-  std::size_t least_leaves = 0;         ///< no tree that agrees with all labels that are sure has fewer
+  std::size_t least_leaves = 0;         ///< it is proved that no tree with the labels that are sure has fewer
   [[nodiscard]] bool is_minimal() const { return leaf_count(tree) == least_leaves; }
 };
 
 /// A small tree that has the label of each cell that is sure. Primitives that no label depends on are left out; those
 /// that are wholly in the solid, or wholly out of it, but for what others add or take, are split off, again and again,
 /// until nothing or a core is left; parts of it that share no cell are solved one by one. Absent when one of them has
-/// more than 64 primitives. O(size of all cells) but for the cores.
+/// more than 64 primitives. O(size of all cells) but for the cores. A triggered run.stop ends it with the best tree so
+/// far. @throws Cancelled when there is none yet
 [[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
                                                       const CellSolveOptions& options = {}, const RunContext& run = {});
 

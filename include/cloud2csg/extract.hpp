@@ -40,8 +40,8 @@ struct ExtractOptions {
   ObjectiveOptions objective = {};
   Precision precision = Precision::automatic;  ///< of distances and angles in the pass over the points
   GaOptions search = {};                       ///< its seed is not used: see below
-  /// automatic: try cells first, and take their tree where points speak for it by this share at least (of what a tree
-  /// and its cells could contradict: CellSolution::cost of CellLabels::points). Above 1: never.
+  /// automatic: try cells first, and take their tree where the points contradict at most what is missing here to 1 of
+  /// what they say. Elsewhere partitions are searched too, and the tree of the higher E is taken. Above 1: no cells.
   double cell_trust = 0.97;
   /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
   std::optional<double> overlap_tolerance = {};

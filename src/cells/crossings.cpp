@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "base/parallel.hpp"
 #include "cells/side_kernels.hpp"
@@ -34,6 +36,12 @@ std::uint64_t count(const BlockMask& mask) {
   for (const std::uint64_t word : mask) sum += static_cast<std::uint64_t>(std::popcount(word));
   return sum;
 }
+bool has(const BlockMask& mask, std::size_t i) {
+  return (mask[i / 64] >> (i % 64) & 1U) != 0;
+}
+void clear(BlockMask& mask, std::size_t i) {
+  mask[i / 64] &= ~(std::uint64_t{1} << (i % 64));
+}
 BlockMask first_points(std::size_t points) {
   BlockMask mask{};
   for (std::size_t i = 0; i < points; ++i) mask[i / 64] |= std::uint64_t{1} << (i % 64);
@@ -56,8 +64,10 @@ struct Input {
 };
 
 /// A primitive whose surface may be in a block.
+template <class Real>
 struct ActivePrimitive {
-  PrimitiveIndex primitive;
+  PrimitiveIndex primitive = 0;
+  BlockField<Real> field;
   BlockSides sides;
 };
 
@@ -108,7 +118,7 @@ class CrossingCounter {
 
   /// Finds the primitives whose surface may be in the block, and those that hold all of it.
   void find_active(std::size_t block) {
-    active_.clear();
+    active_count_ = 0;
     around_.clear();
     const double radius = boxes_[block].diagonal().norm() / 2;
     const double margin = 1.001 * (radius + input_.tolerances.distance);
@@ -118,19 +128,51 @@ class CrossingCounter {
         if (near.at_middle[block] < 0) around_.push_back(near.primitive);
         continue;
       }
-      active_.push_back({near.primitive, sides_of(near.primitive, block)});
+      look_at(near.primitive, block);
     }
   }
 
-  BlockSides sides_of(PrimitiveIndex p, std::size_t block) {
+  void look_at(PrimitiveIndex p, std::size_t block) {
+    if (active_count_ == actives_.size()) actives_.emplace_back();
+    ActivePrimitive<Real>& active = actives_[active_count_++];
+    active.primitive = p;
+    BlockField<Real>& field = active.field;
     evaluate_field(input_.primitives[p], blocks_.positions(block),
-                   BasicFieldSpans<Real>{.distance = field_.distance,
-                                         .gradient_x = field_.gradient_x,
-                                         .gradient_y = field_.gradient_y,
-                                         .gradient_z = field_.gradient_z});
-    BlockSides sides;
-    compute_sides(field_, blocks_.normals(block), input_.tolerances, sides);
-    return sides;
+                   BasicFieldSpans<Real>{.distance = field.distance,
+                                         .gradient_x = field.gradient_x,
+                                         .gradient_y = field.gradient_y,
+                                         .gradient_z = field.gradient_z});
+    compute_sides(field, blocks_.normals(block), input_.tolerances, active.sides);
+  }
+
+  [[nodiscard]] std::span<ActivePrimitive<Real>> active() { return std::span(actives_).first(active_count_); }
+
+  /// Points on several surfaces are on the nearest, and on those that coincide with it but for the noise. Of a thin
+  /// wall they see the one side.
+  void keep_to_nearest() {
+    BlockMask on_any{};
+    BlockMask on_several{};
+    for (const ActivePrimitive<Real>& one : active()) {
+      const BlockMask on = either(one.sides.along, one.sides.against);
+      on_several = either(on_several, both(on_any, on));
+      on_any = either(on_any, on);
+    }
+    if (is_empty(on_several)) return;
+    const Real apart = static_cast<Real>(k_open_share * input_.tolerances.distance);
+    for (std::size_t i = 0; i < k_block_points; ++i) {
+      if (!has(on_several, i)) continue;
+      Real least = std::numeric_limits<Real>::max();
+      for (const ActivePrimitive<Real>& one : active()) {
+        if (has(one.sides.along, i) || has(one.sides.against, i)) {
+          least = std::min(least, std::abs(one.field.distance[i]));
+        }
+      }
+      for (ActivePrimitive<Real>& one : active()) {
+        if (std::abs(one.field.distance[i]) <= least + apart) continue;
+        clear(one.sides.along, i);
+        clear(one.sides.against, i);
+      }
+    }
   }
 
   /// Counts the points of a block of which each active primitive tells something.
@@ -139,12 +181,15 @@ class CrossingCounter {
     BlockMask on_any{};
     BlockMask open{};
     unsure_ = {};
-    for (const ActivePrimitive& active : active_) {
-      const BlockMask on = both(all, either(active.sides.along, active.sides.against));
-      crossings_.points_of_primitive[active.primitive] += count(on);
+    for (const ActivePrimitive<Real>& one : active()) {
+      crossings_.points_of_primitive[one.primitive] += count(both(all, either(one.sides.along, one.sides.against)));
+    }
+    keep_to_nearest();
+    for (const ActivePrimitive<Real>& one : active()) {
+      const BlockMask on = both(all, either(one.sides.along, one.sides.against));
       on_any = either(on_any, on);
-      open = either(open, without(active.sides.open, on));
-      unsure_ = either(unsure_, without(active.sides.near, on));
+      open = either(open, without(one.sides.open, on));
+      unsure_ = either(unsure_, without(one.sides.near, on));
     }
     crossings_.unassigned += points - count(on_any);
     split(0, without(on_any, open));
@@ -153,8 +198,8 @@ class CrossingCounter {
   /// Takes apart points by the side of one active primitive after the other.
   void split(std::size_t next, const BlockMask& points) {
     if (is_empty(points)) return;
-    if (next == active_.size()) return add(points);
-    const BlockSides& sides = active_[next].sides;
+    if (next == active_count_) return add(points);
+    const BlockSides& sides = actives_[next].sides;
     const auto follow = [&](Side side, const BlockMask& some) {
       path_.push_back(side);
       split(next + 1, some);
@@ -172,7 +217,7 @@ class CrossingCounter {
     inner_ = around_;
     outer_ = around_;
     for (std::size_t i = 0; i < path_.size(); ++i) {
-      const PrimitiveIndex p = active_[i].primitive;
+      const PrimitiveIndex p = actives_[i].primitive;
       if (path_[i] == Side::inside || path_[i] == Side::along) inner_.push_back(p);
       if (path_[i] == Side::inside || path_[i] == Side::against) outer_.push_back(p);
     }
@@ -190,9 +235,9 @@ class CrossingCounter {
   PointBlocks<Real> blocks_;
   std::vector<AlignedBox> boxes_;  // by block of the chunk
   std::vector<NearPrimitive> near_;
-  std::vector<ActivePrimitive> active_;
+  std::vector<ActivePrimitive<Real>> actives_;  // the first active_count_ of them
+  std::size_t active_count_ = 0;
   Cell around_;  // holds all of the block
-  BlockField<Real> field_;
   BlockMask unsure_{};
   std::vector<Side> path_;
   Cell inner_, outer_;
@@ -215,7 +260,7 @@ Crossings count_in(const PointCloud& cloud, std::span<const std::uint32_t> order
     CrossingCounter<Real> counter(input);
     for (std::size_t chunk = chunks * k / parts; chunk < chunks * (k + 1) / parts; ++chunk) {
       run.throw_if_stopped();
-      if (k == 0) run.report("cells", chunk, chunks / parts);
+      if (k == 0) run.report("segment", chunk, chunks / parts);
       counter.process(chunk);
     }
     shares[k] = std::move(counter.crossings());

@@ -62,7 +62,10 @@ Assignment variables_of(const KnownRows& rows) {
   Assignment any = 0;
   Assignment all = ~Assignment{0};
   for (const Assignments* some : {&rows.on, &rows.off}) {
-    for (const Assignment row : *some) any |= row, all &= row;
+    for (const Assignment row : *some) {
+      any |= row;
+      all &= row;
+    }
   }
   return any & ~all;  // one that is always true says nothing
 }
@@ -188,10 +191,12 @@ class UnionBlocks {
 
 class Decomposer {
  public:
-  explicit Decomposer(const DecompositionOptions& options) : budget_(options.budget) {}
+  Decomposer(const DecompositionOptions& options, const RunContext& run) : budget_(options.budget), run_(run) {}
 
   CsgTree solve(const KnownRows& given) {
-    if (budget_ > 0) --budget_;
+    run_.throw_if_stopped();
+    const auto variables = static_cast<std::size_t>(std::popcount(variables_of(given)));
+    budget_ -= std::min(budget_, (given.on.size() + given.off.size()) * variables);
     if (given.on.empty()) return CsgTree::empty();
     if (given.off.empty()) return CsgTree::full();
     const KnownRows rows = without_needless(given);
@@ -308,15 +313,16 @@ class Decomposer {
   }
 
   std::size_t budget_;
+  const RunContext& run_;
 };
 
 }  // namespace
 
-CsgTree decompose(const KnownRows& rows, const DecompositionOptions& options) {
+CsgTree decompose(const KnownRows& rows, const DecompositionOptions& options, const RunContext& run) {
   KnownRows sorted = rows;
   sort_unique(sorted.on);
   sort_unique(sorted.off);
-  return Decomposer(options).solve(sorted);
+  return Decomposer(options, run).solve(sorted);
 }
 
 Assignment essential_variables(const KnownRows& rows) {

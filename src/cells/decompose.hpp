@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/run_context.hpp"
 
 namespace cloud2csg {
 
@@ -17,8 +18,8 @@ struct KnownRows {
 };
 
 struct DecompositionOptions {
-  /// Subproblems looked at before choices are no longer tried but taken as they come.
-  std::size_t budget = 2'000;
+  /// Rows looked at, times variables, before choices are no longer tried but taken as they come.
+  std::size_t budget = 4'000'000;
 };
 
 /// A small formula that is true in all rows that are on and false in all that are off, by taking the function apart:
@@ -30,7 +31,9 @@ struct DecompositionOptions {
 /// - else it is branched on a variable, which then appears more than once; of several, the one that gives the smallest
 ///   formula, as long as the budget lasts.
 /// Where a formula exists that has each variable at most once and enough rows are known, it is found. Deterministic.
-[[nodiscard]] CsgTree decompose(const KnownRows& rows, const DecompositionOptions& options = {});
+/// @throws Cancelled
+[[nodiscard]] CsgTree decompose(const KnownRows& rows, const DecompositionOptions& options = {},
+                                const RunContext& run = {});
 
 /// Variables such that two rows differ in nothing but them and have different values: each formula needs them.
 [[nodiscard]] Assignment essential_variables(const KnownRows& rows);

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 #include "cells/crossings.hpp"
+#include "cells/infinity.hpp"
 #include "cells/surface_samples.hpp"
 #include "fitness/spatial_order.hpp"
 
@@ -17,6 +17,8 @@ class ComplexBuilder {
     for (CellIndex c = 0; c < crossings.cells.size(); ++c) cells_.push_back(crossings.cells[c]);
   }
 
+  void add_cells(const std::vector<Cell>& cells) { cells_.insert(cells_.end(), cells.begin(), cells.end()); }
+
   void index_cells() {
     cells_.emplace_back();
     std::ranges::sort(cells_);
@@ -27,8 +29,7 @@ class ComplexBuilder {
   void add_patches(const Crossings& crossings, const Add& add) {
     std::vector<CellIndex> place(crossings.cells.size());
     for (CellIndex c = 0; c < place.size(); ++c) {
-      const auto found = std::ranges::lower_bound(cells_, crossings.cells[c]);
-      place[c] = static_cast<CellIndex>(found - cells_.begin());
+      place[c] = place_of(crossings.cells[c]);
     }
     for (const auto& [pair, units] : crossings.units) {
       const CellIndex inner = place[Crossings::inner(pair)];
@@ -37,6 +38,10 @@ class ComplexBuilder {
       Patch& patch = patches_.try_emplace({first, second}, Patch{.first = first, .second = second}).first->second;
       add(patch, inner == first, static_cast<double>(units) / k_sure_units);
     }
+  }
+
+  [[nodiscard]] CellIndex place_of(const Cell& cell) const {
+    return static_cast<CellIndex>(std::ranges::lower_bound(cells_, cell) - cells_.begin());
   }
 
   /// Turns counts of samples into areas.
@@ -55,14 +60,14 @@ class ComplexBuilder {
   }
 
  private:
-  /// What a sample stands for at a patch: where several surfaces coincide, each of them is sampled.
+  /// What a sample stands for at a patch: where several surfaces coincide, each of them is sampled, and their densities
+  /// add up.
   [[nodiscard]] double area_of_sample(const Patch& patch, std::span<const double> areas) const {
     Cell between;
     std::ranges::set_symmetric_difference(cells_[patch.first], cells_[patch.second], std::back_inserter(between));
-    double sum = 0;
-    for (const PrimitiveIndex p : between) sum += areas[p];
-    const auto count = static_cast<double>(between.size());
-    return sum / (count * count);
+    double density = 0;
+    for (const PrimitiveIndex p : between) density += areas[p] > 0 ? 1 / areas[p] : 0.0;
+    return density > 0 ? 1 / density : 0.0;
   }
 
   std::vector<Cell> cells_;
@@ -87,13 +92,19 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
                                  options.tolerances, run);
     builder.add_cells(of_samples);
   }
+  const std::vector<Cell> far = cells_at_infinity(primitives);
+  builder.add_cells(far);
   builder.index_cells();
   builder.add_patches(of_points, [](Patch& patch, bool is_first_inner, double points) {
     (is_first_inner ? patch.first_in : patch.second_in) += points;
   });
   builder.add_patches(of_samples, [](Patch& patch, bool /*is_first_inner*/, double count) { patch.area += count; });
   builder.measure_areas(samples.area_of_sample);
+  std::vector<CellIndex> unbounded;
+  unbounded.reserve(far.size());
+  for (const Cell& cell : far) unbounded.push_back(builder.place_of(cell));
   CellComplex result = std::move(builder).take();
+  result.unbounded = std::move(unbounded);
   result.points_of_primitive = of_points.points_of_primitive;
   result.unassigned = of_points.unassigned;
   result.order = std::move(order);

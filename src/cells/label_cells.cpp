@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
-#include <cmath>
 #include <limits>
 
 #include "cloud2csg/cells.hpp"
@@ -137,7 +136,7 @@ class LabelCosts {
       cut.add_source(cell, in_[cell]);
       cut.add_sink(cell, out_[cell]);
     }
-    cut.add_sink(0, 1e12);  // all solids are bounded
+    for (const CellIndex cell : complex_.unbounded) cut.add_sink(cell, k_forbidden);
     for (const Patch& patch : complex_.patches) cut.add_edge(patch.first, patch.second, missing_points(patch));
     return cut.solve();
   }
@@ -163,7 +162,7 @@ class LabelCosts {
       change[patch.second] += more;
     }
     for (double& value : change) value = std::max(0.0, value);
-    change[0] = std::numeric_limits<double>::infinity();
+    for (const CellIndex cell : complex_.unbounded) change[cell] = std::numeric_limits<double>::infinity();
     return change;
   }
 
@@ -172,6 +171,8 @@ class LabelCosts {
   [[nodiscard]] double missing_points(const Patch& patch) const {
     return std::max(0.0, expected_ * patch.area - (patch.first_in + patch.second_in));
   }
+
+  static constexpr double k_forbidden = 1e12;  // more than any cloud has points
 
   const CellComplex& complex_;
   double expected_;               // points per area

@@ -35,19 +35,17 @@ struct KnownCell {
 /// The sure cells, without primitives on which no label depends.
 class KnownCells {
  public:
+  /// Where the cell outside of all is in, all labels are taken for their opposite.
   KnownCells(const CellComplex& complex, const CellLabels& labels, double least_evidence)
       : cells_of_(complex.points_of_primitive.size()) {
     for (CellIndex c = 0; c < complex.cells.size(); ++c) {
       if (labels.evidence[c] < least_evidence) continue;
-      is_in_.emplace(complex.cells[c], labels.is_in[c]);
+      is_in_.emplace(complex.cells[c], labels.is_in[c] != labels.is_in.front());
       for (const PrimitiveIndex p : complex.cells[c]) cells_of_[p].push_back(complex.cells[c]);
     }
+    for (PrimitiveIndex p = 0; p < cells_of_.size(); ++p) essential_ += is_needed(p) ? 1 : 0;
     for (const PrimitiveIndex p : least_seen_first(complex)) {
-      if (is_needed(p)) {
-        ++essential_;
-      } else {
-        leave_out(p);
-      }
+      if (!is_needed(p)) leave_out(p);
     }
   }
 
@@ -59,8 +57,10 @@ class KnownCells {
     return cells;
   }
 
-  /// How many primitives are needed in any tree.
+  /// How many primitives any tree needs.
   [[nodiscard]] std::size_t essential() const { return essential_; }
+  /// Whether that is all that have cells.
+  [[nodiscard]] bool are_all_essential() const { return left_out_ == 0; }
 
  private:
   /// By the points on the patches between a cell that they hold and one that they do not.
@@ -89,6 +89,7 @@ class KnownCells {
   }
 
   void leave_out(PrimitiveIndex p) {
+    left_out_ += cells_of_[p].empty() ? 0 : 1;
     for (const Cell& cell : cells_of_[p]) {
       const auto found = is_in_.find(cell);
       if (found == is_in_.end()) continue;
@@ -102,7 +103,7 @@ class KnownCells {
 
   std::unordered_map<Cell, bool, CellHash> is_in_;
   std::vector<std::vector<Cell>> cells_of_;  // by primitive; some of them are no longer in is_in_
-  std::size_t essential_ = 0;
+  std::size_t essential_ = 0, left_out_ = 0;
 };
 
 /// Splits off what is wholly in, or wholly out.
@@ -244,7 +245,7 @@ struct CoreSolution {
 /// `minimal`: how much work to spend on a formula that is smaller than what decompose() finds.
 CoreSolution solve_core(const Core& core, const MinimalFormulaOptions* minimal, const RunContext& run) {
   const KnownRows rows = rows_of(core);
-  CoreSolution solution{decompose(rows), static_cast<std::size_t>(std::popcount(essential_variables(rows)))};
+  CoreSolution solution{decompose(rows, {}, run), static_cast<std::size_t>(std::popcount(essential_variables(rows)))};
   if (minimal != nullptr && leaf_count(solution.tree) > solution.least_leaves) {
     const auto smallest = minimal_formula(function_of(rows, core.primitives.size()), *minimal, run);
     if (smallest && leaf_count(smallest->tree) < leaf_count(solution.tree)) solution.tree = smallest->tree;
@@ -270,8 +271,10 @@ std::optional<CellSolution> solve_sure_cells(const CellComplex& complex, const C
   const std::vector<Peeler::Round> rounds = peeler.peel();
   CellSolution solution{.least_evidence = least_evidence};
   std::vector<CsgTree> trees;
-  for (const Core& core : cores_of(peeler.cells(), primitives)) {
-    if (core.primitives.size() > k_most_variables) return std::nullopt;
+  const std::vector<Core> cores = cores_of(peeler.cells(), primitives);
+  const auto is_too_large = [](const Core& core) { return core.primitives.size() > k_most_variables; };
+  if (std::ranges::any_of(cores, is_too_large)) return std::nullopt;
+  for (const Core& core : cores) {
     solution.cores.push_back(core.primitives.size());
     CoreSolution solved = solve_core(core, minimal, run);
     solution.least_leaves += solved.least_leaves;
@@ -283,8 +286,10 @@ std::optional<CellSolution> solve_sure_cells(const CellComplex& complex, const C
     solution.peeled += round->primitives.size();
     tree = round->are_in ? unite(tree, split) : subtract(tree, split);
   }
-  solution.least_leaves = std::max(solution.least_leaves, known.essential());
-  solution.tree = simplify(tree);
+  // Each core needs its leaves, and what was split off one each; but other choices of what to leave out may need fewer.
+  solution.least_leaves += solution.peeled;
+  if (!known.are_all_essential()) solution.least_leaves = known.essential();
+  solution.tree = simplify(labels.is_in.front() ? complement(tree) : tree);
   return solution;
 }
 
@@ -318,13 +323,14 @@ std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLa
         labels.evidence, [least_evidence](double evidence) { return evidence >= least_evidence; }));
     if (as_sure == sure) continue;  // the same cells as before
     sure = as_sure;
+    if (best && run.stop.stop_requested()) break;
     try_with(least_evidence, nullptr);
     // More cells that are sure need no fewer leaves, and no labels cost less than those of the cut.
     if (best && total(*best) <= labels.cost + options.leaf_cost * static_cast<double>(best->least_leaves) + 1e-9) break;
   }
   if (!best) return best;
   const double least = best->least_evidence;
-  if (!best->is_minimal()) try_with(least, &options.minimal);
+  if (!best->is_minimal() && !run.stop.stop_requested()) try_with(least, &options.minimal);
   best->open_cells = static_cast<std::size_t>(
       std::ranges::count_if(labels.evidence, [least](double evidence) { return evidence < least; }));
   return best;

@@ -116,10 +116,19 @@ Drawn draw_from_field(const Primitive& primitive, const AlignedBox& box, std::si
   return drawn;
 }
 
+/// By so many times its diagonal on each side.
+AlignedBox grown(const AlignedBox& box, double times) {
+  const Eigen::Vector3d more = Eigen::Vector3d::Constant(times * box.diagonal().norm());
+  return {box.min() - more, box.max() + more};
+}
+
 /// A box that may be infinite, cut down to what the index can hold.
 IndexBox finite(const AlignedBox& box, const AlignedBox& region) {
-  const Eigen::Vector3d far = Eigen::Vector3d::Constant(1e3 * (1 + region.diagonal().norm()));
-  return to_index_box(AlignedBox(box.min().cwiseMax(region.min() - far), box.max().cwiseMin(region.max() + far)), 0);
+  const AlignedBox all = grown(region, 1e3);
+  const auto within = [&all](const Eigen::Vector3d& corner) {
+    return Eigen::Vector3d(corner.cwiseMax(all.min()).cwiseMin(all.max()));
+  };
+  return to_index_box(AlignedBox(within(box.min()), within(box.max())), 0);
 }
 
 BoundsIndex index_of(std::span<const AlignedBox> boxes, const AlignedBox& region) {
@@ -141,11 +150,12 @@ SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, std::span<const A
   SurfaceSamples result;
   const BoundsIndex index = index_of(boxes, region);
   for (std::size_t p = 0; p < primitives.size(); ++p) {
-    const std::size_t neighbours = count_meeting(index, boxes[p], region) - 1;
+    const std::size_t neighbours = std::max<std::size_t>(count_meeting(index, boxes[p], region), 1) - 1;
     const std::size_t samples = std::min(counts.base + counts.a_neighbour * neighbours, counts.most);
     RandomStream random(0, k_stream, p);
-    const bool is_formula = std::holds_alternative<Expression>(primitives[p].shape);  // and reaches anywhere
-    const AlignedBox box = is_formula ? bounds(primitives[p]) : boxes[p];
+    // Expressions reach anywhere, and half-spaces are without end.
+    const bool is_formula = std::holds_alternative<Expression>(primitives[p].shape);
+    const AlignedBox box = (is_formula ? bounds(primitives[p]) : boxes[p]).intersection(grown(region, 1));
     const Drawn drawn = is_plain(primitives[p]) ? draw_plain(primitives[p], region, samples, random)
                                                 : draw_from_field(primitives[p], box, samples, random);
     result.area_of_sample.push_back(drawn.area_of_one);

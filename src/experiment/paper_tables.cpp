@@ -68,7 +68,7 @@ Table by_cloud(const PaperResults& results, Table table, const AddCells& add_cel
   table.columns.insert(table.columns.begin(), {"model", "sampling"});
   for (const ModelDetails& model : results.models) {
     for (const Sampling sampling : k_samplings) {
-      std::vector<Cell> row{model.name, std::string(to_string(sampling))};
+      std::vector<TableCell> row{model.name, std::string(to_string(sampling))};
       add_cells(row, model, sampling);
       table.rows.push_back(std::move(row));
     }
@@ -82,11 +82,12 @@ Table durations_table(const PaperResults& results) {
               .note = "From cloud and primitives in memory to the simplified tree.",
               .columns = {}};
   for (const PaperMode& mode : paper_modes()) table.columns.emplace_back(mode.name);
-  return by_cloud(results, std::move(table), [&](std::vector<Cell>& row, const ModelDetails& model, Sampling sampling) {
-    for (const PaperMode& mode : paper_modes()) {
-      row.emplace_back(measure(results, model.name, sampling, mode.name, milliseconds));
-    }
-  });
+  return by_cloud(results, std::move(table),
+                  [&](std::vector<TableCell>& row, const ModelDetails& model, Sampling sampling) {
+                    for (const PaperMode& mode : paper_modes()) {
+                      row.emplace_back(measure(results, model.name, sampling, mode.name, milliseconds));
+                    }
+                  });
 }
 
 Table growth_table(const PaperResults& results) {
@@ -100,7 +101,7 @@ Table growth_table(const PaperResults& results) {
       static_cast<double>(results.options.high_points) / static_cast<double>(results.options.low_points);
   for (const PaperMode& mode : paper_modes()) table.columns.emplace_back(mode.name);
   for (const ModelDetails& model : results.models) {
-    std::vector<Cell> row{model.name};
+    std::vector<TableCell> row{model.name};
     for (const PaperMode& mode : paper_modes()) {
       const auto duration = [&](Sampling sampling) {
         return measure(results, model.name, sampling, mode.name, milliseconds);
@@ -116,13 +117,14 @@ Table growth_table(const PaperResults& results) {
 /// Each partitioned mode against the baseline that uses as many threads.
 Table speed_up_table(const PaperResults& results, Table table, const Measure& value) {
   table.columns = {"BST / SST", "BMTGA / SMTP", "BMTGA / SMTGA", "BMTGA / SMTPGA"};
-  return by_cloud(results, std::move(table), [&](std::vector<Cell>& row, const ModelDetails& model, Sampling sampling) {
-    const auto of = [&](std::string_view mode) { return measure(results, model.name, sampling, mode, value); };
-    row.emplace_back(ratio_if_measured(of("BST"), of("SST")));
-    for (const char* mode : {"SMTP", "SMTGA", "SMTPGA"}) {
-      row.emplace_back(ratio_if_measured(of("BMTGA"), of(mode)));
-    }
-  });
+  return by_cloud(
+      results, std::move(table), [&](std::vector<TableCell>& row, const ModelDetails& model, Sampling sampling) {
+        const auto of = [&](std::string_view mode) { return measure(results, model.name, sampling, mode, value); };
+        row.emplace_back(ratio_if_measured(of("BST"), of("SST")));
+        for (const char* mode : {"SMTP", "SMTGA", "SMTPGA"}) {
+          row.emplace_back(ratio_if_measured(of("BMTGA"), of(mode)));
+        }
+      });
 }
 
 Table trees_table(const PaperResults& results) {
@@ -133,15 +135,17 @@ Table trees_table(const PaperResults& results) {
                   "is.",
               .columns = {"input", "baseline", "partitioned", "over input, %", "over baseline, %", "input depth",
                           "baseline depth", "partitioned depth"}};
-  return by_cloud(results, std::move(table), [&](std::vector<Cell>& row, const ModelDetails& model, Sampling sampling) {
-    const Spread baseline = measure(results, model.name, sampling, "BST", tree_size);
-    const Spread partitioned = measure(results, model.name, sampling, "SST", tree_size);
-    const auto input = static_cast<double>(model.tree.size);
-    row.insert(row.end(), {input, baseline, partitioned, percent_larger(partitioned, exactly(input, partitioned.count)),
-                           percent_larger(partitioned, baseline), static_cast<double>(model.tree.depth),
-                           measure(results, model.name, sampling, "BST", tree_depth),
-                           measure(results, model.name, sampling, "SST", tree_depth)});
-  });
+  return by_cloud(
+      results, std::move(table), [&](std::vector<TableCell>& row, const ModelDetails& model, Sampling sampling) {
+        const Spread baseline = measure(results, model.name, sampling, "BST", tree_size);
+        const Spread partitioned = measure(results, model.name, sampling, "SST", tree_size);
+        const auto input = static_cast<double>(model.tree.size);
+        row.insert(row.end(),
+                   {input, baseline, partitioned, percent_larger(partitioned, exactly(input, partitioned.count)),
+                    percent_larger(partitioned, baseline), static_cast<double>(model.tree.depth),
+                    measure(results, model.name, sampling, "BST", tree_depth),
+                    measure(results, model.name, sampling, "SST", tree_depth)});
+      });
 }
 
 /// A table with a row a model, sampling and strategy, on one thread.
@@ -150,7 +154,7 @@ Table by_strategy(const PaperResults& results, Table table, std::span<const Meas
   for (const ModelDetails& model : results.models) {
     for (const Sampling sampling : k_samplings) {
       for (const std::string_view mode : k_single_threaded) {
-        std::vector<Cell> row{model.name, std::string(to_string(sampling)), std::string(mode)};
+        std::vector<TableCell> row{model.name, std::string(to_string(sampling)), std::string(mode)};
         for (const Measure& column : columns) row.emplace_back(measure(results, model.name, sampling, mode, column));
         table.rows.push_back(std::move(row));
       }
@@ -240,8 +244,8 @@ Table runs_table(const PaperResults& results) {
   for (const Step& step : extraction_steps()) table.columns.push_back(fmt::format("{} s", step.name));
   table.columns.emplace_back("extraction s");
   for (const PaperRun& run : results.runs) {
-    std::vector<Cell> row{run.name.model, std::string(to_string(run.name.sampling)), run.name.mode,
-                          fmt::format("{}", run.name.seed), run.finished};
+    std::vector<TableCell> row{run.name.model, std::string(to_string(run.name.sampling)), run.name.mode,
+                               fmt::format("{}", run.name.seed), run.finished};
     for (const std::size_t count :
          {run.points, run.generations, run.evaluations, run.tree.size, run.tree.leaves, run.tree.depth, run.blocked}) {
       row.emplace_back(static_cast<double>(count));

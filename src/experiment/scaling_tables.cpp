@@ -36,7 +36,7 @@ void for_each_case(const ScalingResults& results, Sweep sweep, const Visit& visi
   }
 }
 
-std::vector<Cell> name_cells(const ScalingCase& one) {
+std::vector<TableCell> name_cells(const ScalingCase& one) {
   const std::string clique = one.family == Family::random ? fmt::format("{}", one.clique_size) : "";
   return {std::string(to_string(one.family)), clique, number(one.primitives), number(one.points)};
 }
@@ -52,7 +52,7 @@ Table growth_table(const ScalingResults& results, Sweep sweep) {
               .columns = name_columns()};
   for (const Quantity& quantity : durations_and_memory()) table.columns.push_back(quantity.name);
   for_each_case(results, sweep, [&](const ScalingCase& one) {
-    std::vector<Cell> row = name_cells(one);
+    std::vector<TableCell> row = name_cells(one);
     for (const Quantity& quantity : durations_and_memory()) row.emplace_back(measure(results, one, quantity));
     table.rows.push_back(std::move(row));
   });
@@ -69,7 +69,7 @@ Table exponents_table(const ScalingResults& results) {
   for (const Quantity& quantity : durations_and_memory()) table.columns.push_back(quantity.name);
   for (const Sweep sweep : all_sweeps()) {
     for (const Family family : results.options.families) {
-      std::vector<Cell> row{description(results.options, sweep), std::string(to_string(family))};
+      std::vector<TableCell> row{description(results.options, sweep), std::string(to_string(family))};
       bool has_fit = false;
       for (const Quantity& quantity : durations_and_memory()) {
         const PowerLaw law = fitted(results, sweep, family, quantity);
@@ -99,7 +99,7 @@ Table trees_table(const ScalingResults& results, Sweep sweep) {
               .columns = name_columns()};
   for (const Quantity& quantity : quantities) table.columns.push_back(quantity.name);
   for_each_case(results, sweep, [&](const ScalingCase& one) {
-    std::vector<Cell> row = name_cells(one);
+    std::vector<TableCell> row = name_cells(one);
     for (const Quantity& quantity : quantities) row.emplace_back(measure(results, one, quantity));
     table.rows.push_back(std::move(row));
   });
@@ -194,7 +194,7 @@ Table scaling_runs_table(const ScalingResults& results) {
                           "peak bytes", "cloud bytes", "wrong share", "wrong primitives"}};
   for (const Quantity& quantity : durations()) table.columns.push_back(quantity.name + " ms");
   for (const ScalingRun& run : results.runs) {
-    std::vector<Cell> row = name_cells(run.scaling_case);
+    std::vector<TableCell> row = name_cells(run.scaling_case);
     row.insert(row.end(), {fmt::format("{}", run.scaling_case.threads), fmt::format("{}", run.seed), run.finished,
                            std::string(run.complete ? "yes" : "no")});
     for (const std::size_t count : {run.partitions, run.components, run.generations, run.evaluations, run.tree.size,

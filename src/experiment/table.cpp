@@ -41,8 +41,9 @@ std::string padded(const std::string& text, std::size_t width, bool to_the_right
 }
 
 bool has_spread(const Table& table, std::size_t column) {
-  return std::any_of(table.rows.begin(), table.rows.end(),
-                     [column](const std::vector<Cell>& row) { return std::holds_alternative<Spread>(row[column]); });
+  return std::any_of(table.rows.begin(), table.rows.end(), [column](const std::vector<TableCell>& row) {
+    return std::holds_alternative<Spread>(row[column]);
+  });
 }
 
 std::string in_quotes(const std::string& text) {
@@ -53,7 +54,7 @@ std::string in_quotes(const std::string& text) {
 }
 
 /// One field, or two in a column of spreads.
-std::string csv_fields(const Cell& cell, bool two) {
+std::string csv_fields(const TableCell& cell, bool two) {
   std::string second = two ? "," : "";
   if (const auto* text = std::get_if<std::string>(&cell)) return in_quotes(*text) + second;
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}{}", *number, second);
@@ -64,7 +65,7 @@ std::string csv_fields(const Cell& cell, bool two) {
 
 }  // namespace
 
-std::string to_text(const Cell& cell) {
+std::string to_text(const TableCell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
   if (const auto* number = std::get_if<double>(&cell)) {
     return fmt::format("{:.{}f}", *number, decimals_of(*number, k_digits));
@@ -76,7 +77,7 @@ std::string to_markdown(const Table& table) {
   std::vector<std::size_t> widths;
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
     widths.push_back(width_of(table.columns[column]));
-    for (const std::vector<Cell>& row : table.rows)
+    for (const std::vector<TableCell>& row : table.rows)
       widths[column] = std::max(widths[column], width_of(to_text(row[column])));
   }
   std::string text = fmt::format("## {}\n{}{}\n|", table.title, table.note, table.note.empty() ? "" : "\n");
@@ -84,7 +85,7 @@ std::string to_markdown(const Table& table) {
     text += fmt::format(" {} |", padded(table.columns[i], widths[i], false));
   text += "\n|";
   for (const std::size_t width : widths) text += std::string(width + 2, '-') + '|';
-  for (const std::vector<Cell>& row : table.rows) {
+  for (const std::vector<TableCell>& row : table.rows) {
     text += "\n|";
     for (std::size_t i = 0; i < widths.size(); ++i) {
       const bool is_text = std::holds_alternative<std::string>(row[i]);
@@ -103,7 +104,7 @@ std::string to_csv(const Table& table) {
     text += in_quotes(table.columns[i]);
     if (two[i]) text += fmt::format(",{}", in_quotes(table.columns[i] + " sd"));
   }
-  for (const std::vector<Cell>& row : table.rows) {
+  for (const std::vector<TableCell>& row : table.rows) {
     text += '\n';
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (i > 0) text += ',';

@@ -4,16 +4,32 @@
 
 #include "base/stopwatch.hpp"
 #include "cloud2csg/cells.hpp"
+#include "cloud2csg/error.hpp"
 
 namespace cloud2csg {
+namespace {
+
+std::optional<CellSolution> solved(const CellComplex& complex, const CellLabels& labels, const RunContext& run) {
+  try {
+    return solve_cells(complex, labels, {}, run);
+  } catch (const Cancelled&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
 
 double CellExtraction::trust() const {
+  // Where most points are near several surfaces at once, the cells do not tell much.
+  constexpr double k_least_share = 0.25;
+  const auto assigned = static_cast<double>(order.size() - unassigned_points);
+  if (is_constant(tree) || statistics.speaking_points < k_least_share * assigned) return 0;
   return 1 - statistics.contradicted_points / std::max(1.0, statistics.speaking_points);
 }
 
 std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
                                                const Scale& scale, const ExtractOptions& options, const RunContext& run,
-                                               StageSeconds& seconds) {
+                                               const RunContext& search_run, StageSeconds& seconds) {
   Stopwatch watch;
   SupportedPrimitives supported = take_all(primitives);
   CellExtraction result{};
@@ -23,11 +39,15 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
                          {.tolerances = scale.tolerances, .noise = scale.noise, .precision = options.precision}, run);
   } while (drop_unsupported(complex.points_of_primitive, supported, result.warnings));
   seconds.segment += watch.lap();
+  search_run.report("search", 0, 1);
   const CellLabels labels = label_cells(complex);
-  const std::optional<CellSolution> solution = solve_cells(complex, labels, {}, run);
+  const std::optional<CellSolution> solution = solved(complex, labels, search_run);
   seconds.search += watch.lap();
+  search_run.report("search", 1, 1);
   if (!solution) return std::nullopt;
   result.tree = renumber(solution->tree, supported.original);
+  result.is_complete = !search_run.stop.stop_requested();
+  result.supported = std::move(supported);
   result.unassigned_points = complex.unassigned;
   result.order = std::move(complex.order);
   result.statistics = {.cells = complex.cells.size(),

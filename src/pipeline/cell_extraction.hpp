@@ -8,18 +8,22 @@ namespace cloud2csg {
 struct CellExtraction {
   CsgTree tree;  ///< over the input's primitives
   CellStatistics statistics;
-  std::size_t unassigned_points;
+  std::size_t unassigned_points = 0;
+  bool is_complete = true;  ///< false when it was stopped early
+  SupportedPrimitives supported;
   std::vector<std::string> warnings;
   std::vector<std::uint32_t> order;  ///< all points, so that neighbours are near each other
 
-  /// The share of what the points say that the tree does not contradict.
+  /// The share of what the points say that the tree does not contradict; none where few of them say anything.
   [[nodiscard]] double trust() const;
 };
 
-/// Absent when what is left after splitting off is too large to be solved. Fills in the seconds of its stages.
+/// Absent when what is left after splitting off is too large to be solved, or not before the search is to stop. Fills
+/// in the seconds of its stages. The pass over the points runs as `run` says, the search as `search_run`.
 /// @throws Error when no point is near any primitive; Cancelled.
 [[nodiscard]] std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
                                                              const Scale& scale, const ExtractOptions& options,
-                                                             const RunContext& run, StageSeconds& seconds);
+                                                             const RunContext& run, const RunContext& search_run,
+                                                             StageSeconds& seconds);
 
 }  // namespace cloud2csg

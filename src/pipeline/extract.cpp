@@ -108,9 +108,17 @@ class Extractor {
   std::optional<CsgTree> solve_by_cells(const RunContext& run) {
     const bool is_asked_for = options_.strategy == Strategy::cells;
     if (!is_asked_for && (options_.strategy != Strategy::automatic || options_.cell_trust > 1)) return std::nullopt;
-    by_cells_ = extract_by_cells(cloud_, input_, scale_, options_, run, statistics_.seconds);
+    RunContext search = run;
+    search.stop = limit_.token();
+    by_cells_ = extract_by_cells(cloud_, input_, scale_, options_, run, search, statistics_.seconds);
     limit_.enforce();
-    if (!by_cells_) return std::nullopt;
+    if (!by_cells_) {
+      if (is_asked_for) {
+        statistics_.warnings.emplace_back(
+            "the cells leave more than 64 primitives that depend on each other: partitions were searched instead");
+      }
+      return std::nullopt;
+    }
     if (!is_asked_for && by_cells_->trust() < options_.cell_trust) return std::nullopt;
     return take_cells();
   }
@@ -119,6 +127,8 @@ class Extractor {
     statistics_.cells = by_cells_->statistics;
     statistics_.unassigned_points = by_cells_->unassigned_points;
     statistics_.warnings = by_cells_->warnings;
+    statistics_.complete = by_cells_->is_complete;
+    statistics_.merge = {};
     order_ = std::move(by_cells_->order);
     return by_cells_->tree;
   }
@@ -130,6 +140,7 @@ class Extractor {
     solve_partitions();
     CsgTree tree = renumber(merge_components(), prepared_.original);
     if (!by_cells_) return tree;
+    tree = simplify(tree);
     const auto objective_of = [&](const CsgTree& some) { return fit_of(some, run).objective; };
     return objective_of(by_cells_->tree) > objective_of(tree) ? take_cells() : tree;
   }
@@ -284,7 +295,7 @@ class Extractor {
       return;
     }
     statistics_.fit = fit_of(tree, run);
-    if (statistics_.clique_histogram.empty()) describe_overlaps(run);
+    if (statistics_.clique_histogram.empty() && by_cells_) describe_overlaps(run);
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
@@ -300,7 +311,9 @@ class Extractor {
 
   /// The cells do without the overlap graph; who reads the statistics wants to see it.
   void describe_overlaps(const RunContext& run) {
-    const OverlapGraph graph = overlap_graph_of(cloud_, input_, scale_, options_, run);
+    RunContext to_the_end = run;
+    to_the_end.stop = {};
+    const OverlapGraph graph = overlap_graph_of(cloud_, by_cells_->supported.primitives, scale_, options_, to_the_end);
     statistics_.clique_histogram = clique_histogram(maximal_cliques(graph));
     statistics_.components = connected_components(graph).size();
   }
