@@ -30,7 +30,7 @@ std::vector<KnownModel> known_models(const QualityOptions& options) {
   return models;
 }
 
-std::vector<Cell> row_of(Defect defect, std::span<const Outcome> outcomes, double iou_given) {
+std::vector<TableCell> row_of(Defect defect, std::span<const Outcome> outcomes, double iou_given) {
   const Summary summary = summarise(outcomes, k_right);
   return {std::string(to_string(defect)),
           share_text(summary.right, summary),

@@ -26,7 +26,7 @@ std::vector<CsgTree> faulty_trees(const Model& model) {
   return trees;
 }
 
-std::vector<Cell> check(const std::string& name) {
+std::vector<TableCell> check(const std::string& name) {
   const Model model = shipped_model(name);
   Stopwatch watch;
   const Judge judge(model.primitives, *model.tree);

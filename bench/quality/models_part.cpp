@@ -13,7 +13,7 @@ constexpr std::array<std::size_t, 2> k_points{10'000, 150'000};
 constexpr double k_noise = 0.01;
 constexpr double k_right = 0.999;
 
-std::vector<Cell> row_of(const std::string& model, std::size_t points, const std::string& setting,
+std::vector<TableCell> row_of(const std::string& model, std::size_t points, const std::string& setting,
                          std::span<const Outcome> outcomes) {
   const Summary summary = summarise(outcomes, k_right);
   return {model,

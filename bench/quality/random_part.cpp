@@ -31,7 +31,7 @@ Kind kind(const RandomModel& model) {
   return {model.family, model.family == Family::random ? model.options.clique_size : 0};
 }
 
-std::vector<Cell> row_of(const std::string& name, std::span<const Outcome> outcomes) {
+std::vector<TableCell> row_of(const std::string& name, std::span<const Outcome> outcomes) {
   const Summary summary = summarise(outcomes, k_right);
   return {name,
           share_text(summary.right, summary),
