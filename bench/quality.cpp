@@ -24,14 +24,15 @@ void add_options(CLI::App& app, Arguments& arguments) {
   arguments.settings = names;
   QualityOptions& options = arguments.options;
   app.add_option("--part", arguments.part, "What to measure")
-      ->check(CLI::IsMember({"judge", "models", "random", "defects", "all"}))
+      ->check(CLI::IsMember({"judge", "models", "random", "defects", "ablation", "all"}))
       ->capture_default_str();
   app.add_option("--strategies", arguments.settings, "Settings of the extraction, separated by commas")
       ->delimiter(',')
       ->check(CLI::IsMember(names))
       ->capture_default_str();
   app.add_option("--seeds", options.seeds, "Runs a shipped model")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--models", arguments.models, "Random models [500; 50 with defects]")->check(CLI::PositiveNumber);
+  app.add_option("--models", arguments.models, "Random models [500; 50 with defects, 200 for the ablation]")
+      ->check(CLI::PositiveNumber);
   app.add_option("--first-seed", options.first_seed, "Seed of the first random model")->capture_default_str();
   app.add_option("--noise", options.noise, "Noise of random models")
       ->check(CLI::NonNegativeNumber)
@@ -47,6 +48,7 @@ void print_part(const std::string& part, const QualityOptions& options) {
   if (is_wanted("models")) print_models(options);
   if (is_wanted("random")) print_random(options);
   if (is_wanted("defects")) print_defects(options);
+  if (is_wanted("ablation")) print_ablation(options);
 }
 
 int run(int argc, char** argv) {
@@ -55,7 +57,9 @@ int run(int argc, char** argv) {
   add_options(app, arguments);
   CLI11_PARSE(app, argc, argv);
   QualityOptions& options = arguments.options;
-  if (arguments.models > 0) options.random_models = options.defect_models = arguments.models;
+  if (arguments.models > 0) {
+    options.random_models = options.defect_models = options.ablation_models = arguments.models;
+  }
   for (const Setting& setting : all_settings()) {
     if (std::ranges::count(arguments.settings, setting.name) > 0) options.run.settings.push_back(setting);
   }

@@ -14,7 +14,7 @@ constexpr double k_noise = 0.01;
 constexpr double k_right = 0.999;
 
 std::vector<TableCell> row_of(const std::string& model, std::size_t points, const std::string& setting,
-                         std::span<const Outcome> outcomes) {
+                              std::span<const Outcome> outcomes) {
   const Summary summary = summarise(outcomes, k_right);
   return {model,
           static_cast<double>(points),

@@ -13,8 +13,9 @@ struct QualityOptions {
   std::size_t seeds = 50;           ///< runs a shipped model
   std::size_t random_models = 500;  ///< of part random
   std::size_t defect_models = 50;   ///< of part defects, beside the shipped ones
-  std::uint64_t first_seed = 1;     ///< of random models; the others follow
-  double noise = 0.01;              ///< of random models
+  std::size_t ablation_models = 200;
+  std::uint64_t first_seed = 1;  ///< of random models; the others follow
+  double noise = 0.01;           ///< of random models
 };
 
 /// The sampled IoU against that of compare().
@@ -22,5 +23,7 @@ void print_judge_check();
 void print_models(const QualityOptions& options);
 void print_random(const QualityOptions& options);
 void print_defects(const QualityOptions& options);
+/// The strategy by cells with each of its parts changed alone; has settings of its own.
+void print_ablation(const QualityOptions& options);
 
 }  // namespace cloud2csg::bench

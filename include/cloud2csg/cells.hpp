@@ -62,9 +62,9 @@ struct CellOptions {
 
 struct LabelOptions {
   /// What the absence of points costs: where a patch between a cell of the solid and one that is not has fewer points
-  /// than this share of what its area lets expect, those that are missing. A half: a surface of which two thirds were
+  /// than this share of what its area lets expect, those that are missing. A quarter: a surface of which most was
   /// not seen is still believed.
-  double absence = 0.5;
+  double absence = 0.25;
 };
 
 struct CellLabels {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cloud2csg/cells.hpp"
 #include "cloud2csg/evolve.hpp"
 #include "cloud2csg/objective.hpp"
 #include "cloud2csg/segmentation.hpp"
@@ -43,6 +44,8 @@ struct ExtractOptions {
   /// automatic: try cells first, and take their tree where the points contradict at most what is missing here to 1 of
   /// what they say. Elsewhere partitions are searched too, and the tree of the higher E is taken. Above 1: no cells.
   double cell_trust = 0.97;
+  SampleCounts cell_samples = {};
+  CellSolveOptions cell_solve = {};
   /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
   std::optional<double> overlap_tolerance = {};
   /// Judge the trees of a partition without the points inside primitives of other partitions, where no tree over its

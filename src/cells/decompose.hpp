@@ -19,7 +19,7 @@ struct KnownRows {
 
 struct DecompositionOptions {
   /// Rows looked at, times variables, before choices are no longer tried but taken as they come.
-  std::size_t budget = 400'000;
+  std::size_t budget = 100'000;
 };
 
 /// A small formula that is true in all rows that are on and false in all that are off, by taking the function apart:

@@ -9,9 +9,10 @@
 namespace cloud2csg {
 namespace {
 
-std::optional<CellSolution> solved(const CellComplex& complex, const CellLabels& labels, const RunContext& run) {
+std::optional<CellSolution> solved(const CellComplex& complex, const CellLabels& labels,
+                                   const CellSolveOptions& options, const RunContext& run) {
   try {
-    return solve_cells(complex, labels, {}, run);
+    return solve_cells(complex, labels, options, run);
   } catch (const Cancelled&) {
     return std::nullopt;
   }
@@ -36,12 +37,16 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
   CellComplex complex;
   do {
     complex = find_cells(cloud, supported.primitives,
-                         {.tolerances = scale.tolerances, .noise = scale.noise, .precision = options.precision}, run);
+                         {.tolerances = scale.tolerances,
+                          .noise = scale.noise,
+                          .precision = options.precision,
+                          .samples = options.cell_samples},
+                         run);
   } while (drop_unsupported(complex.points_of_primitive, supported, result.warnings));
   seconds.segment += watch.lap();
   search_run.report("search", 0, 1);
-  const CellLabels labels = label_cells(complex);
-  const std::optional<CellSolution> solution = solved(complex, labels, search_run);
+  const CellLabels labels = label_cells(complex, options.cell_solve.labels);
+  const std::optional<CellSolution> solution = solved(complex, labels, options.cell_solve, search_run);
   seconds.search += watch.lap();
   search_run.report("search", 1, 1);
   if (!solution) return std::nullopt;
