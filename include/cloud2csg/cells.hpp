@@ -93,7 +93,8 @@ struct CellSolution {
   std::size_t open_cells = 0;  ///< those whose labels were not sure enough
   std::size_t peeled = 0;      ///< primitives that were split off since they are wholly in, or wholly out of, the rest
   std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
-  std::size_t least_leaves = 0;         ///< no tree that agrees with all labels that are sure has fewer
+  /// No tree that agrees with all labels that are sure has fewer, but maybe one with primitives that were left out.
+  std::size_t least_leaves = 0;
   [[nodiscard]] bool is_minimal() const { return leaf_count(tree) == least_leaves; }
 };
 
