@@ -32,7 +32,7 @@ struct CellComplex {
   std::vector<Patch> patches;  ///< ascending by (first, second)
   /// Those that reach to infinity, ascending: they cannot be in a bounded solid. The first cell, but where half-spaces
   /// shut it in.
-  std::vector<CellIndex> unbounded;
+  std::vector<CellIndex> unbounded = {0};
   std::vector<std::size_t> points_of_primitive;  ///< how many points are on the surface of each primitive
   std::size_t unassigned = 0;                    ///< points that are on none
   std::vector<std::uint32_t> order;              ///< all points, so that neighbours are near each other
@@ -104,14 +104,15 @@ struct CellSolution {
   std::size_t peeled = 0;      ///< primitives that were split off since they are wholly in, or wholly out of, the rest
   std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
   std::size_t least_leaves = 0;         ///< it is proved that no tree with the labels that are sure has fewer
+  bool is_complete = true;              ///< false when it was stopped early
   [[nodiscard]] bool is_minimal() const { return leaf_count(tree) == least_leaves; }
 };
 
 /// A small tree that has the label of each cell that is sure. Primitives that no label depends on are left out; those
 /// that are wholly in the solid, or wholly out of it, but for what others add or take, are split off, again and again,
 /// until nothing or a core is left; parts of it that share no cell are solved one by one. Absent when one of them has
-/// more than 64 primitives. O(size of all cells) but for the cores. A triggered run.stop ends it with the best tree so
-/// far. @throws Cancelled when there is none yet
+/// more than 64 primitives. O(size of all cells) but for the cores. A triggered run.stop ends it soon, with the best tree
+/// so far.
 [[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
                                                       const CellSolveOptions& options = {}, const RunContext& run = {});
 

@@ -113,7 +113,7 @@ struct CellStatistics {
   double contradicted_points = 0;      ///< of these, those that the tree contradicts, and those that it would need more
   std::size_t peeled = 0;              ///< primitives that were split off
   std::vector<std::size_t> cores;      ///< how many primitives the rests had that were solved by formula
-  bool is_minimal = false;             ///< it is proved that no smaller tree has the label of each sure cell
+  bool is_minimal = false;             ///< it is proved that no smaller tree of its primitives has all sure labels
 };
 
 struct TreeStatistics {

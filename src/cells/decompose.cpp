@@ -194,7 +194,7 @@ class Decomposer {
   Decomposer(const DecompositionOptions& options, const RunContext& run) : budget_(options.budget), run_(run) {}
 
   CsgTree solve(const KnownRows& given) {
-    run_.throw_if_stopped();
+    if (run_.stop.stop_requested()) budget_ = 0;
     const auto variables = static_cast<std::size_t>(std::popcount(variables_of(given)));
     budget_ -= std::min(budget_, (given.on.size() + given.off.size()) * variables);
     if (given.on.empty()) return CsgTree::empty();

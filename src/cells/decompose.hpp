@@ -30,8 +30,8 @@ struct DecompositionOptions {
 ///   (bi-decomposition; Mishchenko, Steinbach, Perkowski 2001), any number of them at once;
 /// - else it is branched on a variable, which then appears more than once; of several, the one that gives the smallest
 ///   formula, as long as the budget lasts.
-/// Where a formula exists that has each variable at most once and enough rows are known, it is found. Deterministic.
-/// @throws Cancelled
+/// Where a formula exists that has each variable at most once and enough rows are known, it is found. Deterministic; a
+/// triggered run.stop ends the budget.
 [[nodiscard]] CsgTree decompose(const KnownRows& rows, const DecompositionOptions& options = {},
                                 const RunContext& run = {});
 

@@ -323,14 +323,14 @@ std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLa
         labels.evidence, [least_evidence](double evidence) { return evidence >= least_evidence; }));
     if (as_sure == sure) continue;  // the same cells as before
     sure = as_sure;
-    if (best && run.stop.stop_requested()) break;
     try_with(least_evidence, nullptr);
     // More cells that are sure need no fewer leaves, and no labels cost less than those of the cut.
     if (best && total(*best) <= labels.cost + options.leaf_cost * static_cast<double>(best->least_leaves) + 1e-9) break;
   }
   if (!best) return best;
   const double least = best->least_evidence;
-  if (!best->is_minimal() && !run.stop.stop_requested()) try_with(least, &options.minimal);
+  if (!best->is_minimal()) try_with(least, &options.minimal);
+  best->is_complete = best->is_minimal() || !run.stop.stop_requested();
   best->open_cells = static_cast<std::size_t>(
       std::ranges::count_if(labels.evidence, [least](double evidence) { return evidence < least; }));
   return best;

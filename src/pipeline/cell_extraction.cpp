@@ -4,22 +4,8 @@
 
 #include "base/stopwatch.hpp"
 #include "cloud2csg/cells.hpp"
-#include "cloud2csg/error.hpp"
 
 namespace cloud2csg {
-namespace {
-
-std::optional<CellSolution> solved(const CellComplex& complex, const CellLabels& labels,
-                                   const CellSolveOptions& options, const RunContext& run) {
-  try {
-    return solve_cells(complex, labels, options, run);
-  } catch (const Cancelled&) {
-    return std::nullopt;
-  }
-}
-
-}  // namespace
-
 double CellExtraction::trust() const {
   // Where most points are near several surfaces at once, the cells do not tell much.
   constexpr double k_least_share = 0.25;
@@ -46,12 +32,12 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
   seconds.segment += watch.lap();
   search_run.report("search", 0, 1);
   const CellLabels labels = label_cells(complex, options.cell_solve.labels);
-  const std::optional<CellSolution> solution = solved(complex, labels, options.cell_solve, search_run);
+  const std::optional<CellSolution> solution = solve_cells(complex, labels, options.cell_solve, search_run);
   seconds.search += watch.lap();
   search_run.report("search", 1, 1);
   if (!solution) return std::nullopt;
   result.tree = renumber(solution->tree, supported.original);
-  result.is_complete = !search_run.stop.stop_requested();
+  result.is_complete = solution->is_complete;
   result.supported = std::move(supported);
   result.unassigned_points = complex.unassigned;
   result.order = std::move(complex.order);

@@ -18,8 +18,8 @@ struct CellExtraction {
   [[nodiscard]] double trust() const;
 };
 
-/// Absent when what is left after splitting off is too large to be solved, or not before the search is to stop. Fills
-/// in the seconds of its stages. The pass over the points runs as `run` says, the search as `search_run`.
+/// Absent when what is left after splitting off is too large to be solved. Fills in the seconds of its stages. The pass
+/// over the points runs as `run` says, the search as `search_run`.
 /// @throws Error when no point is near any primitive; Cancelled.
 [[nodiscard]] std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
                                                              const Scale& scale, const ExtractOptions& options,

@@ -300,7 +300,7 @@ class Extractor {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
     }
-    if (statistics_.merge.worst_shortfall > k_tolerated_shortfall) {
+    if (!statistics_.cells && statistics_.merge.worst_shortfall > k_tolerated_shortfall) {
       statistics_.warnings.push_back(
           fmt::format("the trees of the partitions did not merge well: on one of the primitives, {:.0f} % of what its "
                       "partition explains is lost",

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -29,7 +31,7 @@ struct PlainField {
 /// What one point says.
 struct PlainPoint {
   Cell inner = {}, outer = {};
-  std::vector<PrimitiveIndex> on = {};  ///< the primitives on whose surface it is
+  std::vector<PrimitiveIndex> on = {};  ///< the primitives on whose surface it may be
   bool is_open = false;                 ///< too near to another surface
   bool is_unsure = false;               ///< near another surface
 };
@@ -37,15 +39,28 @@ struct PlainPoint {
 inline PlainPoint plain_point(const std::vector<PlainField>& fields, std::size_t i, const Eigen::Vector3d& normal,
                               const SegmentationTolerances& tolerances) {
   PlainPoint point;
+  const auto dot_of = [&](PrimitiveIndex p) {
+    const Eigen::Vector3d slope = fields[p].slopes[i];
+    return slope.x() * normal.x() + slope.y() * normal.y() + slope.z() * normal.z();
+  };
+  double least = std::numeric_limits<double>::max();
+  for (PrimitiveIndex p = 0; p < fields.size(); ++p) {
+    const Eigen::Vector3d slope = fields[p].slopes[i];
+    const double dot = dot_of(p);
+    const double square = slope.x() * slope.x() + slope.y() * slope.y() + slope.z() * slope.z();
+    const double distance = std::abs(fields[p].distances[i]);
+    const bool agrees = dot != 0 && dot * dot >= tolerances.cosine * tolerances.cosine * square;
+    if (distance > tolerances.distance || !agrees) continue;
+    point.on.push_back(p);
+    least = std::min(least, distance);
+  }
+  // Of several surfaces it is on the nearest, and on those that coincide with it.
+  const double farthest = least + k_open_share * tolerances.distance;
   for (PrimitiveIndex p = 0; p < fields.size(); ++p) {
     const double distance = fields[p].distances[i];
-    const Eigen::Vector3d slope = fields[p].slopes[i];
-    const double dot = slope.x() * normal.x() + slope.y() * normal.y() + slope.z() * normal.z();
-    const double square = slope.x() * slope.x() + slope.y() * slope.y() + slope.z() * slope.z();
-    const bool is_near = std::abs(distance) <= tolerances.distance;
-    const bool is_on = is_near && dot != 0 && dot * dot >= tolerances.cosine * tolerances.cosine * square;
-    if (is_on) point.on.push_back(p);
-    if (is_near && !is_on) point.is_unsure = true;
+    const double dot = dot_of(p);
+    const bool is_on = std::ranges::count(point.on, p) > 0 && std::abs(distance) <= farthest;
+    if (std::abs(distance) <= tolerances.distance && !is_on) point.is_unsure = true;
     if (!is_on && std::abs(distance) <= tolerances.distance * k_open_share) point.is_open = true;
     if (is_on ? dot > 0 : distance < 0) point.inner.push_back(p);
     if (is_on ? dot < 0 : distance < 0) point.outer.push_back(p);

@@ -24,7 +24,8 @@ CellOptions options_with(Precision precision) {
 test::PlainCrossings counted(const PointCloud& cloud, const PrimitiveSet& primitives, const CellOptions& options,
                              int threads) {
   const std::vector<std::uint32_t> order = spatial_order(cloud.positions, bounds_of(cloud.positions));
-  return test::plain(count_crossings(cloud, order, primitives, options, {.threads = threads}));
+  return test::plain(count_crossings(cloud, order, reaching_primitives(primitives, bounds_of(cloud.positions), options),
+                                     options.tolerances, {.threads = threads}));
 }
 
 /// Corners cut off a box: of planes that are not its own.

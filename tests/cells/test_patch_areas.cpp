@@ -93,6 +93,11 @@ double area_by_lines(const Primitive& primitive) {
   return area;
 }
 
+SurfaceSamples samples_of(const Primitive& primitive, const AlignedBox& region, std::size_t count) {
+  return sample_surfaces({primitive}, std::vector{reach(primitive, 0)}, region,
+                         {.base = count, .a_neighbour = 0, .most = count});
+}
+
 /// Also of fields that are no distance.
 TEST(PatchAreas, OfExpressionsAndDisplacedSolidsAreNearlyRight) {
   const AlignedBox around(Eigen::Vector3d::Constant(-1.5), Eigen::Vector3d::Constant(1.5));
@@ -103,7 +108,7 @@ TEST(PatchAreas, OfExpressionsAndDisplacedSolidsAreNearlyRight) {
   primitives[3].displacement = Displacement{.frequency = 1};
   primitives[4].displacement = Displacement{.frequency = 0.7};
   for (const Primitive& primitive : primitives) {
-    const SurfaceSamples samples = sample_surfaces({primitive}, {}, 2000);
+    const SurfaceSamples samples = samples_of(primitive, bounds(primitive), 2000);
     const double area = samples.area_of_sample[0] * static_cast<double>(samples.points.size());
     const double expected = area_by_lines(primitive);
     EXPECT_NEAR(area, expected, 0.15 * expected) << primitive.id;
@@ -116,7 +121,7 @@ TEST(SurfaceSamples, AreOnTheirSurfacesWithTheirNormals) {
   const AlignedBox region(Eigen::Vector3d::Constant(-2), Eigen::Vector3d::Constant(2));
   for (int i = 0; i < 40; ++i) {
     const Primitive primitive = test::random_primitive(random);
-    const SurfaceSamples samples = sample_surfaces({primitive}, region, 100);
+    const SurfaceSamples samples = samples_of(primitive, region, 100);
     const std::vector<double> distances = signed_distance(primitive, samples.points.positions);
     ASSERT_EQ(samples.points.normals.size(), distances.size());
     EXPECT_GT(samples.area_of_sample[0], 0.0);
@@ -130,7 +135,7 @@ TEST(SurfaceSamples, AreOnTheirSurfacesWithTheirNormals) {
 
 TEST(SurfaceSamples, OfHalfSpacesCoverTheRegion) {
   const AlignedBox region(Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(3, 2, 1));
-  const SurfaceSamples samples = sample_surfaces({test::placed("a", HalfSpace{}, {0, 0, 0})}, region, 200);
+  const SurfaceSamples samples = samples_of(test::placed("a", HalfSpace{}, {0, 0, 0}), region, 200);
   AlignedBox box;
   for (std::size_t i = 0; i < samples.points.size(); ++i) box.extend(samples.points.positions[i]);
   EXPECT_LT(box.min().x(), 0.3);

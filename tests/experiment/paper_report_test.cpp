@@ -61,7 +61,7 @@ TEST_F(PaperReport, TablesSummarise) {
   const std::vector<Table> tables = paper_tables(made_up());
   const auto row = [&tables](const std::string& table, std::size_t index) {
     std::vector<std::string> texts;
-    for (const Cell& cell : table_of(tables, table).rows.at(index)) texts.push_back(to_text(cell));
+    for (const TableCell& cell : table_of(tables, table).rows.at(index)) texts.push_back(to_text(cell));
     return texts;
   };
   using Row = std::vector<std::string>;

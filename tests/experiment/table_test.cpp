@@ -36,15 +36,15 @@ TEST(Table, AsCsv) {
 }
 
 TEST(Table, NumbersKeepFourDigitsAndHaveNoExponent) {
-  EXPECT_EQ(to_text(Cell(0.00123456)), "0.001235");
-  EXPECT_EQ(to_text(Cell(123456.7)), "123457");
-  EXPECT_EQ(to_text(Cell(1e7)), "10000000");
-  EXPECT_EQ(to_text(Cell(-2.5)), "-2.500");
+  EXPECT_EQ(to_text(TableCell(0.00123456)), "0.001235");
+  EXPECT_EQ(to_text(TableCell(123456.7)), "123457");
+  EXPECT_EQ(to_text(TableCell(1e7)), "10000000");
+  EXPECT_EQ(to_text(TableCell(-2.5)), "-2.500");
 }
 
 TEST(Table, WholeMeansShowTheirDeviation) {
-  EXPECT_EQ(to_text(Cell(Spread{.count = 2, .mean = 38.5, .deviation = 1e-7})), "38.5000 ± 0.0000");
-  EXPECT_EQ(to_text(Cell(Spread{.count = 2, .mean = 38, .deviation = 1.41421356})), "38.0 ± 1.4");
+  EXPECT_EQ(to_text(TableCell(Spread{.count = 2, .mean = 38.5, .deviation = 1e-7})), "38.5000 ± 0.0000");
+  EXPECT_EQ(to_text(TableCell(Spread{.count = 2, .mean = 38, .deviation = 1.41421356})), "38.0 ± 1.4");
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ TEST(Progress, ErrorsOfTheCallerComeThrough) {
     (void)extract_csg(input.cloud, input.model.primitives, options,
                       {.stop = {}, .on_progress = throw_at, .threads = 2});
   };
-  EXPECT_THROW(extract_until("cells", {}), Mine);
+  EXPECT_THROW(extract_until("segment", {}), Mine);
   EXPECT_THROW(extract_until("search", {.cell_trust = test::k_never_by_cells}), Mine);
 }
 
