@@ -88,8 +88,8 @@ struct CellLabels {
 
 struct CellSolveOptions {
   LabelOptions labels = {};
-  /// Of cells whose labels cost fewer points to change, the formula may make what it likes. Each is tried, and that
-  /// formula taken that costs least, leaves included.
+  /// Of cells whose labels cost fewer points to change, the formula may make what it likes. Descending; each is tried,
+  /// and that formula taken that costs least, leaves included.
   std::vector<double> least_evidence = {12, 3, 1, 0.3};
   double leaf_cost = 3;  ///< of a leaf, in points
   /// Where the formula that was taken may not be minimal, a minimal one is looked for, core by core.
@@ -111,8 +111,8 @@ struct CellSolution {
 /// A small tree that has the label of each cell that is sure. Primitives that no label depends on are left out; those
 /// that are wholly in the solid, or wholly out of it, but for what others add or take, are split off, again and again,
 /// until nothing or a core is left; parts of it that share no cell are solved one by one. Absent when one of them has
-/// more than 64 primitives. O(size of all cells) but for the cores. A triggered run.stop ends it soon, with the best tree
-/// so far.
+/// more than 64 primitives. O(size of all cells) but for the cores. A triggered run.stop ends it soon, with the best
+/// tree so far.
 [[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
                                                       const CellSolveOptions& options = {}, const RunContext& run = {});
 

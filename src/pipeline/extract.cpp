@@ -128,7 +128,6 @@ class Extractor {
     statistics_.unassigned_points = by_cells_->unassigned_points;
     statistics_.warnings = by_cells_->warnings;
     statistics_.complete = by_cells_->is_complete;
-    statistics_.merge = {};
     order_ = std::move(by_cells_->order);
     return by_cells_->tree;
   }
