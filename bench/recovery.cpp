@@ -22,7 +22,7 @@ struct Setting {
 };
 
 std::vector<Setting> settings() {
-  std::vector<Setting> all{{"default", {}}, {"paper", paper_options()}};
+  std::vector<Setting> all{{"default", {}}, {"default without cells", {.cell_trust = 2}}, {"paper", paper_options()}};
   const auto add = [&all](const char* name, auto&& change) {
     Setting setting{name, paper_options()};
     change(setting.options);

@@ -80,7 +80,8 @@ void add_search_arguments(CLI::App& app, ExtractArguments& arguments) {
       ->capture_default_str();
   group
       .add("--strategy", arguments.strategy, "NAME",
-           "auto, partition: a tree per partition, merged, or baseline: all primitives at once (default: auto)")
+           "auto, cells: space cut into cells, each in or out, partition: a tree per partition, merged, or baseline: "
+           "all primitives at once (default: auto: cells, and partitions where the points do not bear them out)")
       ->check(one_of(names_of(k_strategies)));
   group.add("--parallel", arguments.parallel, "WHAT", "none, population, partitions or both (default: both)")
       ->check(one_of(names_of(k_parallels)));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -13,6 +14,17 @@ std::string merge_ways(const MergeStatistics& merge) {
   std::vector<std::string_view> ways;
   for (const MergeWay way : merge.ways) ways.push_back(to_string(way));
   return fmt::format("{}", fmt::join(ways, ", "));
+}
+
+std::string partitions_line(const ExtractStatistics& s) {
+  return fmt::format("partitions   {} in {} component{}; merge: {}", s.partitions.size(), s.components,
+                     s.components == 1 ? "" : "s", merge_ways(s.merge));
+}
+
+std::string cells_line(const CellStatistics& cells) {
+  const double points = std::max(1.0, cells.speaking_points);
+  return fmt::format("cells        {}, {} of them open; {:.2g} % of what the points say is contradicted", cells.cells,
+                     cells.open_cells, 100 * cells.contradicted_points / points);
 }
 
 /// The stages that took at least a thousandth of the extraction, in milliseconds.
@@ -36,9 +48,9 @@ std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const 
   std::vector<std::string> lines{
       fmt::format("points       {}, {} of them on no primitive; noise {:.3g}", s.points, s.unassigned_points, s.noise),
       fmt::format("primitives   {}; cliques by size ({})", s.primitives, fmt::join(s.clique_histogram, ", ")),
-      fmt::format("partitions   {} in {} component{}; merge: {}", s.partitions.size(), s.components,
-                  s.components == 1 ? "" : "s", merge_ways(s.merge)),
-      fmt::format("tree         {} nodes, {} leaves, depth {}", s.tree.size, s.tree.leaves, s.tree.depth),
+      s.cells ? cells_line(*s.cells) : partitions_line(s),
+      fmt::format("tree         {} nodes, {} leaves, depth {}{}", s.tree.size, s.tree.leaves, s.tree.depth,
+                  s.cells && s.cells->is_minimal ? "; none smaller has these cells" : ""),
       fmt::format("fit          rms distance {:.3g}, 95 % below {:.3g}, rms angle {:.3g} deg", s.fit.rms_distance,
                   s.fit.p95_distance, s.fit.rms_angle_deg),
       fmt::format("extraction   {:.1f} ms: {}", s.seconds.extraction * 1e3, stage_times(s.seconds)),

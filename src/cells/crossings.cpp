@@ -66,9 +66,9 @@ struct Input {
 /// A primitive whose surface may be in a block.
 template <class Real>
 struct ActivePrimitive {
-  PrimitiveIndex primitive = 0;
   BlockField<Real> field;
   BlockSides sides;
+  PrimitiveIndex primitive = 0;
 };
 
 template <class Real>

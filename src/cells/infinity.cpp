@@ -13,7 +13,7 @@ constexpr std::uint64_t k_stream = 0x696e66696e697479;
 
 Eigen::Vector3d any_direction(RandomStream& random) {
   for (;;) {
-    const Eigen::Vector3d direction(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    Eigen::Vector3d direction(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const double square = direction.squaredNorm();
     if (square > 0 && square <= 1) return direction;
   }
