@@ -1,5 +1,7 @@
 #include <algorithm>
-#include <map>
+#include <iterator>
+#include <numeric>
+#include <utility>
 
 #include "cells/crossings.hpp"
 #include "cells/infinity.hpp"
@@ -12,99 +14,106 @@ namespace {
 /// Puts together what points and samples say.
 class ComplexBuilder {
  public:
-  /// All cells of the crossings, in lexicographic order.
-  void add_cells(const Crossings& crossings) {
-    for (CellIndex c = 0; c < crossings.cells.size(); ++c) cells_.push_back(crossings.cells[c]);
-  }
+  enum class Source : std::uint8_t { points, samples };
 
-  void add_cells(const std::vector<Cell>& cells) { cells_.insert(cells_.end(), cells.begin(), cells.end()); }
+  CellIndex add_cell(const Cell& cell) { return cells_.find_or_insert(cell); }
 
-  void index_cells() {
-    cells_.emplace_back();
-    std::ranges::sort(cells_);
-    cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
-  }
-
-  template <class Add>
-  void add_patches(const Crossings& crossings, const Add& add) {
-    std::vector<CellIndex> place(crossings.cells.size());
-    for (CellIndex c = 0; c < place.size(); ++c) {
-      place[c] = place_of(crossings.cells[c]);
-    }
+  void add(const Crossings& crossings, Source source) {
+    std::vector<CellIndex> number(crossings.cells.size());
+    for (CellIndex c = 0; c < number.size(); ++c) number[c] = add_cell(crossings.cells[c]);
+    patches_.reserve(patches_.size() + crossings.units.size());
     for (const auto& [pair, units] : crossings.units) {
-      const CellIndex inner = place[Crossings::inner(pair)];
-      const CellIndex outer = place[Crossings::outer(pair)];
-      const auto [first, second] = std::minmax(inner, outer);
-      Patch& patch = patches_.try_emplace({first, second}, Patch{.first = first, .second = second}).first->second;
-      add(patch, inner == first, static_cast<double>(units) / k_sure_units);
+      const CellIndex inner = number[Crossings::inner(pair)];
+      const CellIndex outer = number[Crossings::outer(pair)];
+      const double points = static_cast<double>(units) / k_sure_units;
+      Patch patch{.first = inner, .second = outer};
+      (source == Source::points ? patch.first_in : patch.area) = points;
+      patches_.push_back(patch);
     }
   }
 
-  [[nodiscard]] CellIndex place_of(const Cell& cell) const {
-    return static_cast<CellIndex>(std::ranges::lower_bound(cells_, cell) - cells_.begin());
-  }
-
-  /// Turns counts of samples into areas.
-  void measure_areas(std::span<const double> areas) {
-    for (auto& [pair, patch] : patches_) {
-      if (patch.area > 0) patch.area *= area_of_sample(patch, areas);
-    }
-  }
-
-  [[nodiscard]] CellComplex take() && {
+  /// `areas`: what a sample of each primitive stands for.
+  [[nodiscard]] CellComplex build(std::span<const double> areas, std::span<const CellIndex> unbounded) && {
     CellComplex result;
-    result.patches.reserve(patches_.size());
-    for (const auto& [pair, patch] : patches_) result.patches.push_back(patch);
-    result.cells = std::move(cells_);
+    const std::vector<CellIndex> place = sort_cells(result.cells);
+    for (Patch& patch : patches_) {
+      patch.first = place[patch.first];
+      patch.second = place[patch.second];
+      if (patch.first < patch.second) continue;
+      std::swap(patch.first, patch.second);
+      std::swap(patch.first_in, patch.second_in);
+    }
+    std::ranges::sort(patches_, {}, [](const Patch& patch) { return std::pair(patch.first, patch.second); });
+    for (const Patch& patch : patches_) add_to(result.patches, patch);
+    for (Patch& patch : result.patches) {
+      if (patch.area > 0) patch.area *= area_of_sample(result.cells[patch.first], result.cells[patch.second], areas);
+    }
+    result.unbounded.clear();
+    for (const CellIndex cell : unbounded) result.unbounded.push_back(place[cell]);
+    std::ranges::sort(result.unbounded);
     return result;
   }
 
  private:
+  /// In lexicographic order; returns the place of each number.
+  std::vector<CellIndex> sort_cells(std::vector<Cell>& sorted) const {
+    std::vector<CellIndex> order(cells_.size());
+    std::iota(order.begin(), order.end(), CellIndex{0});
+    std::ranges::sort(order, [this](CellIndex a, CellIndex b) { return cells_[a] < cells_[b]; });
+    std::vector<CellIndex> place(order.size());
+    sorted.reserve(order.size());
+    for (CellIndex k = 0; k < order.size(); ++k) {
+      place[order[k]] = k;
+      sorted.push_back(cells_[order[k]]);
+    }
+    return place;
+  }
+
+  /// Patches come in order. Counts are multiples of a quarter, whose sums are exact in any order.
+  static void add_to(std::vector<Patch>& patches, const Patch& patch) {
+    if (patches.empty() || patches.back().first != patch.first || patches.back().second != patch.second) {
+      patches.push_back(patch);
+      return;
+    }
+    patches.back().first_in += patch.first_in;
+    patches.back().second_in += patch.second_in;
+    patches.back().area += patch.area;
+  }
+
   /// What a sample stands for at a patch: where several surfaces coincide, each of them is sampled, and their densities
   /// add up.
-  [[nodiscard]] double area_of_sample(const Patch& patch, std::span<const double> areas) const {
+  static double area_of_sample(const Cell& first, const Cell& second, std::span<const double> areas) {
     Cell between;
-    std::ranges::set_symmetric_difference(cells_[patch.first], cells_[patch.second], std::back_inserter(between));
+    std::ranges::set_symmetric_difference(first, second, std::back_inserter(between));
     double density = 0;
     for (const PrimitiveIndex p : between) density += areas[p] > 0 ? 1 / areas[p] : 0.0;
     return density > 0 ? 1 / density : 0.0;
   }
 
-  std::vector<Cell> cells_;
-  std::map<std::pair<CellIndex, CellIndex>, Patch> patches_;
+  CellSet cells_;
+  std::vector<Patch> patches_;  // by the numbers of cells, the inner one first; area: samples
 };
 
 }  // namespace
 
 CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, const CellOptions& options,
                        const RunContext& run) {
+  using Source = ComplexBuilder::Source;
   const AlignedBox box = bounds_of(cloud.positions);
   std::vector<std::uint32_t> order = spatial_order(cloud.positions, box, run);
   const ReachingPrimitives reaching = reaching_primitives(primitives, box, options);
   const Crossings of_points = count_crossings(cloud, order, reaching, options.tolerances, run);
-  const SurfaceSamples samples = sample_surfaces(primitives, reaching.reach, box, options.samples);
   ComplexBuilder builder;
-  builder.add_cells(of_points);
-  Crossings of_samples;
-  if (samples.points.size() > 0) {
-    const PointCloud& points = samples.points;
-    of_samples = count_crossings(points, spatial_order(points.positions, bounds_of(points.positions), run), reaching,
-                                 options.tolerances, run);
-    builder.add_cells(of_samples);
+  builder.add_cell({});
+  builder.add(of_points, Source::points);
+  const SurfaceSamples samples = sample_surfaces(primitives, reaching.reach, box, options.samples, run);
+  if (const PointCloud& points = samples.points; points.size() > 0) {
+    const auto order_of_samples = spatial_order(points.positions, bounds_of(points.positions), run);
+    builder.add(count_crossings(points, order_of_samples, reaching, options.tolerances, run), Source::samples);
   }
-  const std::vector<Cell> far = cells_at_infinity(primitives);
-  builder.add_cells(far);
-  builder.index_cells();
-  builder.add_patches(of_points, [](Patch& patch, bool is_first_inner, double points) {
-    (is_first_inner ? patch.first_in : patch.second_in) += points;
-  });
-  builder.add_patches(of_samples, [](Patch& patch, bool /*is_first_inner*/, double count) { patch.area += count; });
-  builder.measure_areas(samples.area_of_sample);
   std::vector<CellIndex> unbounded;
-  unbounded.reserve(far.size());
-  for (const Cell& cell : far) unbounded.push_back(builder.place_of(cell));
-  CellComplex result = std::move(builder).take();
-  result.unbounded = std::move(unbounded);
+  for (const Cell& cell : cells_at_infinity(primitives)) unbounded.push_back(builder.add_cell(cell));
+  CellComplex result = std::move(builder).build(samples.area_of_sample, unbounded);
   result.points_of_primitive = of_points.points_of_primitive;
   result.unassigned = of_points.unassigned;
   result.order = std::move(order);

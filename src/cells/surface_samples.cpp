@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "primitive/bounds_index.hpp"
 #include "primitive/plain_surface.hpp"
 
@@ -146,22 +147,30 @@ std::size_t count_meeting(const BoundsIndex& index, const AlignedBox& box, const
 }  // namespace
 
 SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, std::span<const AlignedBox> boxes,
-                               const AlignedBox& region, const SampleCounts& counts) {
-  SurfaceSamples result;
+                               const AlignedBox& region, const SampleCounts& counts, const RunContext& run) {
   const BoundsIndex index = index_of(boxes, region);
-  for (std::size_t p = 0; p < primitives.size(); ++p) {
+  std::vector<Drawn> drawn(primitives.size());
+  const auto draw = [&](std::size_t p) {
     const std::size_t neighbours = std::max<std::size_t>(count_meeting(index, boxes[p], region), 1) - 1;
     const std::size_t samples = std::min(counts.base + counts.a_neighbour * neighbours, counts.most);
     RandomStream random(0, k_stream, p);
     // Expressions reach anywhere, and half-spaces are without end.
     const bool is_formula = std::holds_alternative<Expression>(primitives[p].shape);
     const AlignedBox box = (is_formula ? bounds(primitives[p]) : boxes[p]).intersection(grown(region, 1));
-    const Drawn drawn = is_plain(primitives[p]) ? draw_plain(primitives[p], region, samples, random)
-                                                : draw_from_field(primitives[p], box, samples, random);
-    result.area_of_sample.push_back(drawn.area_of_one);
-    for (std::size_t i = 0; i < drawn.points.size(); ++i) {
-      result.points.positions.push_back(drawn.points.positions[i]);
-      result.points.normals.push_back(drawn.points.normals[i]);
+    drawn[p] = is_plain(primitives[p]) ? draw_plain(primitives[p], region, samples, random)
+                                       : draw_from_field(primitives[p], box, samples, random);
+  };
+  for_each_index(primitives.size(), run, draw);
+  SurfaceSamples result;
+  std::size_t count = 0;
+  for (const Drawn& one : drawn) count += one.points.size();
+  result.points.positions.reserve(count);
+  result.points.normals.reserve(count);
+  for (const Drawn& one : drawn) {
+    result.area_of_sample.push_back(one.area_of_one);
+    for (std::size_t i = 0; i < one.points.size(); ++i) {
+      result.points.positions.push_back(one.points.positions[i]);
+      result.points.normals.push_back(one.points.normals[i]);
     }
   }
   return result;
