@@ -29,12 +29,15 @@ struct ExtractCommand {
   std::string primitives;
   std::vector<std::string> outputs;
   std::optional<std::string> statistics;
+  std::optional<std::string> unexplained;
   ExtractArguments arguments;
   RunOptions running;
 
   void run(const std::stop_token& stop) const;
   /// What is going to be written, after a look at whether it can be.
   [[nodiscard]] std::vector<std::string> check_files() const;
+  [[nodiscard]] PointCloud unexplained_part(const PointCloud& points, const PrimitiveSet& solids,
+                                            const Extraction& result, int threads) const;
   /// Returns warnings.
   [[nodiscard]] std::vector<std::string> write(const Extraction& result, const PrimitiveSet& solids,
                                                const RunContext& run, OutputSet& written) const;
@@ -50,6 +53,19 @@ PointCloud read_cloud_with_normals(const std::string& file, const RunContext& ru
          .remedy = "estimate outward normals, e.g. with MeshLab or CloudCompare, and save them with the points"});
   }
   return cloud;
+}
+
+/// The points that the tree contradicts.
+PointCloud ExtractCommand::unexplained_part(const PointCloud& points, const PrimitiveSet& solids,
+                                            const Extraction& result, int threads) const {
+  const SegmentationTolerances tolerances =
+      segmentation_tolerances(arguments.options().segmentation, result.statistics.noise);
+  PointCloud part;
+  for (const std::uint32_t i : unexplained_points(result.tree, solids, points, tolerances, {.threads = threads})) {
+    part.positions.push_back(points.positions[i]);
+    part.normals.push_back(points.normals[i]);
+  }
+  return part;
 }
 
 std::string headline(const ExtractStatistics& statistics, const std::string& cloud) {
@@ -74,7 +90,9 @@ std::vector<std::string> ExtractCommand::write(const Extraction& result, const P
 std::vector<std::string> ExtractCommand::check_files() const {
   for (const std::string& file : outputs) check_output(file, model_endings());
   if (statistics) check_output(*statistics, k_statistics_endings);
+  if (unexplained) check_output(*unexplained, cloud_endings());
   std::vector<std::string> written = outputs;
+  if (unexplained) written.push_back(*unexplained);
   if (statistics) written.push_back(*statistics);
   std::vector<std::string> all = written;
   all.insert(all.end(), {cloud, primitives});
@@ -96,6 +114,11 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   const Stopwatch writing;
   OutputSet written;
   std::vector<std::string> warnings = write(result, solids, session.run(), written);
+  if (unexplained) {
+    written.add(*unexplained, [&](const std::filesystem::path& path) {
+      write_point_cloud(path, unexplained_part(points, solids, result, session.run().threads));
+    });
+  }
   StageSeconds& seconds = result.statistics.seconds;
   seconds.read = read_seconds;
   seconds.write = writing.seconds();
@@ -123,6 +146,11 @@ void add_options(CLI::App& app, ExtractCommand& command) {
   app.add_option("--stats", command.statistics, "Statistics: times, search, merge, fit")
       ->check(file_name())
       ->type_name("STATS.json")
+      ->group("Output");
+  app.add_option("--unexplained", command.unexplained,
+                 "The points that the tree contradicts: off its surface, or with another normal")
+      ->check(file_name())
+      ->type_name("CLOUD")
       ->group("Output");
   add_extract_arguments(app, command.arguments);
   add_run_options(app, command.running);

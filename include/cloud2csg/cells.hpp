@@ -60,6 +60,18 @@ struct CellOptions {
 [[nodiscard]] CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const CellOptions& options, const RunContext& run = {});
 
+/// What the pieces take up.
+struct CellVolumes {
+  std::vector<double>
+      of_cell;           ///< by cell, in cubed units of length; of those that reach out of the box, what is inside
+  double elsewhere = 0;  ///< of cells that find_cells() did not find
+};
+
+/// Estimated by so many places in the box, always the same. O(places x primitives)
+[[nodiscard]] CellVolumes measure_volumes(const CellComplex& complex, const PrimitiveSet& primitives,
+                                          const AlignedBox& box, std::size_t places = 20'000,
+                                          const RunContext& run = {});
+
 struct LabelOptions {
   /// What the absence of points costs: where a patch between a cell of the solid and one that is not has fewer points
   /// than this share of what its area lets expect, those that are missing. A quarter: a surface of which most was
@@ -97,11 +109,11 @@ struct CellSolveOptions {
 };
 
 struct CellSolution {
-  CsgTree tree = {};           ///< over the primitives
-  double least_evidence = 0;   ///< the one that was taken
-  double cost = 0;             ///< of the tree's cells: see cost_of()
-  std::size_t open_cells = 0;  ///< those whose labels were not sure enough
-  std::size_t peeled = 0;      ///< primitives that were split off since they are wholly in, or wholly out of, the rest
+  CsgTree tree = {};                       ///< over the primitives
+  double least_evidence = 0;               ///< the one that was taken
+  double cost = 0;                         ///< of the tree's cells: see cost_of()
+  std::vector<CellIndex> open_cells = {};  ///< those whose labels were not sure enough, ascending
+  std::size_t peeled = 0;  ///< primitives that were split off since they are wholly in, or wholly out of, the rest
   std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
   std::size_t least_leaves = 0;         ///< it is proved that no tree with the labels that are sure has fewer
   bool is_complete = true;              ///< false when it was stopped early

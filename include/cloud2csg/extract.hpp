@@ -109,11 +109,13 @@ struct MergeStatistics {
 struct CellStatistics {
   std::size_t cells = 0, patches = 0;  ///< that occur in space
   std::size_t open_cells = 0;          ///< of which it is not sure whether they are in the solid
-  double speaking_points = 0;          ///< points that say something of the cells
-  double contradicted_points = 0;      ///< of these, those that the tree contradicts, and those that it would need more
-  std::size_t peeled = 0;              ///< primitives that were split off
-  std::vector<std::size_t> cores;      ///< how many primitives the rests had that were solved by formula
-  bool is_minimal = false;             ///< it is proved that no smaller tree of its primitives has all sure labels
+  /// Of these and of cells that were not found, the share in the volume that the primitives take up: estimated.
+  double open_volume = 0;
+  double speaking_points = 0;      ///< points that say something of the cells
+  double contradicted_points = 0;  ///< of these, those that the tree contradicts, and those that it would need more
+  std::size_t peeled = 0;          ///< primitives that were split off
+  std::vector<std::size_t> cores;  ///< how many primitives the rests had that were solved by formula
+  bool is_minimal = false;         ///< it is proved that no smaller tree of its primitives has all sure labels
 };
 
 struct TreeStatistics {
@@ -162,6 +164,13 @@ struct Extraction {
 /// Cancelled when stopped before the search began.
 [[nodiscard]] Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const ExtractOptions& options = {}, const RunContext& run = {});
+
+/// The points that a tree does not explain: farther from its surface than the tolerance, or with a normal that is not
+/// within the angle of the surface's outward one. Ascending. O(points x primitives near each)
+[[nodiscard]] std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const PrimitiveSet& primitives,
+                                                            const PointCloud& cloud,
+                                                            const SegmentationTolerances& tolerances,
+                                                            const RunContext& run = {});
 
 /// The statistics as the JSON of the command line's --stats.
 [[nodiscard]] std::string to_json(const ExtractStatistics& statistics);

@@ -331,8 +331,9 @@ std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLa
   const double least = best->least_evidence;
   if (!best->is_minimal()) try_with(least, &options.minimal);
   best->is_complete = best->is_minimal() || !run.stop.stop_requested();
-  best->open_cells = static_cast<std::size_t>(
-      std::ranges::count_if(labels.evidence, [least](double evidence) { return evidence < least; }));
+  for (CellIndex cell = 0; cell < complex.cells.size(); ++cell) {
+    if (labels.evidence[cell] < least) best->open_cells.push_back(cell);
+  }
   return best;
 }
 

@@ -43,13 +43,24 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
   result.order = std::move(complex.order);
   result.statistics = {.cells = complex.cells.size(),
                        .patches = complex.patches.size(),
-                       .open_cells = solution->open_cells,
+                       .open_cells = solution->open_cells.size(),
                        .speaking_points = labels.points,
                        .contradicted_points = solution->cost,
                        .peeled = solution->peeled,
                        .cores = solution->cores,
                        .is_minimal = solution->is_minimal()};
+  result.open_cells = solution->open_cells;
+  result.complex = std::move(complex);
   return result;
+}
+
+double open_volume(const CellExtraction& extraction, const AlignedBox& box, const RunContext& run) {
+  const CellVolumes volumes = measure_volumes(extraction.complex, extraction.supported.primitives, box, 20'000, run);
+  double open = volumes.elsewhere;
+  for (const CellIndex cell : extraction.open_cells) open += volumes.of_cell[cell];
+  double all = volumes.elsewhere;
+  for (std::size_t cell = 1; cell < volumes.of_cell.size(); ++cell) all += volumes.of_cell[cell];
+  return all > 0 ? open / all : 0;
 }
 
 }  // namespace cloud2csg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cloud2csg/cells.hpp"
 #include "pipeline/preparation.hpp"
 
 namespace cloud2csg {
@@ -11,6 +12,8 @@ struct CellExtraction {
   std::size_t unassigned_points = 0;
   bool is_complete = true;  ///< false when it was stopped early
   SupportedPrimitives supported;
+  CellComplex complex = {};
+  std::vector<CellIndex> open_cells = {};
   std::vector<std::string> warnings;
   std::vector<std::uint32_t> order;  ///< all points, so that neighbours are near each other
 
@@ -25,5 +28,8 @@ struct CellExtraction {
                                                              const Scale& scale, const ExtractOptions& options,
                                                              const RunContext& run, const RunContext& search_run,
                                                              StageSeconds& seconds);
+
+/// See CellStatistics::open_volume. `box` is that of the cloud.
+[[nodiscard]] double open_volume(const CellExtraction& extraction, const AlignedBox& box, const RunContext& run);
 
 }  // namespace cloud2csg

@@ -294,7 +294,7 @@ class Extractor {
       return;
     }
     statistics_.fit = fit_of(tree, run);
-    if (statistics_.clique_histogram.empty() && by_cells_) describe_overlaps(run);
+    if (statistics_.cells) describe_cells(run);
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
@@ -308,10 +308,12 @@ class Extractor {
     if (!statistics_.complete) statistics_.warnings.emplace_back("stopped early: this is the best tree so far");
   }
 
-  /// The cells do without the overlap graph; who reads the statistics wants to see it.
-  void describe_overlaps(const RunContext& run) {
+  /// What the way by cells does without, and who reads the statistics wants to see.
+  void describe_cells(const RunContext& run) {
     RunContext to_the_end = run;
     to_the_end.stop = {};
+    statistics_.cells->open_volume = open_volume(*by_cells_, bounds_of(cloud_.positions), to_the_end);
+    if (!statistics_.clique_histogram.empty()) return;
     const OverlapGraph graph = overlap_graph_of(cloud_, by_cells_->supported.primitives, scale_, options_, to_the_end);
     statistics_.clique_histogram = clique_histogram(maximal_cliques(graph));
     statistics_.components = connected_components(graph).size();

@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "cloud2csg/restrict.hpp"
+#include "fitness/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -129,6 +130,19 @@ double quantile_95(std::vector<double>& values) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const PrimitiveSet& primitives,
+                                              const PointCloud& cloud, const SegmentationTolerances& tolerances,
+                                              const RunContext& run) {
+  const std::vector<std::uint32_t> order = spatial_order(cloud.positions, bounds_of(cloud.positions), run);
+  const PointFit points = FitMeasure(tree, primitives, cloud, tolerances.distance, run, order).measure();
+  const double largest_angle = std::acos(tolerances.cosine);
+  std::vector<std::uint32_t> unexplained;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (!(points.distances[i] <= tolerances.distance) || !(points.angles[i] <= largest_angle)) unexplained.push_back(i);
+  }
+  return unexplained;
+}
 
 FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
                           const Objective& objective, double noise, const RunContext& run,

@@ -71,6 +71,7 @@ Json cells_json(const CellStatistics& s) {
   return {{"cells", s.cells},
           {"patches", s.patches},
           {"open_cells", s.open_cells},
+          {"open_volume", s.open_volume},
           {"speaking_points", s.speaking_points},
           {"contradicted_points", s.contradicted_points},
           {"peeled", s.peeled},

@@ -80,7 +80,7 @@ void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& 
       const double square = gx * gx + gy * gy + gz * gz;
       const bool agrees = (dot * dot >= least_square * square) & (square > 0);
       const double distance = std::abs(field.distances[i]);
-      nearest[i] = agrees & (distance < nearest[i]) ? distance : nearest[i];
+      nearest[i] = (agrees & (distance < nearest[i])) ? distance : nearest[i];
     }
   }
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -87,6 +88,23 @@ TEST_F(Extract, PresetsAndStrategiesAreTaken) {
   EXPECT_EQ(strategy_of({"--strategy", "cells"}), "cells");
   EXPECT_EQ(strategy_of({"--preset", "paper"}), "partition");
   EXPECT_EQ(strategy_of({"--preset", "paper", "--strategy", "baseline"}), "baseline");
+}
+
+TEST_F(Extract, UnexplainedPointsAreWritten) {
+  const std::string cloud = sampled("m0.json", "3000");
+  const auto unexplained_with = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"extract", cloud,          "--primitives",  shipped("m0.json"),
+                                       "-o",      path("m.json"), "--unexplained", path("rest.xyz")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string rest = read_file(path("rest.xyz"));
+    return std::count(rest.begin(), rest.end(), '\n');
+  };
+  const auto few = unexplained_with({});
+  EXPECT_GT(few, 0);
+  EXPECT_LT(few, 600);  // at edges, where noise turns the nearest surface by a right angle
+  EXPECT_GT(unexplained_with({"--distance-tolerance", "0.005"}), 2 * few);
 }
 
 TEST_F(Extract, PrecisionIsTaken) {

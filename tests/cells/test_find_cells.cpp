@@ -170,5 +170,18 @@ TEST(FindCells, GivesNothingOnAStop) {
                Cancelled);
 }
 
+TEST(MeasureVolumes, AreThoseOfBoxesThatOverlap) {
+  const PrimitiveSet primitives{test::placed("a", Box{{2, 1, 1}}, {0, 0, 0}),
+                                test::placed("b", Box{{2, 1, 1}}, {1, 0, 0})};
+  const CellComplex complex{.cells = {{}, {0}, {0, 1}}, .patches = {}, .points_of_primitive = {1, 1}, .order = {}};
+  const AlignedBox box(Eigen::Vector3d(-2, -1, -1), Eigen::Vector3d(3, 1, 1));
+  const CellVolumes volumes = measure_volumes(complex, primitives, box, 40'000);
+  EXPECT_NEAR(volumes.of_cell[0], 17, 0.3);
+  EXPECT_NEAR(volumes.of_cell[1], 1, 0.1);
+  EXPECT_NEAR(volumes.of_cell[2], 1, 0.1);
+  EXPECT_NEAR(volumes.elsewhere, 1, 0.1);  // {1} is not among the cells
+  EXPECT_NEAR(volumes.of_cell[0] + volumes.of_cell[1] + volumes.of_cell[2] + volumes.elsewhere, 20, 1e-9);
+}
+
 }  // namespace
 }  // namespace cloud2csg

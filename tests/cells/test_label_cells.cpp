@@ -75,7 +75,8 @@ RC_GTEST_PROP(LabelCells, CostOfAnyLabelsIsThatOfThePatches, (std::uint64_t seed
   Labels is_in(complex.cells.size());
   for (std::size_t c = 0; c < is_in.size(); ++c) is_in[c] = random.chance(0.5);
   const double density = random.uniform(0, 5);
-  RC_ASSERT(std::abs(cost_of(complex, is_in, density) - plain_cost(complex, is_in, density, LabelOptions{}.absence)) < 1e-9);
+  RC_ASSERT(std::abs(cost_of(complex, is_in, density) - plain_cost(complex, is_in, density, LabelOptions{}.absence)) <
+            1e-9);
 }
 
 RC_GTEST_PROP(LabelCells, EvidenceIsWhatAChangeOfOneLabelCosts, (std::uint64_t seed)) {

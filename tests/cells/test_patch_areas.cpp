@@ -17,7 +17,9 @@ CellComplex cells_of(const PrimitiveSet& primitives, std::size_t samples) {
   const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 50, .seed = 1});
   constexpr double k_noise = 0.0005;
   return find_cells(cloud, primitives,
-                    {.tolerances = segmentation_tolerances({}, k_noise), .noise = k_noise, .samples = samples});
+                    {.tolerances = segmentation_tolerances({}, k_noise),
+                     .noise = k_noise,
+                     .samples = {.base = samples, .a_neighbour = 0, .most = samples}});
 }
 
 /// Of the patch between two cells; 0 where there is none.
