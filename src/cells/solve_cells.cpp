@@ -2,6 +2,8 @@
 #include <bit>
 #include <numeric>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "cells/decompose.hpp"
 #include "cloud2csg/cells.hpp"
@@ -11,13 +13,11 @@
 namespace cloud2csg {
 namespace {
 
-struct CellHash {
-  std::size_t operator()(const Cell& cell) const {
-    std::uint64_t hash = cell.size();
-    for (const PrimitiveIndex p : cell) hash = (hash ^ p) * 0x9e37'79b9'7f4a'7c15ULL + (hash >> 32U);
-    return hash;
-  }
-};
+std::size_t hash_of(const Cell& cell) {
+  std::uint64_t hash = cell.size();
+  for (const PrimitiveIndex p : cell) hash = (hash ^ p) * 0x9e37'79b9'7f4a'7c15ULL + (hash >> 32U);
+  return hash;
+}
 
 Cell without(const Cell& cell, PrimitiveIndex primitive) {
   Cell rest = cell;
@@ -37,24 +37,32 @@ class KnownCells {
  public:
   /// Where the cell outside of all is in, all labels are taken for their opposite.
   KnownCells(const CellComplex& complex, const CellLabels& labels, double least_evidence)
-      : cells_of_(complex.points_of_primitive.size()) {
+      : cells_of_(complex.points_of_primitive.size()), index_(complex.cells.size(), Hash{this}, Equal{this}) {
     for (CellIndex c = 0; c < complex.cells.size(); ++c) {
       if (labels.evidence[c] < least_evidence) continue;
-      is_in_.emplace(complex.cells[c], labels.is_in[c] != labels.is_in.front());
-      for (const PrimitiveIndex p : complex.cells[c]) cells_of_[p].push_back(complex.cells[c]);
+      for (const PrimitiveIndex p : complex.cells[c]) cells_of_[p].push_back(cells_.size());
+      cells_.push_back({complex.cells[c], labels.is_in[c] != labels.is_in.front()});
     }
-    for (PrimitiveIndex p = 0; p < cells_of_.size(); ++p) essential_ += is_needed(p) ? 1 : 0;
+    for (std::size_t c = 0; c < cells_.size(); ++c) index_.insert(c);
+    std::vector<bool> is_essential(cells_of_.size());
+    for (PrimitiveIndex p = 0; p < cells_of_.size(); ++p) is_essential[p] = is_needed(p);
+    essential_ = static_cast<std::size_t>(std::ranges::count(is_essential, true));
+    // Those stay so, whatever else is left out.
     for (const PrimitiveIndex p : least_seen_first(complex)) {
-      if (!is_needed(p)) leave_out(p);
+      if (!is_essential[p] && !is_needed(p)) leave_out(p);
     }
   }
+  KnownCells(const KnownCells&) = delete;
+  KnownCells& operator=(const KnownCells&) = delete;
+  KnownCells(KnownCells&&) = delete;
+  KnownCells& operator=(KnownCells&&) = delete;
+  ~KnownCells() = default;
 
-  [[nodiscard]] std::vector<KnownCell> sorted() const {
-    std::vector<KnownCell> cells;
-    cells.reserve(is_in_.size());
-    for (const auto& [cell, is_in] : is_in_) cells.push_back({cell, is_in});
-    std::ranges::sort(cells, {}, &KnownCell::cell);
-    return cells;
+  /// Leaves none behind.
+  [[nodiscard]] std::vector<KnownCell> take_sorted() {
+    std::erase_if(cells_, [](const KnownCell& known) { return !known.is_open; });
+    std::ranges::sort(cells_, {}, &KnownCell::cell);
+    return std::move(cells_);
   }
 
   /// How many primitives any tree needs.
@@ -63,6 +71,21 @@ class KnownCells {
   [[nodiscard]] bool are_all_essential() const { return left_out_ == 0; }
 
  private:
+  /// The index holds places in cells_, and is asked for cells.
+  struct Hash {
+    using is_transparent = void;
+    const KnownCells* known;
+    std::size_t operator()(std::size_t place) const { return hash_of(known->cells_[place].cell); }
+    std::size_t operator()(const Cell& cell) const { return hash_of(cell); }
+  };
+  struct Equal {
+    using is_transparent = void;
+    const KnownCells* known;
+    bool operator()(std::size_t a, std::size_t b) const { return known->cells_[a].cell == known->cells_[b].cell; }
+    bool operator()(std::size_t place, const Cell& cell) const { return known->cells_[place].cell == cell; }
+    bool operator()(const Cell& cell, std::size_t place) const { return known->cells_[place].cell == cell; }
+  };
+
   /// By the points on the patches between a cell that they hold and one that they do not.
   static std::vector<PrimitiveIndex> least_seen_first(const CellComplex& complex) {
     std::vector<double> seen(complex.points_of_primitive.size());
@@ -81,28 +104,27 @@ class KnownCells {
 
   /// Whether two cells differ in nothing but the primitive, and in their label.
   [[nodiscard]] bool is_needed(PrimitiveIndex p) const {
-    return std::ranges::any_of(cells_of_[p], [&](const Cell& cell) {
-      const auto self = is_in_.find(cell);
-      const auto other = is_in_.find(without(cell, p));
-      return self != is_in_.end() && other != is_in_.end() && self->second != other->second;
+    return std::ranges::any_of(cells_of_[p], [&](std::size_t c) {
+      if (!cells_[c].is_open) return false;
+      const auto other = index_.find(without(cells_[c].cell, p));
+      return other != index_.end() && cells_[*other].is_in != cells_[c].is_in;
     });
   }
 
   void leave_out(PrimitiveIndex p) {
     left_out_ += cells_of_[p].empty() ? 0 : 1;
-    for (const Cell& cell : cells_of_[p]) {
-      const auto found = is_in_.find(cell);
-      if (found == is_in_.end()) continue;
-      const bool is_in = found->second;
-      is_in_.erase(found);
-      Cell rest = without(cell, p);
-      if (!is_in_.try_emplace(rest, is_in).second) continue;
-      for (const PrimitiveIndex other : rest) cells_of_[other].push_back(rest);
+    for (const std::size_t c : cells_of_[p]) {
+      if (!cells_[c].is_open) continue;
+      index_.erase(index_.find(c));
+      std::erase(cells_[c].cell, p);
+      // Not open: it has become the same as another.
+      cells_[c].is_open = index_.insert(c).second;
     }
   }
 
-  std::unordered_map<Cell, bool, CellHash> is_in_;
-  std::vector<std::vector<Cell>> cells_of_;  // by primitive; some of them are no longer in is_in_
+  std::vector<KnownCell> cells_;
+  std::vector<std::vector<std::size_t>> cells_of_;  // by primitive
+  std::unordered_set<std::size_t, Hash, Equal> index_;
   std::size_t essential_ = 0, left_out_ = 0;
 };
 
@@ -265,9 +287,9 @@ std::vector<CsgTree> leaves(const std::vector<PrimitiveIndex>& primitives) {
 std::optional<CellSolution> solve_sure_cells(const CellComplex& complex, const CellLabels& labels,
                                              double least_evidence, const MinimalFormulaOptions* minimal,
                                              const RunContext& run) {
-  const KnownCells known(complex, labels, least_evidence);
+  KnownCells known(complex, labels, least_evidence);
   const std::size_t primitives = complex.points_of_primitive.size();
-  Peeler peeler(known.sorted(), primitives);
+  Peeler peeler(known.take_sorted(), primitives);
   const std::vector<Peeler::Round> rounds = peeler.peel();
   CellSolution solution{.least_evidence = least_evidence};
   std::vector<CsgTree> trees;
