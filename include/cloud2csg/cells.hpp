@@ -69,7 +69,7 @@ struct CellVolumes {
 
 /// Estimated by so many places in the box, always the same. O(places x primitives)
 [[nodiscard]] CellVolumes measure_volumes(const CellComplex& complex, const PrimitiveSet& primitives,
-                                          const AlignedBox& box, std::size_t places = 20'000,
+                                          const AlignedBox& box, std::size_t places = 5'000,
                                           const RunContext& run = {});
 
 struct LabelOptions {

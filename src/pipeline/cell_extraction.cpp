@@ -55,7 +55,7 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
 }
 
 double open_volume(const CellExtraction& extraction, const AlignedBox& box, const RunContext& run) {
-  const CellVolumes volumes = measure_volumes(extraction.complex, extraction.supported.primitives, box, 20'000, run);
+  const CellVolumes volumes = measure_volumes(extraction.complex, extraction.supported.primitives, box, 5'000, run);
   double open = volumes.elsewhere;
   for (const CellIndex cell : extraction.open_cells) open += volumes.of_cell[cell];
   double all = volumes.elsewhere;
