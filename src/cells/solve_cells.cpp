@@ -290,7 +290,7 @@ std::optional<CellSolution> solve_sure_cells(const CellComplex& complex, const C
   KnownCells known(complex, labels, least_evidence);
   const std::size_t primitives = complex.points_of_primitive.size();
   Peeler peeler(known.take_sorted(), primitives);
-  const std::vector<Peeler::Round> rounds = peeler.peel();
+  std::vector<Peeler::Round> rounds = peeler.peel();
   CellSolution solution{.least_evidence = least_evidence};
   std::vector<CsgTree> trees;
   const std::vector<Core> cores = cores_of(peeler.cells(), primitives);
@@ -303,10 +303,11 @@ std::optional<CellSolution> solve_sure_cells(const CellComplex& complex, const C
     trees.push_back(std::move(solved.tree));
   }
   CsgTree tree = unite_all(trees);
-  for (auto round = rounds.rbegin(); round != rounds.rend(); ++round) {
-    const CsgTree split = unite_all(leaves(round->primitives));
-    solution.peeled += round->primitives.size();
-    tree = round->are_in ? unite(tree, split) : subtract(tree, split);
+  std::ranges::reverse(rounds);
+  for (const Peeler::Round& round : rounds) {
+    const CsgTree split = unite_all(leaves(round.primitives));
+    solution.peeled += round.primitives.size();
+    tree = round.are_in ? unite(tree, split) : subtract(tree, split);
   }
   // Each core needs its leaves, and what was split off one each; but other choices of what to leave out may need fewer.
   solution.least_leaves += solution.peeled;
@@ -341,7 +342,7 @@ std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLa
   };
   std::size_t sure = complex.cells.size() + 1;
   for (const double least_evidence : options.least_evidence) {
-    const std::size_t as_sure = static_cast<std::size_t>(std::ranges::count_if(
+    const auto as_sure = static_cast<std::size_t>(std::ranges::count_if(
         labels.evidence, [least_evidence](double evidence) { return evidence >= least_evidence; }));
     if (as_sure == sure) continue;  // the same cells as before
     sure = as_sure;
