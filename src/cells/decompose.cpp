@@ -89,32 +89,9 @@ KnownRows without_needless(KnownRows rows) {
 
 /// A formula's value at an assignment.
 bool is_true(const CsgTree& formula, Assignment row) {
-  std::vector<bool> values;
-  for (const CsgNode node : formula.nodes()) {
-    switch (node.operation()) {
-      case Operation::primitive:
-        values.push_back((row >> node.primitive() & 1U) != 0);
-        break;
-      case Operation::empty:
-        values.push_back(false);
-        break;
-      case Operation::full:
-        values.push_back(true);
-        break;
-      case Operation::complement:
-        values.back() = !values.back();
-        break;
-      default: {
-        const bool second = values.back();
-        values.pop_back();
-        const bool first = values.back();
-        values.back() = node.operation() == Operation::union_of       ? first || second
-                        : node.operation() == Operation::intersection ? first && second
-                                                                      : first && !second;
-      }
-    }
-  }
-  return values.back();
+  std::vector<bool> values(k_most_variables);
+  for_each_variable(row, [&values](std::size_t variable) { values[variable] = true; });
+  return contains(formula, values);
 }
 
 /// Disjoint sets of variables such that the function is a union of functions of one each.

@@ -30,6 +30,14 @@ struct BlockField {
   alignas(64) std::array<Real, k_block_points> distance{}, gradient_x{}, gradient_y{}, gradient_z{};
 };
 
+template <class Real>
+[[nodiscard]] BasicFieldSpans<Real> spans_of(BlockField<Real>& field) {
+  return {.distance = field.distance,
+          .gradient_x = field.gradient_x,
+          .gradient_y = field.gradient_y,
+          .gradient_z = field.gradient_z};
+}
+
 /// Units of contributions, a point of a block each.
 using Units = std::array<std::uint32_t, k_block_points>;
 

@@ -129,11 +129,7 @@ class Worker {
     ActivePrimitive<Real>& active = active_[active_count_++];
     active.primitive = p;
     BlockField<Real>& field = active.field;
-    evaluate_field(input_.primitives[p], blocks_.positions(block),
-                   BasicFieldSpans<Real>{.distance = field.distance,
-                                         .gradient_x = field.gradient_x,
-                                         .gradient_y = field.gradient_y,
-                                         .gradient_z = field.gradient_z});
+    evaluate_field(input_.primitives[p], blocks_.positions(block), spans_of(field));
     compute_contributions(field, blocks_.normals(block), input_.parameters[p], active.contributions);
   }
 
