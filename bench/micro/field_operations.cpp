@@ -20,7 +20,7 @@ struct OnePoint {
 }  // namespace
 
 OperationCount field_operations(const Primitive& primitive) {
-  assert(!primitive.displacement && !std::holds_alternative<Expression>(primitive.shape));
+  assert(is_plain(primitive));
   OperationCount count;
   formulas::run_formula(CountingTag{&count}, primitive, placement_of(primitive.pose), OnePoint{});
   return count;

@@ -60,4 +60,13 @@ void for_each_index(std::size_t count, const RunContext& run, const Work& work) 
   arena.execute([&] { for_each_index_in_arena(count, run, one); });
 }
 
+/// The same for calls that are so short that handing them out one by one would take longer: `chunk` of them at a time.
+template <typename Work>
+void for_each_index_by_chunks(std::size_t count, std::size_t chunk, const RunContext& run, const Work& work) {
+  for_each_index((count + chunk - 1) / chunk, run, [&](std::size_t c) {
+    const std::size_t end = std::min(count, (c + 1) * chunk);
+    for (std::size_t i = c * chunk; i < end; ++i) work(i);
+  });
+}
+
 }  // namespace cloud2csg

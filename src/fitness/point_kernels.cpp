@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "fitness/mask_bits-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -71,15 +73,6 @@ HWY_INLINE auto units_of(V v) {
   return hn::BitCast(d, v + hn::Set(hn::DFromV<V>(), 2.0F)) - hn::Set(d, std::uint32_t{0x4000'0000});
 }
 static_assert(k_unit == 1.0 / (1U << 22U));
-
-/// Read back byte by byte: a wider load would have to wait for the store.
-template <class D, class M>
-HWY_INLINE std::uint64_t bits_of(D tag, M mask) {
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(tag, mask, bytes.data());
-  return bytes[0] | std::uint64_t{bytes[1]} << 8U;
-}
-static_assert(hn::MaxLanes(hn::ScalableTag<float>()) <= 16);
 
 template <class Real>
 void find_range(const BlockField<Real>& field, BlockContributions<Real>& out) {

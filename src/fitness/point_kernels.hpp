@@ -5,18 +5,13 @@
 #include <cstdint>
 
 #include "cloud2csg/rank_classes.hpp"
+#include "fitness/block_mask.hpp"
 #include "fitness/contribution_units.hpp"
 
 /// The vectorised inner loop of the pass over the points: what one primitive contributes at each point of a block. Only
 /// operations that IEEE 754 defines to the bit are used, in one order, so that every instruction set gives the same
 /// result. `Real` is double or float.
 namespace cloud2csg {
-
-/// Points a block. A multiple of 64; its columns for some 20 primitives stay in the second-level cache.
-inline constexpr std::size_t k_block_points = 256;
-
-/// One bit a point of a block.
-using BlockMask = std::array<std::uint64_t, k_block_points / 64>;
 
 /// The unit normals of a block of points; entries past the block's end may be anything finite.
 template <class Real>

@@ -18,11 +18,6 @@ bool is_single_enough(const AlignedBox& box, const PrimitiveSet& primitives, con
   return !far_side_counts(options.objective.gamma) && is_single_enough(box, primitives, options.noise);
 }
 
-/// Whether the gradient has length one wherever it is defined: all but what a user's formula or a displacement bends.
-bool has_unit_gradient(const Primitive& primitive) {
-  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
-}
-
 /// Where points may belong to each primitive, with room for what rounding does.
 std::vector<AlignedBox> reach_of(const PrimitiveSet& primitives, const AlignedBox& box, double distance) {
   const double largest = (box.isEmpty() ? 0.0 : box.diagonal().norm()) + box.center().norm();
@@ -61,7 +56,7 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
   link_roots(input);
   move_to_frame<Real>(input.primitives, PointBlocks<Real>::origin(box));
   for (const Primitive& primitive : input.primitives) {
-    input.parameters.push_back({scale.beta, scale.gamma, options.tolerances, has_unit_gradient(primitive)});
+    input.parameters.push_back({scale.beta, scale.gamma, options.tolerances, is_plain(primitive)});
   }
   if (primitives.size() > k_many_primitives) {
     input.reach = reach_of(input.primitives, box, options.tolerances.distance);

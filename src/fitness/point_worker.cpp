@@ -10,29 +10,12 @@
 namespace cloud2csg {
 namespace {
 
-BlockMask first_bits(std::size_t count) {
-  BlockMask mask{};
-  for (std::size_t w = 0; w < mask.size(); ++w) {
-    const std::size_t bits = count > 64 * w ? std::min<std::size_t>(count - 64 * w, 64) : 0;
-    mask[w] = bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-  }
-  return mask;
-}
-
 /// Of the points begin .. begin + count - 1, those whose place is a multiple of the stride.
 BlockMask every_kth(std::size_t begin, std::size_t count, std::size_t stride) {
-  if (stride == 1) return first_bits(count);
+  if (stride == 1) return first_points(count);
   BlockMask mask{};
-  for (std::size_t i = (stride - begin % stride) % stride; i < count; i += stride) {
-    mask[i / 64] |= std::uint64_t{1} << (i % 64);
-  }
+  for (std::size_t i = (stride - begin % stride) % stride; i < count; i += stride) add_point(mask, i);
   return mask;
-}
-
-std::size_t count_bits(const BlockMask& mask) {
-  std::size_t count = 0;
-  for (const std::uint64_t word : mask) count += static_cast<std::size_t>(std::popcount(word));
-  return count;
 }
 
 /// A primitive that is looked at in a block.
@@ -105,19 +88,17 @@ class Worker {
     for (const PrimitiveIndex p : near_chunk_) {
       if (input_.reach.empty() || input_.reach[p].intersects(bounds_)) evaluate(p, block);
     }
-    const BlockMask in_block = first_bits(blocks_.size(block));
+    const BlockMask in_block = first_points(blocks_.size(block));
     BlockMask assigned{};
     for (std::size_t slot = 0; slot < active_count_; ++slot) {
       BlockMask& member = active_[slot].contributions.member;
-      for (std::size_t w = 0; w < member.size(); ++w) {
-        member[w] &= in_block[w];
-        assigned[w] |= member[w];
-      }
-      const std::size_t members = count_bits(member);
+      member = both(member, in_block);
+      assigned = either(assigned, member);
+      const std::size_t members = point_count(member);
       share_.points_of_primitive[active_[slot].primitive] += members;
       active_[slot].has_members = members > 0;
     }
-    share_.unassigned += blocks_.size(block) - count_bits(assigned);
+    share_.unassigned += blocks_.size(block) - point_count(assigned);
     segmented_count_ = active_count_;
   }
 
@@ -164,11 +145,9 @@ class Worker {
     BlockMask any{};
     for (const PrimitiveIndex p : root.owners) {
       if (slot_of_[p] >= segmented_count_) continue;
-      const BlockMask& member = active(p).contributions.member;
-      for (std::size_t w = 0; w < any.size(); ++w) any[w] |= member[w];
+      any = either(any, active(p).contributions.member);
     }
-    for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= any[w];
-    return chosen;
+    return both(chosen, any);
   }
 
   /// A side of a region, rounded as the points are, so that all that look at it see it at one place.
@@ -186,7 +165,7 @@ class Worker {
     const Eigen::Array<Real, 3, 1> most = rounded(region.max());
     for (std::size_t i = 0; i < k_block_points; ++i) {
       const Eigen::Array<Real, 3, 1> point(points.x[i], points.y[i], points.z[i]);
-      if ((point < least || point >= most).any()) chosen[i / 64] &= ~(std::uint64_t{1} << (i % 64));
+      if ((point < least || point >= most).any()) remove_point(chosen, i);
     }
   }
 
@@ -195,7 +174,7 @@ class Worker {
     for (std::size_t slot = 0; slot < segmented_count_; ++slot) {
       const ActivePrimitive<Real>& other = active_[slot];
       if (std::ranges::binary_search(root.primitives, other.primitive)) continue;
-      for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] &= ~other.contributions.inside[w];
+      chosen = without(chosen, other.contributions.inside);
     }
   }
 

@@ -14,7 +14,8 @@ Pose compose(const Pose& outer, const Pose& inner) {
 }
 
 Pose pose_from_axis(const Eigen::Vector3d& position, const Eigen::Vector3d& axis) {
-  return {.position = position, .orientation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis)};
+  return {.position = position,
+          .orientation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).normalized()};
 }
 
 AlignedBox enclosing_box(const OrientedBox& box) {

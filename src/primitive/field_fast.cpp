@@ -227,10 +227,10 @@ void evaluate_in_double(const Primitive& primitive, BasicPointsView<float> point
 void evaluate_field(const Primitive& primitive, BasicPointsView<float> points, const BasicFieldSpans<float>& out) {
   assert(out.distance.size() == points.size() && out.gradient_x.size() == points.size() &&
          out.gradient_y.size() == points.size() && out.gradient_z.size() == points.size());
-  if (primitive.displacement || std::holds_alternative<Expression>(primitive.shape)) {
-    evaluate_in_double(primitive, points, out);
-  } else {
+  if (is_plain(primitive)) {
     HWY_DYNAMIC_DISPATCH(evaluate_shape_in_single)(primitive, placement_of(primitive.pose), points, out);
+  } else {
+    evaluate_in_double(primitive, points, out);
   }
 }
 

@@ -14,14 +14,16 @@ std::string_view type_name(const Shape& shape) {
   return k_names[shape.index()];
 }
 
+bool is_plain(const Primitive& primitive) {
+  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
+}
+
 bool has_exact_distance(const Primitive& primitive) {
-  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape) &&
-         !std::holds_alternative<Polytope>(primitive.shape);
+  return is_plain(primitive) && !std::holds_alternative<Polytope>(primitive.shape);
 }
 
 bool is_convex(const Primitive& primitive) {
-  return !primitive.displacement && !std::holds_alternative<Torus>(primitive.shape) &&
-         !std::holds_alternative<Expression>(primitive.shape);
+  return is_plain(primitive) && !std::holds_alternative<Torus>(primitive.shape);
 }
 
 }  // namespace cloud2csg

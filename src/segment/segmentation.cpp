@@ -8,6 +8,8 @@
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/robust_deviation.hpp"
+#include "primitive/sampled_field.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -24,28 +26,11 @@ double cosine_of_deg(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180.0);
 }
 
-/// A primitive's field at some points.
-struct Field {
-  std::vector<double> distances;
-  Points slopes;
-
-  /// Whether the point's normal is along the slope, or against it, to within an angle with this cosine. False where
-  /// there is no slope.
-  [[nodiscard]] bool agrees(std::size_t point, const Eigen::Vector3d& normal, double least_cosine) const {
-    const Eigen::Vector3d slope = slopes[point];
-    const double length = slope.norm();
-    return length > 0 && std::abs(slope.dot(normal)) / length >= least_cosine;
-  }
-};
-
-Field field_of(const Primitive& primitive, PointsView positions) {
-  Field field{std::vector<double>(positions.size()), Points(positions.size())};
-  evaluate_field(primitive, positions,
-                 {.distance = field.distances,
-                  .gradient_x = field.slopes.x,
-                  .gradient_y = field.slopes.y,
-                  .gradient_z = field.slopes.z});
-  return field;
+/// Whether a point's normal is along the slope, or against it, to within an angle with this cosine. False where there
+/// is no slope.
+bool agrees(const Eigen::Vector3d& slope, const Eigen::Vector3d& normal, double least_cosine) {
+  const double length = slope.norm();
+  return length > 0 && std::abs(slope.dot(normal)) / length >= least_cosine;
 }
 
 struct Sample {
@@ -70,26 +55,19 @@ void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& 
                   std::span<double> nearest) {
   const double least_square = least_cosine * least_cosine;
   for (const Primitive& primitive : primitives) {
-    const Field field = field_of(primitive, positions);
-    // As Field::agrees(), without roots and branches.
+    const SampledField field = sample_field(primitive, positions);
+    // As agrees(), without roots and branches.
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const double gx = field.slopes.x[i];
       const double gy = field.slopes.y[i];
       const double gz = field.slopes.z[i];
       const double dot = gx * normals.x[i] + gy * normals.y[i] + gz * normals.z[i];
       const double square = gx * gx + gy * gy + gz * gz;
-      const bool agrees = (dot * dot >= least_square * square) & (square > 0);
+      const bool is_along = (dot * dot >= least_square * square) & (square > 0);
       const double distance = std::abs(field.distances[i]);
-      nearest[i] = (agrees & (distance < nearest[i])) ? distance : nearest[i];
+      nearest[i] = (is_along & (distance < nearest[i])) ? distance : nearest[i];
     }
   }
-}
-
-/// Standard deviation of a normal distribution from the median of absolute values. Reorders them.
-double robust_deviation(std::vector<double>& absolute_values) {
-  const auto middle = absolute_values.begin() + static_cast<std::ptrdiff_t>(absolute_values.size() / 2);
-  std::nth_element(absolute_values.begin(), middle, absolute_values.end());
-  return 1.4826 * *middle;
 }
 
 }  // namespace
@@ -128,11 +106,11 @@ Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primiti
   std::vector<bool> assigned(cloud.size(), false);
   for (const Primitive& primitive : primitives) {
     run.throw_if_stopped();
-    const Field field = field_of(primitive, cloud.positions);
+    const SampledField field = sample_field(primitive, cloud.positions);
     std::vector<std::uint32_t>& points = result.points_of.emplace_back();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const bool is_near = std::abs(field.distances[i]) <= tolerances.distance;
-      if (!is_near || !field.agrees(i, cloud.normals[i], tolerances.cosine)) continue;
+      if (!is_near || !agrees(field.slopes[i], cloud.normals[i], tolerances.cosine)) continue;
       points.push_back(static_cast<std::uint32_t>(i));
       assigned[i] = true;
     }

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "primitive/sampled_field.hpp"
+#include "tree/taken.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -182,11 +184,7 @@ void for_each_value(const CsgTree& tree, const PrimitiveSet& primitives, PointsV
   }
 }
 
-/// The points at which a tree takes the value of one primitive, and with which sign.
-struct Taken {
-  std::vector<std::size_t> points;
-  std::vector<double> signs;
-};
+}  // namespace
 
 std::vector<Taken> taken_by_primitive(const CsgTree& tree, const PrimitiveSet& primitives, PointsView points) {
   std::vector<Taken> taken(primitives.size());
@@ -201,8 +199,6 @@ std::vector<Taken> taken_by_primitive(const CsgTree& tree, const PrimitiveSet& p
   });
   return taken;
 }
-
-}  // namespace
 
 std::vector<double> implicit_value(const CsgTree& tree, const PrimitiveSet& primitives, PointsView points) {
   std::vector<double> result(points.size());
@@ -219,13 +215,9 @@ Points implicit_gradient(const CsgTree& tree, const PrimitiveSet& primitives, Po
     if (taken[p].points.empty()) continue;
     Points gathered(taken[p].points.size());
     for (std::size_t i = 0; i < gathered.size(); ++i) gathered.set(i, points[taken[p].points[i]]);
-    std::vector<double> distances(gathered.size());
-    Points gradients(gathered.size());
-    evaluate_field(
-        primitives[p], gathered,
-        {.distance = distances, .gradient_x = gradients.x, .gradient_y = gradients.y, .gradient_z = gradients.z});
+    const SampledField field = sample_field(primitives[p], gathered);
     for (std::size_t i = 0; i < gathered.size(); ++i) {
-      result.set(taken[p].points[i], taken[p].signs[i] * gradients[i]);
+      result.set(taken[p].points[i], taken[p].signs[i] * field.slopes[i]);
     }
   }
   return result;

@@ -155,7 +155,7 @@ RC_GTEST_PROP(BlockKeys, MembersAndHashesAreTheSameOnEveryInstructionSet, (std::
     for (std::size_t i = 0; i < k_block_points; ++i) {
       RC_ASSERT(keys.words[i] == 7U);
       for (std::size_t k = 0; k < masks.size(); ++k) {
-        RC_ASSERT((keys.words[k_block_points + i] >> k & 1U) == (masks[k][i / 64] >> (i % 64) & 1U));
+        RC_ASSERT((keys.words[k_block_points + i] >> k & 1U) == (has_point(masks[k], i) ? 1U : 0U));
       }
     }
     if (target == test::all_targets().front()) first_hashes = keys.hashes;
@@ -348,7 +348,7 @@ TEST(Contributions, AMemberIsNearAndFacesOneOfTheTwoWays) {
     const test::ForcedTarget forced(target);
     BlockContributions<double> out;
     compute_contributions(block.field, block.normals(), parameters, out);
-    const auto is_member = [&out](std::size_t i) { return (out.member[i / 64] >> (i % 64) & 1U) != 0; };
+    const auto is_member = [&out](std::size_t i) { return has_point(out.member, i); };
     EXPECT_TRUE(is_member(0) && is_member(1) && is_member(63)) << hwy::TargetName(target);
     EXPECT_FALSE(is_member(64) || is_member(255) || is_member(2)) << hwy::TargetName(target);
   }

@@ -187,6 +187,13 @@ TEST(TypeName, IsThatOfModelFiles) {
   EXPECT_EQ(type_name(Expression{}), "expression");
 }
 
+TEST(IsPlain, IsFalseForFormulasAndWhatIsDisplaced) {
+  EXPECT_TRUE(is_plain({.id = "q", .shape = Polytope{}}));
+  EXPECT_TRUE(is_plain({.id = "t", .shape = Torus{2, 1}}));
+  EXPECT_FALSE(is_plain({.id = "e", .shape = Expression{}}));
+  EXPECT_FALSE(is_plain({.id = "b", .shape = Box{{1, 1, 1}}, .displacement = Displacement{2}}));
+}
+
 TEST(HasExactDistance, IsFalseForWhatIsOnlyABound) {
   EXPECT_TRUE(has_exact_distance({.id = "c", .shape = Cone{1, 2, 3}}));
   EXPECT_TRUE(has_exact_distance({.id = "h", .shape = HalfSpace{}}));
