@@ -40,7 +40,8 @@ struct MeshingOptions {
 /// Volume enclosed by a closed mesh, positive when it is oriented outward.
 [[nodiscard]] double volume_of(const TriangleMesh& mesh);
 
-/// .stl (binary) .off .obj .ply as assimp reads them; vertices at the same place are joined. @throws Error
+/// .stl .off .obj .ply .3mf .glb as assimp reads them, in single precision; vertices at the same place are joined, and
+/// triangles that lose a corner by it are left out. @throws Error
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);
 /// .stl (binary) .off .obj by the file's ending. Nothing half-written. @throws Error
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);

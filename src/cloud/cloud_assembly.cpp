@@ -11,6 +11,7 @@
 namespace cloud2csg {
 namespace {
 
+constexpr std::array<std::string_view, 3> k_axes{"x", "y", "z"};
 constexpr std::size_t k_points_per_report = std::size_t{1} << 18;
 
 void report_point(const RunContext& run, std::size_t done, std::size_t total) {
@@ -19,19 +20,30 @@ void report_point(const RunContext& run, std::size_t done, std::size_t total) {
   run.report("read", done, total);
 }
 
-void check_position(const FileContent& content, FilePosition where, const Eigen::Vector3d& position) {
-  if (position.allFinite()) return;
+void check_position(const FileContent& content, FilePosition where, InvalidPoints invalid,
+                    const Eigen::Vector3d& position) {
+  if (invalid == InvalidPoints::keep || position.allFinite()) return;
   content.fail(where,
                fmt::format("expected finite coordinates, found ({}, {}, {})", position.x(), position.y(), position.z()),
                "remove invalid points before reading");
 }
 
+void check_sensor(const FileContent& content, FilePosition where, const Eigen::Vector3d& sensor) {
+  if (sensor.allFinite()) return;
+  content.fail(
+      where,
+      fmt::format("expected a finite position of the sensor, found ({}, {}, {})", sensor.x(), sensor.y(), sensor.z()),
+      "give every point the sensor's position, or leave these columns out");
+}
+
 /// The normal at unit length. One that has it already keeps its bits, so that writing and reading changes nothing.
-Eigen::Vector3d unit_normal(const FileContent& content, FilePosition where, const Eigen::Vector3d& normal) {
+Eigen::Vector3d unit_normal(const FileContent& content, FilePosition where, InvalidPoints invalid,
+                            const Eigen::Vector3d& normal) {
   constexpr double k_unit_tolerance = 8 * std::numeric_limits<double>::epsilon();
   if (std::abs(normal.squaredNorm() - 1.0) <= k_unit_tolerance) return normal;
   Eigen::Vector3d unit = normal.stableNormalized();
   if (normal.allFinite() && unit.allFinite() && unit.squaredNorm() > 0.5) return unit;
+  if (invalid == InvalidPoints::keep) return Eigen::Vector3d::Zero();
   content.fail(where,
                fmt::format("expected a normal that is finite and not of length zero, found ({}, {}, {})", normal.x(),
                            normal.y(), normal.z()),
@@ -48,47 +60,57 @@ std::optional<std::size_t> index_of(std::span<const std::string> names, std::str
   return static_cast<std::size_t>(found - names.begin());
 }
 
+/// The columns of x, y, z after one of the prefixes; absent where there is none of them.
+/// @throws Error at `where` when only some are there.
+std::optional<std::array<std::size_t, 3>> find_vector(const FileContent& content, FilePosition where,
+                                                      std::span<const std::string> names,
+                                                      const std::array<std::string_view, 2>& prefixes,
+                                                      std::string_view what) {
+  std::array<std::size_t, 3> columns{};
+  std::size_t found = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::optional<std::size_t> column = index_of(names, fmt::format("{}{}", prefixes[0], k_axes[axis]));
+    if (!column) column = index_of(names, fmt::format("{}{}", prefixes[1], k_axes[axis]));
+    if (!column) continue;
+    columns[axis] = *column;
+    ++found;
+  }
+  if (found == 0) return std::nullopt;
+  if (found < 3) content.fail(where, fmt::format("expected all three coordinates of the {}, or none", what));
+  return columns;
+}
+
 }  // namespace
 
 PointLayout find_layout(const FileContent& content, FilePosition where, std::span<const std::string> names) {
-  constexpr std::array<std::string_view, 3> k_axes{"x", "y", "z"};
   PointLayout layout{};
-  std::array<std::size_t, 3> normal{};
-  std::size_t normals_found = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::optional<std::size_t> position = index_of(names, k_axes[axis]);
     if (!position) content.fail(where, fmt::format("expected coordinates x, y, z; there is no {}", k_axes[axis]));
     layout.position[axis] = *position;
-    std::optional<std::size_t> part = index_of(names, fmt::format("n{}", k_axes[axis]));
-    if (!part) part = index_of(names, fmt::format("normal_{}", k_axes[axis]));
-    if (!part) continue;
-    normal[axis] = *part;
-    ++normals_found;
   }
-  if (normals_found == 3) {
-    layout.normal = normal;
-  } else if (normals_found > 0) {
-    content.fail(where, "expected all three coordinates of the normal, or none");
-  }
+  layout.normal = find_vector(content, where, names, {"n", "normal_"}, "normal");
+  layout.sensor = find_vector(content, where, names, {"sensor_", "vp_"}, "sensor's position");
   return layout;
 }
 
-CloudAssembly::CloudAssembly(const FileContent& content, bool with_normals, std::size_t announced, std::size_t reserve,
-                             const RunContext& run)
-    : content_(content), run_(run), announced_(announced) {
-  cloud_.positions.reserve(reserve);
-  if (with_normals) cloud_.normals.reserve(reserve);
-}
+CloudAssembly::CloudAssembly(const FileContent& content, std::size_t announced, std::size_t reserve,
+                             InvalidPoints invalid, const RunContext& run)
+    : content_(content), invalid_(invalid), run_(run), announced_(announced), reserve_(reserve) {}
 
-void CloudAssembly::add(const Eigen::Vector3d& position, FilePosition where) {
+void CloudAssembly::add(const CloudPoint& point, FilePosition where) {
   report_point(run_, cloud_.size(), announced_);
-  check_position(content_, where, position);
-  cloud_.positions.push_back(position);
-}
-
-void CloudAssembly::add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal, FilePosition where) {
-  add(position, where);
-  cloud_.normals.push_back(unit_normal(content_, where, normal));
+  if (cloud_.size() == 0) {
+    cloud_.positions.reserve(reserve_);
+    if (point.normal) cloud_.normals.reserve(reserve_);
+    if (point.sensor) cloud_.sensor_positions.reserve(reserve_);
+  }
+  check_position(content_, where, invalid_, point.position);
+  cloud_.positions.push_back(point.position);
+  if (point.normal) cloud_.normals.push_back(unit_normal(content_, where, invalid_, *point.normal));
+  if (!point.sensor) return;
+  check_sensor(content_, where, *point.sensor);
+  cloud_.sensor_positions.push_back(*point.sensor);
 }
 
 PointCloud CloudAssembly::finish() && {
@@ -98,7 +120,8 @@ PointCloud CloudAssembly::finish() && {
 }
 
 PointCloud cloud_of_columns(const FileContent& content, const CloudColumns& columns, std::size_t count,
-                            const std::function<std::size_t(std::size_t)>& byte_of, const RunContext& run) {
+                            const std::function<std::size_t(std::size_t)>& byte_of, InvalidPoints invalid,
+                            const RunContext& run) {
   if (count == 0) fail_empty(content);
   const auto decode_points = [&](const std::array<BinaryColumn, 3>& axes) {
     Points points(count);
@@ -107,14 +130,16 @@ PointCloud cloud_of_columns(const FileContent& content, const CloudColumns& colu
     decode_column(axes[2], points.z);
     return points;
   };
-  PointCloud cloud{.positions = decode_points(columns.position), .normals = {}};
+  PointCloud cloud{.positions = decode_points(columns.position)};
   run.throw_if_stopped();
   if (columns.normal) cloud.normals = decode_points(*columns.normal);
+  if (columns.sensor) cloud.sensor_positions = decode_points(*columns.sensor);
   for (std::size_t i = 0; i < count; ++i) {
     report_point(run, i, count);
     const FilePosition where{FilePosition::Unit::byte, byte_of(i)};
-    check_position(content, where, cloud.positions[i]);
-    if (columns.normal) cloud.normals.set(i, unit_normal(content, where, cloud.normals[i]));
+    check_position(content, where, invalid, cloud.positions[i]);
+    if (columns.normal) cloud.normals.set(i, unit_normal(content, where, invalid, cloud.normals[i]));
+    if (columns.sensor) check_sensor(content, where, cloud.sensor_positions[i]);
   }
   run.report("read", count, count);
   return cloud;

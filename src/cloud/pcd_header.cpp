@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "cloud/text_rows.hpp"
@@ -33,6 +37,13 @@ std::optional<ScalarType> scalar_type(std::string_view type, std::string_view si
   return std::nullopt;
 }
 
+std::optional<double> parse_number(std::string_view word) {
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || stop != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 /// The words that follow each keyword, and the line they stand in (0 = not there).
 struct Entry {
   std::vector<std::string> values = {};
@@ -50,7 +61,8 @@ class HeaderParser {
                      .data = data_kind(),
                      .data_offset = offset_,
                      .line_count = line_,
-                     .fields_line = fields_.line};
+                     .fields_line = fields_.line,
+                     .sensor_position = sensor_position()};
     header.fields = make_fields();
     header.points = point_count();
     return header;
@@ -68,7 +80,7 @@ class HeaderParser {
     if (end == std::string_view::npos) fail(line_, "the header has no DATA line");
     offset_ += end + 1;
     std::vector<std::string> words = split_words(rest.substr(0, end));
-    if (words.empty() || words[0].starts_with('#') || words[0] == "VERSION" || words[0] == "VIEWPOINT") return;
+    if (words.empty() || words[0].starts_with('#') || words[0] == "VERSION") return;
     for (const auto& [keyword, entry] : entries()) {
       if (words[0] != keyword) continue;
       if (words.size() < 2) fail(line_, fmt::format("expected values after {}", keyword));
@@ -80,8 +92,25 @@ class HeaderParser {
   }
 
   [[nodiscard]] std::vector<std::pair<std::string_view, Entry*>> entries() {
-    return {{"FIELDS", &fields_}, {"SIZE", &size_},     {"TYPE", &type_},     {"COUNT", &count_},
-            {"WIDTH", &width_},   {"HEIGHT", &height_}, {"POINTS", &points_}, {"DATA", &data_}};
+    return {{"FIELDS", &fields_}, {"SIZE", &size_},           {"TYPE", &type_},
+            {"COUNT", &count_},   {"WIDTH", &width_},         {"HEIGHT", &height_},
+            {"POINTS", &points_}, {"VIEWPOINT", &viewpoint_}, {"DATA", &data_}};
+  }
+
+  /// Programs that do not know where the sensor was write 0 0 0 1 0 0 0.
+  [[nodiscard]] std::optional<Eigen::Vector3d> sensor_position() const {
+    if (viewpoint_.line == 0) return std::nullopt;
+    constexpr std::array<double, 7> k_unknown{0, 0, 0, 1, 0, 0, 0};
+    std::array<double, 7> numbers{};
+    bool is_good = viewpoint_.values.size() == numbers.size();
+    for (std::size_t i = 0; is_good && i < numbers.size(); ++i) {
+      const std::optional<double> number = parse_number(viewpoint_.values[i]);
+      is_good = number.has_value();
+      numbers[i] = number.value_or(0.0);
+    }
+    if (!is_good) fail(viewpoint_.line, "expected VIEWPOINT with a position and a quaternion: 7 finite numbers");
+    if (numbers == k_unknown) return std::nullopt;
+    return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
   }
 
   [[nodiscard]] PcdData data_kind() const {
@@ -144,7 +173,7 @@ class HeaderParser {
   const FileContent& content_;
   std::size_t offset_ = 0;
   std::size_t line_ = 0;
-  Entry fields_, size_, type_, count_, width_, height_, points_, data_;
+  Entry fields_, size_, type_, count_, width_, height_, points_, viewpoint_, data_;
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,7 @@ struct PcdHeader {
   std::size_t data_offset;  ///< first byte after the header
   std::size_t line_count;   ///< lines of the header
   std::size_t fields_line;
+  std::optional<Eigen::Vector3d> sensor_position = {};  ///< of all points; absent where VIEWPOINT says nothing
 
   [[nodiscard]] std::size_t stride() const;   ///< bytes of a point
   [[nodiscard]] std::size_t columns() const;  ///< numbers of a point

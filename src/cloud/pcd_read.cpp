@@ -22,18 +22,16 @@ PointLayout find_fields(const FileContent& content, const PcdHeader& header) {
 }
 
 /// The same layout, in columns of text instead of fields.
-PointLayout columns_of(const PcdHeader& header, PointLayout layout) {
+PointLayout columns_of(const PcdHeader& header, const PointLayout& layout) {
   std::vector<std::size_t> first_column;
   std::size_t column = 0;
   for (const PcdField& field : header.fields) {
     first_column.push_back(column);
     column += field.count;
   }
-  for (std::size_t& field : layout.position) field = first_column[field];
-  if (layout.normal) {
-    for (std::size_t& field : *layout.normal) field = first_column[field];
-  }
-  return layout;
+  return layout.map([&](const std::array<std::size_t, 3>& fields) {
+    return std::array{first_column[fields[0]], first_column[fields[1]], first_column[fields[2]]};
+  });
 }
 
 Eigen::Vector3d pick(std::span<const double> row, const std::array<std::size_t, 3>& columns) {
@@ -41,11 +39,10 @@ Eigen::Vector3d pick(std::span<const double> row, const std::array<std::size_t, 
 }
 
 PointCloud read_ascii(const FileContent& content, const PcdHeader& header, const PointLayout& fields,
-                      const RunContext& run) {
+                      InvalidPoints invalid, const RunContext& run) {
   const PointLayout layout = columns_of(header, fields);
   TextRows rows(content, header.data_offset, header.line_count);
-  CloudAssembly assembly(content, layout.normal.has_value(), header.points,
-                         std::min(header.points, rows.bytes_left() / 6 + 1), run);
+  CloudAssembly assembly(content, header.points, std::min(header.points, rows.bytes_left() / 6 + 1), invalid, run);
   while (const std::optional<std::span<const double>> row = rows.next_row()) {
     if (row->size() != header.columns()) {
       content.fail(rows.where(),
@@ -54,11 +51,7 @@ PointCloud read_ascii(const FileContent& content, const PcdHeader& header, const
     if (assembly.size() == header.points) {
       content.fail(rows.where(), fmt::format("expected no more than the announced {} points", header.points));
     }
-    if (layout.normal) {
-      assembly.add(pick(*row, layout.position), pick(*row, *layout.normal), rows.where());
-    } else {
-      assembly.add(pick(*row, layout.position), rows.where());
-    }
+    assembly.add(layout.map([&](const auto& columns) { return pick(*row, columns); }), rows.where());
   }
   if (assembly.size() < header.points) fail_truncated(content, rows.where(), header.points, assembly.size());
   return std::move(assembly).finish();
@@ -75,16 +68,13 @@ CloudColumns columns_at(const PcdHeader& header, const PointLayout& layout, cons
                        .order = std::endian::little});
     data += field_after_field ? field.bytes() * header.points : field.bytes();
   }
-  const auto pick_three = [&](const std::array<std::size_t, 3>& fields) {
+  return layout.map([&](const std::array<std::size_t, 3>& fields) {
     return std::array{columns[fields[0]], columns[fields[1]], columns[fields[2]]};
-  };
-  CloudColumns chosen{.position = pick_three(layout.position)};
-  if (layout.normal) chosen.normal = pick_three(*layout.normal);
-  return chosen;
+  });
 }
 
 PointCloud read_binary(const FileContent& content, const PcdHeader& header, const PointLayout& layout,
-                       const RunContext& run) {
+                       InvalidPoints invalid, const RunContext& run) {
   const std::size_t stride = header.stride();
   const std::size_t found = (content.bytes().size() - header.data_offset) / stride;
   if (found < header.points) {
@@ -93,11 +83,11 @@ PointCloud read_binary(const FileContent& content, const PcdHeader& header, cons
   const char* const data = content.bytes().data() + header.data_offset;
   return cloud_of_columns(
       content, columns_at(header, layout, data, false), header.points,
-      [&](std::size_t i) { return header.data_offset + i * stride; }, run);
+      [&](std::size_t i) { return header.data_offset + i * stride; }, invalid, run);
 }
 
 PointCloud read_compressed(const FileContent& content, const PcdHeader& header, const PointLayout& layout,
-                           const RunContext& run) {
+                           InvalidPoints invalid, const RunContext& run) {
   const FilePosition where{FilePosition::Unit::byte, header.data_offset};
   constexpr std::size_t k_size_bytes = 2 * sizeof(std::uint32_t);
   const std::string_view data = content.bytes().substr(header.data_offset);
@@ -118,23 +108,32 @@ PointCloud read_compressed(const FileContent& content, const PcdHeader& header, 
   if (!records) content.fail(where, "the compressed data is damaged", "copy or export the file again");
   return cloud_of_columns(
       content, columns_at(header, layout, records->data(), true), header.points,
-      [&](std::size_t) { return header.data_offset; }, run);
+      [&](std::size_t) { return header.data_offset; }, invalid, run);
+}
+
+PointCloud read_data(const FileContent& content, const PcdHeader& header, const PointLayout& layout,
+                     InvalidPoints invalid, const RunContext& run) {
+  switch (header.data) {
+    case PcdData::ascii:
+      return read_ascii(content, header, layout, invalid, run);
+    case PcdData::binary:
+      return read_binary(content, header, layout, invalid, run);
+    case PcdData::binary_compressed:
+      break;
+  }
+  return read_compressed(content, header, layout, invalid, run);
 }
 
 }  // namespace
 
-PointCloud read_pcd(const FileContent& content, const RunContext& run) {
+PointCloud read_pcd(const FileContent& content, InvalidPoints invalid, const RunContext& run) {
   const PcdHeader header = parse_pcd_header(content);
-  const PointLayout layout = find_fields(content, header);
-  switch (header.data) {
-    case PcdData::ascii:
-      return read_ascii(content, header, layout, run);
-    case PcdData::binary:
-      return read_binary(content, header, layout, run);
-    case PcdData::binary_compressed:
-      break;
+  PointCloud cloud = read_data(content, header, find_fields(content, header), invalid, run);
+  if (header.sensor_position && !cloud.has_sensor_positions()) {
+    cloud.sensor_positions.resize(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) cloud.sensor_positions.set(i, *header.sensor_position);
   }
-  return read_compressed(content, header, layout, run);
+  return cloud;
 }
 
 }  // namespace cloud2csg

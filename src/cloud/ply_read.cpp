@@ -61,7 +61,7 @@ Eigen::Vector3d pick(std::span<const double> row, std::span<const std::size_t> c
 }
 
 PointCloud read_ascii(const FileContent& content, const PlyHeader& header, const VertexElement& vertices,
-                      const RunContext& run) {
+                      InvalidPoints invalid, const RunContext& run) {
   TextRows rows(content, header.data_offset, header.line_count);
   for (std::size_t before = 0; before < vertices.index; ++before) {
     for (std::size_t i = 0; i < header.elements[before].count; ++i) {
@@ -70,8 +70,7 @@ PointCloud read_ascii(const FileContent& content, const PlyHeader& header, const
   }
   const PlyElement& element = header.elements[vertices.index];
   const PointLayout& layout = vertices.layout;
-  CloudAssembly assembly(content, layout.normal.has_value(), element.count,
-                         std::min(element.count, rows.bytes_left() / 6 + 1), run);
+  CloudAssembly assembly(content, element.count, std::min(element.count, rows.bytes_left() / 6 + 1), invalid, run);
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < element.count; ++i) {
     const std::optional<std::span<const double>> row = rows.next_row();
@@ -83,11 +82,7 @@ PointCloud read_ascii(const FileContent& content, const PlyHeader& header, const
                                                element.properties.size(), row->size()));
       }
     }
-    if (layout.normal) {
-      assembly.add(pick(*row, columns, layout.position), pick(*row, columns, *layout.normal), rows.where());
-    } else {
-      assembly.add(pick(*row, columns, layout.position), rows.where());
-    }
+    assembly.add(layout.map([&](const auto& properties) { return pick(*row, columns, properties); }), rows.where());
   }
   return std::move(assembly).finish();
 }
@@ -151,24 +146,18 @@ class RecordWalker {
 };
 
 PointCloud read_varying_records(const FileContent& content, const PlyElement& element, const PointLayout& layout,
-                                RecordWalker walker, const RunContext& run) {
-  CloudAssembly assembly(content, layout.normal.has_value(), element.count,
-                         std::min(element.count, content.bytes().size() / 4), run);
+                                RecordWalker walker, InvalidPoints invalid, const RunContext& run) {
+  CloudAssembly assembly(content, element.count, std::min(element.count, content.bytes().size() / 4), invalid, run);
   for (std::size_t i = 0; i < element.count; ++i) {
     const FilePosition where{FilePosition::Unit::byte, walker.offset()};
     if (!walker.step(element)) fail_truncated(content, where, element.count, i);
-    const Eigen::Vector3d position = walker.vector(element, layout.position);
-    if (layout.normal) {
-      assembly.add(position, walker.vector(element, *layout.normal), where);
-    } else {
-      assembly.add(position, where);
-    }
+    assembly.add(layout.map([&](const auto& properties) { return walker.vector(element, properties); }), where);
   }
   return std::move(assembly).finish();
 }
 
 PointCloud read_equal_records(const FileContent& content, const PlyElement& element, const PointLayout& layout,
-                              std::size_t offset, std::endian order, const RunContext& run) {
+                              std::size_t offset, std::endian order, InvalidPoints invalid, const RunContext& run) {
   const std::size_t stride = element.stride();
   const std::size_t found = (content.bytes().size() - offset) / stride;
   if (found < element.count) {
@@ -191,14 +180,12 @@ PointCloud read_equal_records(const FileContent& content, const PlyElement& elem
     }
     return columns;
   };
-  CloudColumns columns{.position = columns_of(layout.position)};
-  if (layout.normal) columns.normal = columns_of(*layout.normal);
   return cloud_of_columns(
-      content, columns, element.count, [&](std::size_t i) { return offset + i * stride; }, run);
+      content, layout.map(columns_of), element.count, [&](std::size_t i) { return offset + i * stride; }, invalid, run);
 }
 
 PointCloud read_binary(const FileContent& content, const PlyHeader& header, const VertexElement& vertices,
-                       const RunContext& run) {
+                       InvalidPoints invalid, const RunContext& run) {
   const std::endian order = header.format == PlyFormat::binary_little_endian ? std::endian::little : std::endian::big;
   const PlyElement& element = header.elements[vertices.index];
   RecordWalker walker(content, header.data_offset, order);
@@ -207,17 +194,18 @@ PointCloud read_binary(const FileContent& content, const PlyHeader& header, cons
       fail_truncated(content, {FilePosition::Unit::byte, walker.offset()}, element.count, 0);
     }
   }
-  return element.has_lists() ? read_varying_records(content, element, vertices.layout, walker, run)
-                             : read_equal_records(content, element, vertices.layout, walker.offset(), order, run);
+  return element.has_lists()
+             ? read_varying_records(content, element, vertices.layout, walker, invalid, run)
+             : read_equal_records(content, element, vertices.layout, walker.offset(), order, invalid, run);
 }
 
 }  // namespace
 
-PointCloud read_ply(const FileContent& content, const RunContext& run) {
+PointCloud read_ply(const FileContent& content, InvalidPoints invalid, const RunContext& run) {
   const PlyHeader header = parse_ply_header(content);
   const VertexElement vertices = find_vertices(content, header);
-  return header.format == PlyFormat::ascii ? read_ascii(content, header, vertices, run)
-                                           : read_binary(content, header, vertices, run);
+  return header.format == PlyFormat::ascii ? read_ascii(content, header, vertices, invalid, run)
+                                           : read_binary(content, header, vertices, invalid, run);
 }
 
 }  // namespace cloud2csg

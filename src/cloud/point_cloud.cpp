@@ -1,5 +1,7 @@
 #include "cloud2csg/point_cloud.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -7,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/atomic_file.hpp"
 #include "cloud/file_content.hpp"
@@ -18,7 +21,7 @@ namespace {
 
 struct CloudFormat {
   std::string_view ending;
-  PointCloud (*read)(const FileContent&, const RunContext&);
+  PointCloud (*read)(const FileContent&, InvalidPoints, const RunContext&);
   void (*write)(AtomicFile&, const PointCloud&, const CloudWriteOptions&);
   bool needs_normals = false;
 };
@@ -47,11 +50,44 @@ const CloudFormat& format_of(const std::filesystem::path& file) {
 
 PointCloud read_point_cloud(const std::filesystem::path& file, const RunContext& run) {
   const CloudFormat& format = format_of(file);
-  return format.read(FileContent(file, run), run);
+  return format.read(FileContent(file, run), InvalidPoints::refuse, run);
+}
+
+RawCloud read_raw_cloud(const std::filesystem::path& file, const RunContext& run) {
+  const CloudFormat& format = format_of(file);
+  const FileContent content(file, run);
+  RawCloud raw{.cloud = format.read(content, InvalidPoints::keep, run)};
+  const std::size_t count = raw.cloud.size();
+  if (raw.cloud.has_normals()) {
+    for (std::size_t i = 0; i < count; ++i) raw.invalid_normals += raw.cloud.normals[i].isZero(0.0) ? 1 : 0;
+    raw.normals_left_out = 2 * raw.invalid_normals > count;
+    if (raw.normals_left_out) raw.cloud.normals = {};
+  }
+  std::vector<std::uint32_t> valid;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool has_direction = !raw.cloud.has_normals() || !raw.cloud.normals[i].isZero(0.0);
+    if (raw.cloud.positions[i].allFinite() && has_direction) valid.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (valid.empty()) content.fail(fmt::format("expected finite coordinates, all {} points have others", count));
+  raw.invalid_points = count - valid.size();
+  if (raw.invalid_points > 0) raw.cloud = select_points(raw.cloud, valid);
+  return raw;
+}
+
+PointCloud select_points(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
+  const auto select = [indices](const Points& points) {
+    Points selected(points.empty() ? 0 : indices.size());
+    for (std::size_t i = 0; i < selected.size(); ++i) selected.set(i, points[indices[i]]);
+    return selected;
+  };
+  return {.positions = select(cloud.positions),
+          .normals = select(cloud.normals),
+          .sensor_positions = select(cloud.sensor_positions)};
 }
 
 void write_point_cloud(const std::filesystem::path& file, const PointCloud& cloud, const CloudWriteOptions& options) {
   assert(!cloud.has_normals() || cloud.normals.size() == cloud.positions.size());
+  assert(!cloud.has_sensor_positions() || cloud.sensor_positions.size() == cloud.positions.size());
   const CloudFormat& format = format_of(file);
   if (format.needs_normals && !cloud.has_normals()) {
     throw Error({.file = file.string(),

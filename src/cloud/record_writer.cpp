@@ -54,13 +54,12 @@ void append_record(std::string& block, std::span<const double> numbers, bool bin
 
 void write_records(AtomicFile& out, const PointCloud& cloud, const RecordFormat& format) {
   std::string block;
-  std::array<double, 6> numbers{};
+  std::array<double, 9> numbers{};
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Points& positions = cloud.positions;
-    const Points& normals = cloud.normals;
-    numbers = {positions.x[i], positions.y[i], positions.z[i], 0.0, 0.0, 0.0};
-    if (format.normals) std::copy_n(normals[i].data(), 3, numbers.begin() + 3);
-    const std::span<const double> used = std::span(numbers).first(format.normals ? 6 : 3);
+    auto end = std::copy_n(cloud.positions[i].data(), 3, numbers.begin());
+    if (format.normals) end = std::copy_n(cloud.normals[i].data(), 3, end);
+    if (format.sensor_positions) end = std::copy_n(cloud.sensor_positions[i].data(), 3, end);
+    const std::span<const double> used(numbers.begin(), end);
     if (format.double_precision) {
       append_record<double>(block, used, format.binary);
     } else {

@@ -12,6 +12,7 @@ struct RecordFormat {
   bool binary;            ///< little endian, else text: a row a point, the shortest that reads back to the same number
   bool double_precision;  ///< else float
   bool normals;           ///< after the coordinates
+  bool sensor_positions;  ///< after these
 };
 
 /// Writes all points in large blocks. @throws Error when a number is not finite or out of a float's range.

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <tuple>
 
 #include "cloud2csg/error.hpp"
@@ -24,8 +26,9 @@ void require_readable(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending != ".stl" && ending != ".off" && ending != ".obj" && ending != ".ply") {
-    fail(file, fmt::format("expected a file ending in .stl, .off, .obj or .ply, found \"{}\"", ending));
+  constexpr std::array<std::string_view, 6> k_endings{".stl", ".off", ".obj", ".ply", ".3mf", ".glb"};
+  if (std::find(k_endings.begin(), k_endings.end(), ending) == k_endings.end()) {
+    fail(file, fmt::format("expected a file ending in .stl, .off, .obj, .ply, .3mf or .glb, found \"{}\"", ending));
   }
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
@@ -85,7 +88,9 @@ TriangleMesh joined(const TriangleMesh& mesh) {
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   require_readable(file);
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  // .3mf and .glb place their parts by a tree of motions.
+  constexpr unsigned k_steps = unsigned{aiProcess_Triangulate} | unsigned{aiProcess_PreTransformVertices};
+  const aiScene* scene = importer.ReadFile(file.string(), k_steps);
   if (scene == nullptr) fail(file, fmt::format("cannot be read as a mesh ({})", importer.GetErrorString()));
   TriangleMesh mesh;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(mesh, *scene->mMeshes[i], file);

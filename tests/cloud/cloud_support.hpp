@@ -28,6 +28,13 @@ namespace cloud2csg::testing_support {
                     {{1, 2, 3}, {-0.5, 0.1, 0.7}, {0, 0, -1}});
 }
 
+/// The same with a sensor each, two of them in one place.
+[[nodiscard]] inline PointCloud small_scan() {
+  PointCloud cloud = small_cloud();
+  for (const double x : {1.0 / 3.0, -1e9, 1.0 / 3.0}) cloud.sensor_positions.push_back({x, 0.1, 7.0});
+  return cloud;
+}
+
 inline void expect_equal(const Points& a, const Points& b) {
   EXPECT_EQ(a.x, b.x);
   EXPECT_EQ(a.y, b.y);
@@ -37,6 +44,7 @@ inline void expect_equal(const Points& a, const Points& b) {
 inline void expect_equal(const PointCloud& a, const PointCloud& b) {
   expect_equal(a.positions, b.positions);
   expect_equal(a.normals, b.normals);
+  expect_equal(a.sensor_positions, b.sensor_positions);
 }
 
 /// Writes a file without waiting for the disk, as the library's own writer does: there are thousands of them.

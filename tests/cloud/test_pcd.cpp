@@ -128,6 +128,31 @@ TEST(Pcd, CompressedFieldAfterField) {
   expect_refused("a.pcd", head + "abc", where, "announces 50 points but ends after 0");
 }
 
+std::string with_viewpoint(std::string_view viewpoint) {
+  std::string text = plain_header("2", "ascii") + "1 2 3\n4 5 6\n";
+  constexpr std::string_view k_unknown = "VIEWPOINT 0 0 0 1 0 0 0";
+  return text.replace(text.find(k_unknown), k_unknown.size(), "VIEWPOINT " + std::string(viewpoint));
+}
+
+TEST(Pcd, ViewpointIsTheSensorOfAllPoints) {
+  PointCloud expected = make_cloud({{1, 2, 3}, {4, 5, 6}});
+  expect_equal(read_bytes("a.pcd", with_viewpoint("0 0 0 1 0 0 0")), expected);
+  for (int i = 0; i < 2; ++i) expected.sensor_positions.push_back({0.5, -7, 1e3});
+  expect_equal(read_bytes("a.pcd", with_viewpoint("0.5 -7 1e3 1 0 0 0")), expected);
+  for (const std::size_t i : {0U, 1U}) expected.sensor_positions.set(i, {0, 0, 0});
+  expect_equal(read_bytes("a.pcd", with_viewpoint("0 0 0 0 1 0 0")), expected);
+  expect_refused("a.pcd", with_viewpoint("0 0 0"), "line 9", "VIEWPOINT");
+  expect_refused("a.pcd", with_viewpoint("0 0 nan 1 0 0 0"), "line 9", "VIEWPOINT");
+}
+
+TEST(Pcd, FieldsOfSensorPositionsGoBeforeTheViewpoint) {
+  std::string head = header("x y z vp_x vp_y vp_z", "4 4 4 4 4 4", "F F F F F F", "1 1 1 1 1 1", "1", "ascii");
+  head.replace(head.find("VIEWPOINT 0"), 11, "VIEWPOINT 9");
+  PointCloud expected = make_cloud({{1, 2, 3}});
+  expected.sensor_positions.push_back({4, 5, 6});
+  expect_equal(read_bytes("a.pcd", head + "1 2 3 4 5 6\n"), expected);
+}
+
 TEST(Pcd, PointsFollowFromWidthAndHeight) {
   const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\nDATA ascii\n";
   expect_equal(read_bytes("a.pcd", head + "1 2 3\n4 5 6\n"), make_cloud({{1, 2, 3}, {4, 5, 6}}));

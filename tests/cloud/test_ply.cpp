@@ -81,6 +81,19 @@ TEST(Ply, RefusesBadHeadersNamingTheLine) {
                  "line 3", "all three coordinates of the normal");
 }
 
+TEST(Ply, ReadsSensorPositions) {
+  const std::string fields = "property float sensor_z\nproperty float sensor_x\nproperty double sensor_y\n";
+  PointCloud expected = make_cloud({{1, 2, 3}, {4, 5, 6}});
+  expected.sensor_positions.push_back({8, 9, 7});
+  expected.sensor_positions.push_back({-2, -3, -1});
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 2\n" + std::string(k_xyz);
+  expect_equal(read_bytes("a.ply", head + fields + "end_header\n1 2 3 7 8 9\n4 5 6 -1 -2 -3\n"), expected);
+  expect_refused("a.ply", head + fields + "end_header\n1 2 3 7 8 9\n4 5 6 nan 1 1\n", "line 12",
+                 "finite position of the sensor");
+  expect_refused("a.ply", head + "property float sensor_x\nend_header\n1 2 3 7\n4 5 6 1\n", "line 3",
+                 "all three coordinates of the sensor's position");
+}
+
 TEST(Ply, RefusesBadAsciiDataNamingTheLine) {
   expect_refused("a.ply", ascii_ply("2", "1 2 3\n1 two 3\n"), "line 9", "found \"two\"");
   expect_refused("a.ply", ascii_ply("2", "1 2 3\n1 2 3 4\n"), "line 9", "found 4 columns");

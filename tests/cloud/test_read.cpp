@@ -20,7 +20,7 @@ std::vector<std::pair<std::string, std::string>> valid_files() {
       const bool has_binary_form = std::string_view(name) == "a.ply" || std::string_view(name) == "a.pcd";
       if (binary && !has_binary_form) continue;
       const TemporaryFolder folder;
-      write_point_cloud(folder / name, small_cloud(), {.binary = binary});
+      write_point_cloud(folder / name, small_scan(), {.binary = binary});
       files.emplace_back(name, read_text_file(folder / name));
     }
   }
@@ -45,6 +45,7 @@ bool survives(const std::filesystem::path& file) {
     const PointCloud cloud = read_point_cloud(file);
     EXPECT_GT(cloud.size(), 0U);
     EXPECT_TRUE(!cloud.has_normals() || cloud.normals.size() == cloud.size());
+    EXPECT_TRUE(!cloud.has_sensor_positions() || cloud.sensor_positions.size() == cloud.size());
     return true;
   } catch (const Error& error) {
     EXPECT_EQ(error.parts().file, file.string());

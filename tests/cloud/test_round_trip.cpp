@@ -29,11 +29,14 @@ rc::Gen<double> any_finite() {
                       });
 }
 
-PointCloud any_cloud(bool with_normals) {
+PointCloud any_cloud(bool with_normals, bool with_sensors = false) {
   PointCloud cloud;
   const auto count = *rc::gen::inRange<std::size_t>(1, 20);
   for (std::size_t i = 0; i < count; ++i) {
     cloud.positions.push_back({*any_finite(), *any_finite(), *any_finite()});
+    // Few values, so that all points may have been seen from one place, the origin among them.
+    const auto coordinate = rc::gen::element(0.0, 0.1, -1e300);
+    if (with_sensors) cloud.sensor_positions.push_back({*coordinate, 0.0, 0.0});
     if (!with_normals) continue;
     Eigen::Vector3d direction(*rc::gen::inRange(-1000, 1000), *rc::gen::inRange(-1000, 1000), 1.0);
     cloud.normals.push_back(direction.normalized());
@@ -48,7 +51,9 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 bool same_bits(const PointCloud& a, const PointCloud& b) {
   return same_bits(a.positions.x, b.positions.x) && same_bits(a.positions.y, b.positions.y) &&
          same_bits(a.positions.z, b.positions.z) && same_bits(a.normals.x, b.normals.x) &&
-         same_bits(a.normals.y, b.normals.y) && same_bits(a.normals.z, b.normals.z);
+         same_bits(a.normals.y, b.normals.y) && same_bits(a.normals.z, b.normals.z) &&
+         same_bits(a.sensor_positions.x, b.sensor_positions.x) &&
+         same_bits(a.sensor_positions.y, b.sensor_positions.y) && same_bits(a.sensor_positions.z, b.sensor_positions.z);
 }
 
 RC_GTEST_PROP(RoundTrip, KeepsEveryBitInEveryFormat, ()) {
@@ -56,6 +61,17 @@ RC_GTEST_PROP(RoundTrip, KeepsEveryBitInEveryFormat, ()) {
   const CloudWriteOptions options{.binary = *rc::gen::arbitrary<bool>()};
   const PointCloud cloud = any_cloud(*rc::gen::arbitrary<bool>());
   RC_ASSERT(same_bits(round_trip(name, cloud, options), cloud));
+}
+
+RC_GTEST_PROP(RoundTrip, KeepsEveryBitOfSensorPositionsInPlyAndPcd, ()) {
+  const auto name = *rc::gen::element<std::string>("a.ply", "a.pcd");
+  const CloudWriteOptions options{.binary = *rc::gen::arbitrary<bool>()};
+  const PointCloud cloud = any_cloud(*rc::gen::arbitrary<bool>(), true);
+  RC_ASSERT(same_bits(round_trip(name, cloud, options), cloud));
+}
+
+TEST(RoundTrip, TextLeavesSensorPositionsOut) {
+  for (const char* name : {"a.xyz", "a.xyzn", "a.txt"}) expect_equal(round_trip(name, small_scan()), small_cloud());
 }
 
 RC_GTEST_PROP(RoundTrip, KeepsEveryBitInXyzn, ()) {
@@ -108,6 +124,13 @@ TEST(Write, RefusesUnknownEndings) {
 TEST(Write, RefusesXyznWithoutNormals) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_point_cloud(folder / "a.xyzn", make_cloud({{1, 2, 3}})), Error);
+}
+
+TEST(Write, RefusesASensorThatIsNowhere) {
+  const TemporaryFolder folder;
+  PointCloud cloud = make_cloud({{1, 2, 3}});
+  cloud.sensor_positions.push_back({0, 0, std::numeric_limits<double>::infinity()});
+  for (const char* name : {"a.ply", "a.pcd"}) EXPECT_THROW(write_point_cloud(folder / name, cloud), Error) << name;
 }
 
 TEST(Write, LeavesNoFileForNumbersThatCannotBeWritten) {

@@ -1,4 +1,4 @@
-#include "export/model_extent.hpp"
+#include "mesh/model_extent.hpp"
 
 #include <algorithm>
 #include <variant>
