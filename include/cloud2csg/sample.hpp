@@ -21,4 +21,8 @@ struct SampleOptions {
 [[nodiscard]] PointCloud sample_surface(const CsgTree& tree, const PrimitiveSet& primitives,
                                         const SampleOptions& options = {}, const RunContext& run = {});
 
+/// Moves each coordinate by a Gaussian of this sigma, in the cloud's units; normals stay. The same seed moves the same
+/// way. O(n)
+[[nodiscard]] PointCloud with_noise(PointCloud cloud, double sigma, std::uint64_t seed = 1);
+
 }  // namespace cloud2csg

@@ -1,9 +1,11 @@
 #include "cloud2csg/family.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "cloud2csg/error.hpp"
 #include "synth/family_parts.hpp"
@@ -53,9 +55,11 @@ std::string_view to_string(Family family) {
 Family family_of(std::string_view name) {
   const auto* const found = std::ranges::find(k_families, name, [](Family family) { return to_string(family); });
   if (found != k_families.end()) return *found;
+  std::vector<std::string_view> names;
+  for (const Family family : k_families) names.push_back(to_string(family));
   throw Error({.file = {},
                .where = "family",
-               .expected = fmt::format("expected chain, grid, plate, random, nest or panel, found '{}'", name),
+               .expected = fmt::format("expected one of {}, found '{}'", fmt::join(names, ", "), name),
                .remedy = {}});
 }
 

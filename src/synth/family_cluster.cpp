@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/random_between.hpp"
 #include "synth/family_parts.hpp"
 #include "synth/primitive_surface.hpp"
 

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/random_between.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -74,12 +76,6 @@ Eigen::Quaterniond random_tilt(double most_deg, RandomStream& random) {
 
 Vector3d random_shift(double reach, RandomStream& random) {
   return random_between(Vector3d::Constant(-reach), Vector3d::Constant(reach), random);
-}
-
-Vector3d random_between(const Vector3d& low, const Vector3d& high, RandomStream& random) {
-  Vector3d result;
-  for (int i = 0; i < 3; ++i) result[i] = random.uniform(low[i], high[i]);
-  return result;
 }
 
 RandomStream family_stream(Family family, const FamilyOptions& options, std::size_t part) {

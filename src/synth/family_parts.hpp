@@ -45,9 +45,6 @@ class SpiralPath {
 [[nodiscard]] Eigen::Quaterniond random_orientation(RandomStream& random);
 /// Each coordinate in +-`reach`.
 [[nodiscard]] Eigen::Vector3d random_shift(double reach, RandomStream& random);
-/// Each coordinate between those of the corners.
-[[nodiscard]] Eigen::Vector3d random_between(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-                                             RandomStream& random);
 
 /// Streams of random numbers: one a family and part.
 [[nodiscard]] RandomStream family_stream(Family family, const FamilyOptions& options, std::size_t part);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "primitive/sampled_field.hpp"
 #include "primitive/triangle_sampler.hpp"
 
 namespace cloud2csg {
@@ -35,20 +36,6 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   return triangles;
 }
 
-struct Field {
-  std::vector<double> values;
-  Points gradients;
-};
-
-Field field_at(const Primitive& primitive, PointsView points) {
-  Field field{.values = std::vector<double>(points.size()), .gradients = Points(points.size())};
-  Points& gradients = field.gradients;
-  evaluate_field(
-      primitive, points,
-      {.distance = field.values, .gradient_x = gradients.x, .gradient_y = gradients.y, .gradient_z = gradients.z});
-  return field;
-}
-
 /// Moves points of the mesh onto f = 0 by Newton steps along the gradient. False where there is no surface within
 /// `reach`: the mesh is wrong there, or it is the cap where the mesh was cut off.
 std::vector<bool> project(const Primitive& primitive, double reach, PointCloud& cloud) {
@@ -61,14 +48,14 @@ std::vector<bool> project(const Primitive& primitive, double reach, PointCloud& 
   for (int step = 0; step < k_most_steps && !moving.empty(); ++step) {
     Points places;
     for (const std::size_t i : moving) places.push_back(cloud.positions[i]);
-    const Field field = field_at(primitive, places);
+    const SampledField field = sample_field(primitive, places);
     std::vector<std::size_t> still_moving;
     for (std::size_t k = 0; k < moving.size(); ++k) {
       const std::size_t i = moving[k];
-      const Vector3d slope = field.gradients[k];
+      const Vector3d slope = field.slopes[k];
       const double square = slope.squaredNorm();
       if (!(square > 0.0)) continue;
-      const Vector3d move = field.values[k] / square * slope;
+      const Vector3d move = field.offset(k);
       const Vector3d position = places[k] - move;
       if (!((position - start[i]).norm() <= reach)) continue;
       cloud.positions.set(i, position);

@@ -7,9 +7,7 @@
 namespace cloud2csg {
 
 PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region, const RunContext& run) {
-  if (primitive.displacement || std::holds_alternative<Expression>(primitive.shape)) {
-    return make_field_surface(primitive, region, run);
-  }
+  if (!is_plain(primitive)) return make_field_surface(primitive, region, run);
   PlainSurface plain = make_plain_surface(primitive, region);
   return {.area = plain.area, .draw = std::move(plain.draw)};
 }

@@ -23,18 +23,6 @@ constexpr double k_relative_epsilon = 1e-6;
 /// Of a displacement or an expression: the exact test for duplicates divides by the slope.
 constexpr double k_steepest = 100.0;
 
-AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives) {
-  const AlignedBox region = bounds_of(tree, primitives);
-  if (region.isEmpty()) refuse_without_surface();
-  if (!region.min().allFinite() || !region.max().allFinite()) {
-    throw Error({.file = {},
-                 .where = "tree",
-                 .expected = "the solid is unbounded: its surface cannot be sampled",
-                 .remedy = "intersect it with a bounded primitive such as a box"});
-  }
-  return region;
-}
-
 void add(PointCloud& cloud, const Vector3d& position, const Vector3d& normal) {
   cloud.positions.push_back(position);
   cloud.normals.push_back(normal);
@@ -56,6 +44,18 @@ void shuffle(PointCloud& cloud, RandomStream random) {
 
 void refuse_without_surface() {
   throw Error({.file = {}, .where = "tree", .expected = "the solid is empty: it has no surface", .remedy = {}});
+}
+
+AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives) {
+  const AlignedBox region = bounds_of(tree, primitives);
+  if (region.isEmpty()) refuse_without_surface();
+  if (!region.min().allFinite() || !region.max().allFinite()) {
+    throw Error({.file = {},
+                 .where = "tree",
+                 .expected = "the solid is unbounded: its surface cannot be sampled",
+                 .remedy = "intersect it with a bounded primitive such as a box"});
+  }
+  return region;
 }
 
 SurfaceSampler::SurfaceSampler(const CsgTree& tree, const PrimitiveSet& primitives, std::uint64_t seed,

@@ -13,6 +13,9 @@ namespace cloud2csg {
 /// Throws the Error of a solid without any surface.
 [[noreturn]] void refuse_without_surface();
 
+/// @throws Error when the solid is empty or has no bounds.
+[[nodiscard]] AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives);
+
 /// Draws candidates from the primitives' own surfaces and keeps those on the surface of the whole solid.
 class SurfaceSampler {
  public:
