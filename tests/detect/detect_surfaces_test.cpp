@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stop_token>
+
+#include "cloud2csg/error.hpp"
+#include "detect/detected_parts.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using test::cloud_of;
+using test::count_of;
+using test::detect;
+
+/// The surfaces of one type, by ascending radius.
+std::vector<Surface> by_radius(const Detection& detection, SurfaceType type) {
+  std::vector<Surface> found;
+  for (const DetectedSurface& s : detection.surfaces) {
+    if (s.surface.type == type) found.push_back(s.surface);
+  }
+  std::sort(found.begin(), found.end(), [](const Surface& a, const Surface& b) { return a.radius < b.radius; });
+  return found;
+}
+
+void expect_plate(const Detection& detection, double tolerance) {
+  ASSERT_EQ(detection.surfaces.size(), 9U);
+  EXPECT_EQ(count_of(detection, SurfaceType::plane), 6U);
+  const std::vector<Surface> holes = by_radius(detection, SurfaceType::cylinder);
+  ASSERT_EQ(holes.size(), 3U);
+  const std::vector<Eigen::Vector3d> centres{{1.4, 0.8, 0}, {-1.2, 0.3, 0}, {0.4, -0.5, 0}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_TRUE(holes[k].concave);
+    EXPECT_NEAR(holes[k].radius, 0.3 + 0.1 * static_cast<double>(k), tolerance);
+    EXPECT_NEAR(std::abs(holes[k].axis.z()), 1, 0.002);
+    EXPECT_LT((holes[k].position - centres[k]).head<2>().norm(), tolerance);
+  }
+}
+
+TEST(DetectSurfaces, FindsTheFacesAndHolesOfAPlate) {
+  const Detection detection = detect(cloud_of(test::plate_with_holes(), 0), 0);
+  expect_plate(detection, 1e-4);
+  EXPECT_EQ(detection.unexplained, 0U);
+}
+
+TEST(DetectSurfaces, FindsThemInNoiseOfFourTenthsPercent) {
+  expect_plate(detect(cloud_of(test::plate_with_holes(), 0.02, 40'000, 8), 0.02), 0.01);
+}
+
+TEST(DetectSurfaces, FindsConcaveSpheresConesAndTori) {
+  const Detection detection = detect(cloud_of(test::block_with_pockets(), 0.005, 40'000), 0.005);
+  EXPECT_EQ(count_of(detection, SurfaceType::plane), 7U);  // the small end of the cone is the seventh
+  const std::vector<Surface> spheres = by_radius(detection, SurfaceType::sphere);
+  const std::vector<Surface> cones = by_radius(detection, SurfaceType::cone);
+  const std::vector<Surface> tori = by_radius(detection, SurfaceType::torus);
+  ASSERT_EQ(spheres.size(), 1U);
+  ASSERT_EQ(cones.size(), 1U);
+  ASSERT_EQ(tori.size(), 1U);
+  EXPECT_TRUE(spheres[0].concave && cones[0].concave && tori[0].concave);
+  EXPECT_NEAR(spheres[0].radius, 0.9, 0.005);
+  EXPECT_NEAR(cones[0].half_angle, std::atan2(0.7, 1.4), 0.01);
+  EXPECT_NEAR(cones[0].axis.z(), 1, 0.001);
+  EXPECT_NEAR(tori[0].radius, 0.8, 0.01);
+  EXPECT_NEAR(tori[0].minor_radius, 0.25, 0.01);
+}
+
+TEST(DetectSurfaces, TakesFacesInOnePlaneForOne) {
+  // Three blocks on a base, equally high.
+  PrimitiveSet primitives{test::placed("base", Box{{8, 2, 1}}, {0, 0, 0})};
+  for (const double x : {-2.5, 0.0, 2.5}) primitives.push_back(test::placed("block", Box{{1, 1, 1}}, {x, 0, 1}));
+  const CsgTree tree = unite_all(std::vector{CsgTree::leaf(0), CsgTree::leaf(1), CsgTree::leaf(2), CsgTree::leaf(3)});
+  const Detection detection = detect(cloud_of({primitives, tree}, 0.005, 40'000), 0.005);
+  // Six of the base, the tops, two across for all blocks, two along for each.
+  EXPECT_EQ(detection.surfaces.size(), 15U);
+  EXPECT_EQ(count_of(detection, SurfaceType::plane), 15U);
+}
+
+TEST(DetectSurfaces, KeepsTheFacesOfAHexagonalPrism) {
+  Polytope prism;
+  for (int k = 0; k < 6; ++k) {
+    const double angle = k * std::numbers::pi / 3;
+    prism.planes.push_back({.normal = {std::cos(angle), std::sin(angle), 0}, .offset = 1});
+  }
+  prism.planes.push_back({.normal = {0, 0, 1}, .offset = 1});
+  prism.planes.push_back({.normal = {0, 0, -1}, .offset = 1});
+  const PrimitiveSet primitives{test::placed("nut", prism, {0, 0, 0})};
+  for (const double noise : {0.0, 0.006}) {
+    const Detection detection = detect(cloud_of({primitives, CsgTree::leaf(0)}, noise), noise);
+    EXPECT_EQ(count_of(detection, SurfaceType::plane), 8U);
+    EXPECT_EQ(detection.surfaces.size(), 8U);
+  }
+}
+
+TEST(DetectSurfaces, TakesAManyFacetedPrismForACylinder) {
+  Polytope prism;
+  constexpr int k_facets = 40;
+  for (int k = 0; k < k_facets; ++k) {
+    const double angle = 2 * std::numbers::pi * k / k_facets;
+    prism.planes.push_back({.normal = {std::cos(angle), std::sin(angle), 0}, .offset = 1});
+  }
+  prism.planes.push_back({.normal = {0, 0, 1}, .offset = 1.5});
+  prism.planes.push_back({.normal = {0, 0, -1}, .offset = 1.5});
+  const PrimitiveSet primitives{test::placed("drum", prism, {0, 0, 0})};
+  const Detection detection = detect(cloud_of({primitives, CsgTree::leaf(0)}, 0), 0);
+  ASSERT_EQ(detection.surfaces.size(), 3U);
+  EXPECT_EQ(count_of(detection, SurfaceType::cylinder), 1U);
+}
+
+TEST(DetectSurfaces, BearsOutliers) {
+  PointCloud cloud = cloud_of(test::plate_with_holes(), 0.01, 30'000);
+  RandomStream random(4);
+  for (std::size_t i = 0; i < cloud.size(); i += 5) {
+    cloud.positions.set(i, test::random_within(3, random));
+    cloud.normals.set(i, test::random_direction(random));
+  }
+  expect_plate(detect(cloud, 0.01), 0.01);
+}
+
+TEST(DetectSurfaces, DoesNotDependOnUnitsOrPlace) {
+  const PointCloud cloud = cloud_of(test::plate_with_holes(), 0.01);
+  const Detection detection = detect(cloud, 0.01);
+  for (const double scale : {0.003, 5000.0}) {
+    PointCloud other = cloud;
+    const Eigen::Vector3d offset = 1e5 * scale * Eigen::Vector3d(1, -2, 3);
+    for (std::size_t i = 0; i < cloud.size(); ++i) other.positions.set(i, scale * cloud.positions[i] + offset);
+    const Detection moved = detect(other, 0.01 * scale);
+    ASSERT_EQ(moved.surfaces.size(), detection.surfaces.size());
+    EXPECT_EQ(count_of(moved, SurfaceType::cylinder), count_of(detection, SurfaceType::cylinder));
+    EXPECT_NEAR(by_radius(moved, SurfaceType::cylinder)[0].radius / scale,
+                by_radius(detection, SurfaceType::cylinder)[0].radius, 1e-3);
+  }
+}
+
+TEST(DetectSurfaces, GivesTheSameOnAnyNumberOfThreads) {
+  const PointCloud cloud = cloud_of(test::block_with_pockets(), 0.01);
+  const Detection one = detect(cloud, 0.01, {}, {.threads = 1});
+  const Detection two = detect(cloud, 0.01, {}, {.threads = 2});
+  ASSERT_EQ(one.surfaces.size(), two.surfaces.size());
+  for (std::size_t k = 0; k < one.surfaces.size(); ++k) {
+    EXPECT_EQ(one.surfaces[k].points, two.surfaces[k].points);
+    EXPECT_EQ(one.surfaces[k].surface.position, two.surfaces[k].surface.position);
+  }
+}
+
+TEST(DetectSurfaces, SharesThePointsOut) {
+  const PointCloud cloud = cloud_of(test::block_with_pockets(), 0.02);
+  const Detection detection = detect(cloud, 0.02);
+  std::vector<int> owners(cloud.size(), 0);
+  for (const DetectedSurface& s : detection.surfaces) {
+    EXPECT_TRUE(std::is_sorted(s.points.begin(), s.points.end()));
+    for (const std::uint32_t i : s.points) {
+      ++owners[i];
+      EXPECT_LE(std::abs(signed_distance(s.surface, cloud.positions[i])), 1.01 * detection.distance_tolerance);
+    }
+  }
+  EXPECT_LE(*std::max_element(owners.begin(), owners.end()), 1);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(owners.begin(), owners.end(), 0)), detection.unexplained);
+}
+
+TEST(DetectSurfaces, FindsNothingInAFogOfPoints) {
+  RandomStream random(9);
+  PointCloud cloud;
+  for (int i = 0; i < 5000; ++i) {
+    cloud.positions.push_back(test::random_within(1, random));
+    cloud.normals.push_back(test::random_direction(random));
+  }
+  EXPECT_TRUE(detect(cloud, 0).surfaces.empty());
+}
+
+TEST(DetectSurfaces, LeavesSmallSurfacesAloneWhenAskedTo) {
+  const PointCloud cloud = cloud_of(test::plate_with_holes(), 0.005);
+  const Detection detection = detect(cloud, 0.005, {.least_points = 3000});
+  EXPECT_EQ(detection.surfaces.size(), 2U);
+  for (const DetectedSurface& s : detection.surfaces) EXPECT_GE(s.points.size(), 3000U);
+}
+
+TEST(DetectSurfaces, CanBeStopped) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW((void)detect(cloud_of(test::plate_with_holes(), 0), 0, {}, {.stop = stop.get_token()}), Cancelled);
+}
+
+}  // namespace
+}  // namespace cloud2csg
