@@ -1,0 +1,219 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "cloud2csg/solids.hpp"
+
+namespace cloud2csg {
+namespace {
+
+bool has_direction(SurfaceType type) {
+  return type != SurfaceType::sphere;
+}
+
+bool has_axis(SurfaceType type) {
+  return type == SurfaceType::cylinder || type == SurfaceType::cone || type == SurfaceType::torus;
+}
+
+bool has_radius(SurfaceType type) {
+  return type == SurfaceType::cylinder || type == SurfaceType::sphere;
+}
+
+double weight_of(const DetectedSurface& detected) {
+  return static_cast<double>(std::max<std::size_t>(detected.points.size(), 1));
+}
+
+/// Surfaces that share a direction, and what it is.
+struct DirectionCluster {
+  Eigen::Vector3d direction;
+  double weight;
+  std::vector<std::uint32_t> surfaces;
+};
+
+/// Snaps surface by surface; those of more points come first and are what others are snapped to.
+class Regulariser {
+ public:
+  Regulariser(std::span<const DetectedSurface> surfaces, double distance_tolerance, double angle_tolerance_deg)
+      : result_{.surfaces = {surfaces.begin(), surfaces.end()}, .snaps = {}},
+        distance_tolerance_(distance_tolerance),
+        sine_tolerance_(std::sin(angle_tolerance_deg * std::numbers::pi / 180)),
+        by_weight_(surfaces.size()) {
+    std::iota(by_weight_.begin(), by_weight_.end(), 0U);
+    std::ranges::stable_sort(by_weight_, std::greater{}, [&](std::uint32_t i) { return weight_of(surfaces[i]); });
+  }
+
+  RegularSurfaces run() {
+    snap_directions();
+    snap_offsets();
+    snap_axes();
+    snap_radii();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] Surface& surface(std::uint32_t i) { return result_.surfaces[i].surface; }
+
+  void note(RegularityKind kind, std::uint32_t i, double change) {
+    if (change > 0) result_.snaps.push_back({.kind = kind, .surface = i, .change = change});
+  }
+
+  std::vector<DirectionCluster> clusters() {
+    std::vector<DirectionCluster> found;
+    for (const std::uint32_t i : by_weight_) {
+      if (!has_direction(surface(i).type)) continue;
+      const Eigen::Vector3d axis = surface(i).axis;
+      const double weight = weight_of(result_.surfaces[i]);
+      const auto same = std::ranges::find_if(found, [&](const DirectionCluster& cluster) {
+        return cluster.direction.cross(axis).norm() <= sine_tolerance_;
+      });
+      if (same == found.end()) {
+        found.push_back({.direction = axis, .weight = weight, .surfaces = {i}});
+        continue;
+      }
+      const double sign = same->direction.dot(axis) < 0 ? -1 : 1;
+      same->direction = (same->weight * same->direction + weight * sign * axis).normalized();
+      same->weight += weight;
+      same->surfaces.push_back(i);
+    }
+    std::ranges::stable_sort(found, std::greater{}, &DirectionCluster::weight);
+    return found;
+  }
+
+  void snap_directions() {
+    std::vector<Eigen::Vector3d> settled;
+    for (const DirectionCluster& cluster : clusters()) {
+      const Eigen::Vector3d direction = made_orthogonal(cluster.direction, settled);
+      settled.push_back(direction);
+      for (const std::uint32_t i : cluster.surfaces) {
+        const Eigen::Vector3d axis = surface(i).axis.dot(direction) < 0 ? Eigen::Vector3d(-direction) : direction;
+        const double sine = std::min(surface(i).axis.cross(axis).norm(), 1.0);
+        note(RegularityKind::direction, i, std::asin(sine) * 180 / std::numbers::pi);
+        surface(i).axis = axis;
+      }
+    }
+  }
+
+  /// Orthogonal to the first two of the settled directions that it nearly is orthogonal to, if they are to each other.
+  [[nodiscard]] Eigen::Vector3d made_orthogonal(const Eigen::Vector3d& direction,
+                                                const std::vector<Eigen::Vector3d>& settled) const {
+    std::vector<Eigen::Vector3d> across;
+    for (const Eigen::Vector3d& other : settled) {
+      const bool is_across = std::abs(direction.dot(other)) <= sine_tolerance_;
+      const bool fits = across.empty() || std::abs(across[0].dot(other)) <= 1e-9;
+      if (is_across && fits && across.size() < 2) across.push_back(other);
+    }
+    Eigen::Vector3d result = direction;
+    for (const Eigen::Vector3d& other : across) result -= result.dot(other) * other;
+    return result.normalized();
+  }
+
+  /// Surfaces that are like the one of most points of their group; groups of one are left out.
+  template <typename IsLike>
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> groups(bool (*is_of)(SurfaceType), const IsLike& is_like) {
+    std::vector<std::vector<std::uint32_t>> found;
+    for (const std::uint32_t i : by_weight_) {
+      if (!is_of(surface(i).type)) continue;
+      const auto same = std::ranges::find_if(found, [&](const auto& group) { return is_like(group[0], i); });
+      if (same != found.end()) {
+        same->push_back(i);
+      } else {
+        found.push_back({i});
+      }
+    }
+    std::erase_if(found, [](const auto& group) { return group.size() < 2; });
+    return found;
+  }
+
+  template <typename Value>
+  [[nodiscard]] auto mean(const std::vector<std::uint32_t>& group, const Value& value) {
+    double weights = weight_of(result_.surfaces[group[0]]);
+    auto sum = decltype(value(group[0]))(weights * value(group[0]));
+    for (std::size_t k = 1; k < group.size(); ++k) {
+      const double weight = weight_of(result_.surfaces[group[k]]);
+      sum += weight * value(group[k]);
+      weights += weight;
+    }
+    return decltype(value(group[0]))(sum / weights);
+  }
+
+  void snap_offsets() {
+    const auto is_plane = [](SurfaceType type) { return type == SurfaceType::plane; };
+    const auto are_coplanar = [this](std::uint32_t a, std::uint32_t b) {
+      const double apart = surface(a).axis.dot(surface(b).position - surface(a).position);
+      return are_parallel(a, b) && std::abs(apart) <= distance_tolerance_;
+    };
+    for (const std::vector<std::uint32_t>& group : groups(is_plane, are_coplanar)) {
+      const Surface anchor = surface(group[0]);
+      const auto height = [&](std::uint32_t i) { return anchor.axis.dot(surface(i).position - anchor.position); };
+      const double common = mean(group, height);
+      for (const std::uint32_t i : group) {
+        const double change = common - height(i);
+        note(RegularityKind::offset, i, std::abs(change));
+        surface(i).position += change * anchor.axis;
+      }
+    }
+  }
+
+  /// What lies across the axis of `a` between its position and that of `b`.
+  [[nodiscard]] Eigen::Vector3d across(const Surface& a, const Surface& b) const {
+    const Eigen::Vector3d offset = b.position - a.position;
+    return offset - offset.dot(a.axis) * a.axis;
+  }
+
+  void snap_axes() {
+    const auto are_coaxial = [this](std::uint32_t a, std::uint32_t b) {
+      return are_parallel(a, b) && across(surface(a), surface(b)).norm() <= distance_tolerance_;
+    };
+    for (const std::vector<std::uint32_t>& group : groups(has_axis, are_coaxial)) {
+      const Surface anchor = surface(group[0]);
+      const auto shift = [&](std::uint32_t i) { return across(anchor, surface(i)); };
+      const Eigen::Vector3d common = mean(group, shift);
+      for (const std::uint32_t i : group) {
+        const Eigen::Vector3d change = common - shift(i);
+        note(RegularityKind::axis, i, change.norm());
+        surface(i).position += change;
+      }
+    }
+  }
+
+  void snap_radii() {
+    const auto are_equal = [this](std::uint32_t a, std::uint32_t b) {
+      return surface(a).type == surface(b).type &&
+             std::abs(surface(a).radius - surface(b).radius) <= distance_tolerance_;
+    };
+    for (const std::vector<std::uint32_t>& group : groups(has_radius, are_equal)) {
+      const double common = mean(group, [this](std::uint32_t i) { return surface(i).radius; });
+      for (const std::uint32_t i : group) {
+        note(RegularityKind::radius, i, std::abs(common - surface(i).radius));
+        surface(i).radius = common;
+      }
+    }
+  }
+
+  [[nodiscard]] bool are_parallel(std::uint32_t a, std::uint32_t b) {
+    return surface(a).axis.cross(surface(b).axis).norm() < 1e-9;
+  }
+
+  RegularSurfaces result_;
+  double distance_tolerance_;
+  double sine_tolerance_;
+  std::vector<std::uint32_t> by_weight_;
+};
+
+}  // namespace
+
+std::string_view to_string(RegularityKind kind) {
+  constexpr std::array<std::string_view, 4> k_names{"direction", "offset", "axis", "radius"};
+  return k_names[static_cast<std::size_t>(kind)];
+}
+
+RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
+                           double angle_tolerance_deg) {
+  return Regulariser(surfaces, distance_tolerance, angle_tolerance_deg).run();
+}
+
+}  // namespace cloud2csg

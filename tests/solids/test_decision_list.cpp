@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloud2csg/sample.hpp"
+#include "solids/decision_list.hpp"
+#include "solids/known_surfaces.hpp"
+#include "solids/write_solids.hpp"
+#include "support/known_solids.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr TermCosts k_costs{};
+
+/// A term space over a part of boxes and a cylinder, and the places it was made from.
+struct Scene {
+  LabelledPlaces places;
+  TermSpace space;
+};
+
+const Scene& scene() {
+  static const Scene made = [] {
+    const PrimitiveSet solids{test::placed("a", Box{{4, 3, 1}}, {0, 0, 0}),
+                              test::placed("b", Box{{1, 1, 2}}, {1, 0, 1}),
+                              test::placed("c", Cylinder{0.5, 3}, {-1, 0, 0})};
+    const CsgTree tree = parse_tree("(a | b) - c", solids);
+    const PointCloud cloud = sample_surface(tree, solids, {.count = 3000, .seed = 2});
+    Scene result;
+    result.places = label_places(cloud, {.noise = 0.0, .volume_places = 3000, .surface_points = 1000});
+    result.space = make_term_space(cloud, test::known_surfaces(solids, cloud, 0.01), result.places, 0.01);
+    return result;
+  }();
+  return made;
+}
+
+BinRange any_range(std::uint32_t bins) {
+  const std::uint32_t first = *rc::gen::inRange(0U, bins);
+  return {first, *rc::gen::inRange(first, bins)};
+}
+
+Rule any_rule() {
+  const TermSpace& space = scene().space;
+  TermPart part;
+  part.kind = *rc::gen::element(PartKind::box, PartKind::revolved);
+  if (part.kind == PartKind::box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) part.ranges[axis] = any_range(space.boxes[0].bins[axis].count());
+  } else {
+    part.ranges[0] = any_range(space.revolved[0].bins.count());
+  }
+  Rule rule{.term = {.parts = {part}}, .members = {}, .is_in = *rc::gen::arbitrary<bool>()};
+  rule.members = members_of(space, rule.term);
+  return rule;
+}
+
+DecisionList any_list() {
+  DecisionList list;
+  const std::size_t rules = *rc::gen::inRange<std::size_t>(1, 7);
+  for (std::size_t r = 0; r < rules; ++r) list.push_back(any_rule());
+  return list;
+}
+
+std::vector<double> any_gains() {
+  std::vector<double> gains(scene().space.size());
+  for (double& gain : gains) gain = *rc::gen::inRange(-8, 6) / 64.0;
+  return gains;
+}
+
+RC_GTEST_PROP(DecisionList, RemovalSavesWhatTheCostsDifferBy, ()) {
+  const DecisionList list = any_list();
+  const std::vector<double> savings = removal_savings(list, scene().space.pulls, k_costs);
+  const double cost = cost_of(list, scene().space.pulls, k_costs);
+  for (std::size_t r = 0; r < list.size(); ++r) {
+    DecisionList shorter = list;
+    shorter.erase(shorter.begin() + static_cast<std::ptrdiff_t>(r));
+    RC_ASSERT(std::abs(cost - savings[r] - cost_of(shorter, scene().space.pulls, k_costs)) < 1e-9);
+  }
+}
+
+RC_GTEST_PROP(DecisionList, InsertionGainsWhatTheCostsDifferBy, ()) {
+  const DecisionList list = any_list();
+  const TermSpace& space = scene().space;
+  const Rule rule = any_rule();
+  const std::size_t position = *rc::gen::inRange<std::size_t>(0, list.size() + 1);
+  const std::vector<double> gains =
+      insertion_gains(list, deciding_rules(list, space.size()), space.pulls, position, rule.is_in);
+  double gain = -cost_of(rule.term, k_costs);
+  for (std::size_t i = 0; i < gains.size(); ++i) gain += rule.members[i] != 0 ? gains[i] : 0.0;
+  DecisionList longer = list;
+  longer.insert(longer.begin() + static_cast<std::ptrdiff_t>(position), rule);
+  RC_ASSERT(std::abs(cost_of(list, space.pulls, k_costs) - gain - cost_of(longer, space.pulls, k_costs)) < 1e-9);
+}
+
+RC_GTEST_PROP(DecisionList, BehindARuleThatSaysTheSameAPositionIsAsGoodAsBeforeIt, ()) {
+  const DecisionList list = any_list();
+  const TermSpace& space = scene().space;
+  const std::vector<std::uint16_t> deciding = deciding_rules(list, space.size());
+  for (const bool is_in : {true, false}) {
+    for (std::size_t position = 1; position <= list.size(); ++position) {
+      if (list[position - 1].is_in != is_in) continue;
+      RC_ASSERT(insertion_gains(list, deciding, space.pulls, position, is_in) ==
+                insertion_gains(list, deciding, space.pulls, position - 1, is_in));
+    }
+  }
+}
+
+RC_GTEST_PROP(WriteSolids, TheTreeDecidesAsTheListDoes, ()) {
+  const DecisionList list = any_list();
+  const TermSpace& space = scene().space;
+  const WrittenSolids written = write_solids(space, list);
+  // Places were merged by kind, so hold the tree against the cost of its own decisions on all of them.
+  double of_list = 0;
+  const std::vector<std::uint16_t> deciding = deciding_rules(list, space.size());
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    if (deciding[i] < list.size() && list[deciding[i]].is_in) of_list += space.pulls[i];
+  }
+  double of_tree = 0;
+  const std::vector<double> values = implicit_value(written.tree, written.solids, scene().places.positions);
+  for (std::size_t i = 0; i < values.size(); ++i) of_tree += values[i] < 0 ? scene().places.weights[i] : 0.0;
+  // What adds ends with the part: far places, which are all out, may only be right more often.
+  RC_ASSERT(of_tree >= of_list - 1e-9);
+}
+
+RC_GTEST_PROP(TermSearch, TheBestBoxIsNoWorseThanAnyOther, ()) {
+  const TermSpace& space = scene().space;
+  const std::vector<double> gains = any_gains();
+  const PricedTerm best = best_box(space, 0, gains, k_costs, 0);
+  const PricedTerm overall = best_term(space, gains, k_costs);
+  for (int k = 0; k < 5; ++k) {
+    const Rule rule = any_rule();
+    double net = -cost_of(rule.term, k_costs);
+    for (std::size_t i = 0; i < gains.size(); ++i) net += rule.members[i] != 0 ? gains[i] : 0.0;
+    if (rule.term.parts[0].kind == PartKind::box) RC_ASSERT(net <= std::max(best.net, 0.0) + 1e-9);
+    RC_ASSERT(net <= std::max(overall.net, 0.0) + 1e-9);
+  }
+}
+
+RC_GTEST_PROP(TermSearch, ANetIsWhatTheMembersGain, ()) {
+  const TermSpace& space = scene().space;
+  const std::vector<double> gains = any_gains();
+  const PricedTerm best = best_term(space, gains, k_costs);
+  if (best.term.parts.empty()) return;
+  const std::vector<std::uint8_t> members = members_of(space, best.term);
+  double net = -cost_of(best.term, k_costs);
+  for (std::size_t i = 0; i < gains.size(); ++i) net += members[i] != 0 ? gains[i] : 0.0;
+  RC_ASSERT(std::abs(net - best.net) < 1e-9);
+}
+
+}  // namespace
+}  // namespace cloud2csg

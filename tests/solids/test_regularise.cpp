@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "cloud2csg/solids.hpp"
+#include "solids/known_surfaces.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr double k_tolerance = 0.01;
+
+DetectedSurface with_points(Surface surface, std::size_t points) {
+  return {.surface = surface, .points = std::vector<std::uint32_t>(points, 0), .rms = 0};
+}
+
+Eigen::Vector3d turned(const Eigen::Vector3d& direction, const Eigen::Vector3d& about, double degrees) {
+  return Eigen::AngleAxisd(degrees * std::numbers::pi / 180, about) * direction;
+}
+
+Surface cylinder_at(const Eigen::Vector3d& position, const Eigen::Vector3d& axis, double radius) {
+  return {.type = SurfaceType::cylinder, .position = position, .axis = axis, .radius = radius};
+}
+
+const Eigen::Vector3d k_x = Eigen::Vector3d::UnitX();
+const Eigen::Vector3d k_z = Eigen::Vector3d::UnitZ();
+
+TEST(Regularise, MakesDirectionsEqualOrOrthogonal) {
+  const std::vector<DetectedSurface> surfaces{
+      with_points(test::plane_at({0, 0, 1}, k_z), 1000),
+      with_points(test::plane_at({0, 0, -1}, turned(-k_z, k_x, 0.5)), 500),
+      with_points(test::plane_at({1, 0, 0}, turned(k_x, Eigen::Vector3d::UnitY(), 0.7)), 300),
+      with_points(cylinder_at({0, 0, 0}, turned(k_z, k_x, -0.4), 1), 200)};
+  const RegularSurfaces regular = regularise(surfaces, k_tolerance);
+  const auto axis = [&](std::size_t i) { return regular.surfaces[i].surface.axis; };
+  EXPECT_NEAR(axis(0).dot(axis(1)), -1, 1e-12);
+  EXPECT_NEAR(axis(0).dot(axis(2)), 0, 1e-12);
+  EXPECT_NEAR(axis(0).dot(axis(3)), 1, 1e-12);
+  EXPECT_LT(axis(0).cross(k_z).norm(), 0.004) << "what has most points is moved least";
+  EXPECT_EQ(regular.snaps.size(), 4U);
+  for (const Snap& snap : regular.snaps) {
+    EXPECT_EQ(snap.kind, RegularityKind::direction);
+    EXPECT_LT(snap.change, 1.0);
+  }
+}
+
+TEST(Regularise, LeavesWhatIsFarFromRegular) {
+  const std::vector<DetectedSurface> surfaces{
+      with_points(test::plane_at({0, 0, 1}, k_z), 1000), with_points(test::plane_at({0, 0, 1.02}, k_z), 1000),
+      with_points(test::plane_at({0, 0, 0}, turned(k_z, k_x, 3)), 500),
+      with_points(cylinder_at({0, 0, 0}, k_z, 1), 200), with_points(cylinder_at({0.02, 0, 0}, k_z, 1.02), 200)};
+  const RegularSurfaces regular = regularise(surfaces, k_tolerance);
+  EXPECT_TRUE(regular.snaps.empty());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    EXPECT_EQ(regular.surfaces[i].surface.position, surfaces[i].surface.position);
+    EXPECT_LT((regular.surfaces[i].surface.axis - surfaces[i].surface.axis).norm(), 1e-12);
+  }
+}
+
+TEST(Regularise, SharesOffsetsAxesAndRadiiByTheirPoints) {
+  const std::vector<DetectedSurface> surfaces{
+      with_points(test::plane_at({0, 0, 1}, k_z), 300), with_points(test::plane_at({5, 0, 1.008}, -k_z), 100),
+      with_points(cylinder_at({0, 0, 0}, k_z, 1), 300), with_points(cylinder_at({0.004, 0, 7}, -k_z, 1.008), 100)};
+  const RegularSurfaces regular = regularise(surfaces, k_tolerance);
+  const auto surface = [&](std::size_t i) { return regular.surfaces[i].surface; };
+  EXPECT_NEAR(surface(0).position.z(), 1.002, 1e-12);
+  EXPECT_NEAR(surface(1).position.z(), 1.002, 1e-12);
+  EXPECT_NEAR(surface(2).position.x(), 0.001, 1e-12);
+  EXPECT_NEAR(surface(3).position.x(), 0.001, 1e-12);
+  EXPECT_EQ(surface(3).position.z(), 7);
+  EXPECT_NEAR(surface(2).radius, 1.002, 1e-12);
+  EXPECT_EQ(surface(2).radius, surface(3).radius);
+}
+
+}  // namespace
+}  // namespace cloud2csg
