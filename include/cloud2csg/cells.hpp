@@ -33,6 +33,9 @@ struct CellComplex {
   /// Those that reach to infinity, ascending: they cannot be in a bounded solid. The first cell, but where half-spaces
   /// shut it in.
   std::vector<CellIndex> unbounded = {0};
+  /// By cell: lines of sight from the sensors to points on a primitive that pass through it, each counted as the points
+  /// that it stands for. Empty where the cloud has no sensor positions.
+  std::vector<double> seen_through = {};
   std::vector<std::size_t> points_of_primitive;  ///< how many points are on the surface of each primitive
   std::size_t unassigned = 0;                    ///< points that are on none
   std::vector<std::uint32_t> order;              ///< all points, so that neighbours are near each other
@@ -51,12 +54,15 @@ struct CellOptions {
   double noise;  ///< see estimate_noise()
   Precision precision = Precision::automatic;
   SampleCounts samples = {};
+  std::size_t sight_lines = 20'000;  ///< at most so many are looked at, of points all over the cloud
 };
 
 /// The cells that points and samples of the primitives' surfaces meet, with what they say. A point speaks where it is
 /// clear on which side of each other primitive it lies: of the cell just inside and just outside of the surface that it
-/// is on. O(points x primitives near each) time. The result does not depend on the number of threads or the instruction
-/// set. Precondition: the cloud has normals and points. @throws Cancelled
+/// is on. Where the sensors stood is known, lines of sight say of the cells that they pass through clearly, away from
+/// all surfaces, that these are empty. O(points x primitives near each + sight lines x primitives) time. The result
+/// does not depend on the number of threads or the instruction set. Precondition: the cloud has normals and points.
+/// @throws Cancelled
 [[nodiscard]] CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const CellOptions& options, const RunContext& run = {});
 
@@ -77,14 +83,17 @@ struct LabelOptions {
   /// than this share of what its area lets expect, those that are missing. A quarter: a surface of which most was
   /// not seen is still believed.
   double absence = 0.25;
+  double presence = 5;  ///< points that a patch has stand for so many of those: where there are some, it was seen
+  double sight = 1;     ///< what a line of sight through a cell of the solid costs, in points
 };
 
 struct CellLabels {
   std::vector<bool> is_in = {};       ///< by cell: whether it is in the solid
   std::vector<double> evidence = {};  ///< by cell: how many points more it costs to change its label alone; at least 0
-  double density = 0;                 ///< points per area of what is surface
+  double density = 0;                 ///< points per area of what is surface, where they are sparse
   double points = 0;                  ///< that speak
   double cost = 0;                    ///< see cost_of()
+  LabelOptions options = {};          ///< what they were made with
 };
 
 /// Tells which cells are in the solid: the labels with the least cost, exactly, by a minimum cut between the cells
@@ -93,13 +102,13 @@ struct CellLabels {
 [[nodiscard]] CellLabels label_cells(const CellComplex& complex, const LabelOptions& options = {});
 
 /// What it costs to have just these cells in the solid, in points: those that say the opposite of one of their two
-/// cells, a half for each, and those that are missing on patches between a cell that is in and one that is not.
+/// cells, a half for each, those that are missing on patches between a cell that is in and one that is not, and those
+/// that were seen through the solid.
 /// `density` as in CellLabels. O(cells + patches)
 [[nodiscard]] double cost_of(const CellComplex& complex, const std::vector<bool>& is_in, double density,
                              const LabelOptions& options = {});
 
 struct CellSolveOptions {
-  LabelOptions labels = {};
   /// Of cells whose labels cost fewer points to change, the formula may make what it likes. Descending; each is tried,
   /// and that formula taken that costs least, leaves included.
   std::vector<double> least_evidence = {12, 3, 1, 0.3};

@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
-#include "base/random.hpp"
 #include "cloud2csg/cells.hpp"
+#include "geometry/random_between.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -13,11 +13,7 @@ Points places_in(const AlignedBox& box, std::size_t count) {
   RandomStream random(0, k_stream);
   Points places;
   places.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Eigen::Vector3d place;
-    for (int axis = 0; axis < 3; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
-    places.push_back(place);
-  }
+  for (std::size_t i = 0; i < count; ++i) places.push_back(random_between(box.min(), box.max(), random));
   return places;
 }
 

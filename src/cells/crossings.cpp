@@ -1,60 +1,25 @@
 #include "cells/crossings.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/parallel.hpp"
 #include "cells/side_kernels.hpp"
+#include "cells/sight_lines.hpp"
 #include "fitness/frame.hpp"
 #include "fitness/point_blocks.hpp"
 
 namespace cloud2csg {
 namespace {
 
-template <class Operation>
-BlockMask combine(const BlockMask& a, const BlockMask& b, const Operation& operation) {
-  BlockMask result{};
-  for (std::size_t w = 0; w < result.size(); ++w) result[w] = operation(a[w], b[w]);
-  return result;
-}
-BlockMask both(const BlockMask& a, const BlockMask& b) {
-  return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x & y; });
-}
-BlockMask either(const BlockMask& a, const BlockMask& b) {
-  return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x | y; });
-}
-BlockMask without(const BlockMask& a, const BlockMask& b) {
-  return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x & ~y; });
-}
-bool is_empty(const BlockMask& mask) {
-  return std::ranges::all_of(mask, [](std::uint64_t word) { return word == 0; });
-}
-std::uint64_t count(const BlockMask& mask) {
-  std::uint64_t sum = 0;
-  for (const std::uint64_t word : mask) sum += static_cast<std::uint64_t>(std::popcount(word));
-  return sum;
-}
-bool has(const BlockMask& mask, std::size_t i) {
-  return (mask[i / 64] >> (i % 64) & 1U) != 0;
-}
-void clear(BlockMask& mask, std::size_t i) {
-  mask[i / 64] &= ~(std::uint64_t{1} << (i % 64));
-}
-BlockMask first_points(std::size_t points) {
-  BlockMask mask{};
-  for (std::size_t i = 0; i < points; ++i) mask[i / 64] |= std::uint64_t{1} << (i % 64);
-  return mask;
-}
-
-/// Whether the distance changes by no more than one moves: then a block may be told to be far from one point of it.
-bool is_distance_steady(const Primitive& primitive) {
-  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
-}
+/// What is to be counted: points of surfaces, or the lines of sight that places are on.
+enum class Counted : std::uint8_t { points, lines };
 
 template <class Real>
 struct Input {
+  Counted counted;
   const PointCloud& cloud;
   std::span<const std::uint32_t> order;
   AlignedBox box;
@@ -83,7 +48,8 @@ class CrossingCounter {
     look_around();
     for (std::size_t block = 0; block < blocks_.count(); ++block) {
       find_active(block);
-      tally(blocks_.size(block));
+      if (input_.counted == Counted::points) tally(blocks_.size(block));
+      if (input_.counted == Counted::lines) tally_places(blocks_.size(block));
     }
   }
 
@@ -110,7 +76,8 @@ class CrossingCounter {
       if (!input_.reach[p].intersects(box)) continue;
       NearPrimitive& near = near_.emplace_back();
       near.primitive = p;
-      if (!is_distance_steady(input_.primitives[p])) continue;
+      // Only where the distance changes by no more than one moves may a block be told to be far from one point of it.
+      if (!is_plain(input_.primitives[p])) continue;
       near.at_middle.resize(middles.size());
       evaluate_distance(input_.primitives[p], middles, near.at_middle);
     }
@@ -156,17 +123,17 @@ class CrossingCounter {
     if (is_empty(on_several)) return;
     const Real apart = static_cast<Real>(k_open_share * input_.tolerances.distance);
     for (std::size_t i = 0; i < k_block_points; ++i) {
-      if (!has(on_several, i)) continue;
+      if (!has_point(on_several, i)) continue;
       Real least = std::numeric_limits<Real>::max();
       for (const ActivePrimitive<Real>& one : active()) {
-        if (has(one.sides.along, i) || has(one.sides.against, i)) {
+        if (has_point(one.sides.along, i) || has_point(one.sides.against, i)) {
           least = std::min(least, std::abs(one.field.distance[i]));
         }
       }
       for (ActivePrimitive<Real>& one : active()) {
         if (std::abs(one.field.distance[i]) <= least + apart) continue;
-        clear(one.sides.along, i);
-        clear(one.sides.against, i);
+        remove_point(one.sides.along, i);
+        remove_point(one.sides.against, i);
       }
     }
   }
@@ -178,7 +145,8 @@ class CrossingCounter {
     BlockMask open{};
     unsure_ = {};
     for (const ActivePrimitive<Real>& one : active()) {
-      crossings_.points_of_primitive[one.primitive] += count(both(all, either(one.sides.along, one.sides.against)));
+      crossings_.points_of_primitive[one.primitive] +=
+          point_count(both(all, either(one.sides.along, one.sides.against)));
     }
     keep_to_nearest();
     for (const ActivePrimitive<Real>& one : active()) {
@@ -187,8 +155,15 @@ class CrossingCounter {
       open = either(open, without(one.sides.open, on));
       unsure_ = either(unsure_, without(one.sides.near, on));
     }
-    crossings_.unassigned += points - count(on_any);
+    crossings_.unassigned += points - point_count(on_any);
     split(0, without(on_any, open));
+  }
+
+  /// Counts the lines of a block by the cells that they pass through clearly.
+  void tally_places(std::size_t places) {
+    BlockMask near{};
+    for (const ActivePrimitive<Real>& one : active()) near = either(near, one.sides.near);
+    split(0, without(first_points(places), near));
   }
 
   /// Takes apart points by the side of one active primitive after the other.
@@ -221,8 +196,13 @@ class CrossingCounter {
     std::ranges::sort(outer_);
     const CellIndex inner = crossings_.cells.find_or_insert(inner_);
     const CellIndex outer = crossings_.cells.find_or_insert(outer_);
-    const std::uint64_t unsure = count(both(points, unsure_));
-    crossings_.units[Crossings::pair(inner, outer)] += k_sure_units * (count(points) - unsure) + unsure;
+    std::uint64_t& units = crossings_.units[Crossings::pair(inner, outer)];
+    if (input_.counted == Counted::lines) {
+      units += byte_count(points);
+      return;
+    }
+    const std::uint64_t unsure = point_count(both(points, unsure_));
+    units += k_sure_units * (point_count(points) - unsure) + unsure;
   }
 
   enum class Side : std::uint8_t { inside, outside, along, against };
@@ -240,12 +220,12 @@ class CrossingCounter {
   Crossings crossings_;
 };
 
-/// Chunks a thread; the sums do not depend on how many.
+/// A share of the chunks a thread.
 template <class Real>
-Crossings count_in(const PointCloud& cloud, std::span<const std::uint32_t> order, const AlignedBox& box,
-                   const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
-                   const RunContext& run) {
-  Input<Real> input{cloud, order, box, reaching.primitives, reaching.reach, tolerances};
+std::vector<Crossings> count_in(Counted counted, const PointCloud& cloud, std::span<const std::uint32_t> order,
+                                const AlignedBox& box, const ReachingPrimitives& reaching,
+                                const SegmentationTolerances& tolerances, const RunContext& run) {
+  Input<Real> input{counted, cloud, order, box, reaching.primitives, reaching.reach, tolerances};
   const Eigen::Vector3d origin = PointBlocks<Real>::origin(box);
   move_to_frame<Real>(input.primitives, origin);
   for (AlignedBox& reached : input.reach) reached.translate(-origin);
@@ -261,32 +241,23 @@ Crossings count_in(const PointCloud& cloud, std::span<const std::uint32_t> order
     }
     shares[k] = std::move(counter.crossings());
   });
-  for (std::size_t k = 1; k < parts; ++k) shares.front().absorb(shares[k]);
-  return std::move(shares.front());
+  return shares;
+}
+
+std::vector<Crossings> count(Counted counted, const PointCloud& cloud, std::span<const std::uint32_t> order,
+                             const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
+                             const RunContext& run) {
+  const AlignedBox box = bounds_of(cloud.positions);
+  return reaching.is_single ? count_in<float>(counted, cloud, order, box, reaching, tolerances, run)
+                            : count_in<double>(counted, cloud, order, box, reaching, tolerances, run);
 }
 
 }  // namespace
-
-std::size_t CellSet::Hash::operator()(const Cell& cell) const {
-  std::uint64_t hash = cell.size();
-  for (const PrimitiveIndex p : cell) hash = std::rotl((hash ^ p) * 0x9e37'79b9'7f4a'7c15ULL, 29);
-  return hash;
-}
 
 CellIndex CellSet::find_or_insert(const Cell& cell) {
   const auto [place, is_new] = index_.try_emplace(cell, static_cast<CellIndex>(cells_.size()));
   if (is_new) cells_.push_back(&place->first);
   return place->second;
-}
-
-void Crossings::absorb(const Crossings& other) {
-  for (const auto& [pair_of_other, count] : other.units) {
-    const CellIndex in = cells.find_or_insert(other.cells[inner(pair_of_other)]);
-    const CellIndex out = cells.find_or_insert(other.cells[outer(pair_of_other)]);
-    units[pair(in, out)] += count;
-  }
-  for (std::size_t p = 0; p < points_of_primitive.size(); ++p) points_of_primitive[p] += other.points_of_primitive[p];
-  unassigned += other.unassigned;
 }
 
 ReachingPrimitives reaching_primitives(const PrimitiveSet& primitives, const AlignedBox& points,
@@ -302,12 +273,17 @@ ReachingPrimitives reaching_primitives(const PrimitiveSet& primitives, const Ali
   return {.primitives = primitives, .reach = std::move(boxes), .is_single = is_single};
 }
 
-Crossings count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
-                          const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
-                          const RunContext& run) {
-  const AlignedBox box = bounds_of(cloud.positions);
-  return reaching.is_single ? count_in<float>(cloud, order, box, reaching, tolerances, run)
-                            : count_in<double>(cloud, order, box, reaching, tolerances, run);
+std::vector<Crossings> count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
+                                       const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
+                                       const RunContext& run) {
+  return count(Counted::points, cloud, order, reaching, tolerances, run);
+}
+
+std::vector<Crossings> count_lines(const SightLines& lines, const ReachingPrimitives& reaching,
+                                   const SegmentationTolerances& tolerances, const RunContext& run) {
+  std::vector<std::uint32_t> order(lines.places.size());
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  return count(Counted::lines, lines.places, order, reaching, tolerances, run);
 }
 
 }  // namespace cloud2csg

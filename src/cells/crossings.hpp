@@ -3,6 +3,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "cells/cell_hash.hpp"
 #include "cloud2csg/cells.hpp"
 
 /// What points say of the cells on either side of the surface that they are on.
@@ -16,10 +17,7 @@ class CellSet {
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
 
  private:
-  struct Hash {
-    std::size_t operator()(const Cell& cell) const;
-  };
-  std::unordered_map<Cell, CellIndex, Hash> index_;
+  std::unordered_map<Cell, CellIndex, CellHash> index_;
   std::vector<const Cell*> cells_;  // keys of index_, which stay where they are
 };
 
@@ -37,8 +35,6 @@ struct Crossings {
   }
   [[nodiscard]] static CellIndex inner(std::uint64_t pair) { return static_cast<CellIndex>(pair >> 32U); }
   [[nodiscard]] static CellIndex outer(std::uint64_t pair) { return static_cast<CellIndex>(pair); }
-
-  void absorb(const Crossings& other);
 };
 
 /// Primitives and what is worked out of them once for several sets of points.
@@ -50,9 +46,16 @@ struct ReachingPrimitives {
 [[nodiscard]] ReachingPrimitives reaching_primitives(const PrimitiveSet& primitives, const AlignedBox& points,
                                                      const CellOptions& options);
 
-/// `order`: see spatial_order(). @throws Cancelled
-[[nodiscard]] Crossings count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
-                                        const ReachingPrimitives& reaching, const SegmentationTolerances& tolerances,
-                                        const RunContext& run);
+/// Shares of the points, each with numbers of cells of its own, to be summed: how many there are depends on the
+/// threads, the sums do not. There is at least one. `order`: see spatial_order(). @throws Cancelled
+[[nodiscard]] std::vector<Crossings> count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
+                                                     const ReachingPrimitives& reaching,
+                                                     const SegmentationTolerances& tolerances, const RunContext& run);
+
+struct SightLines;
+/// The same of lines of sight: `units` has lines, by the cell that they pass through, twice. Places near a surface,
+/// where it is not clear which cell they are in, say nothing.
+[[nodiscard]] std::vector<Crossings> count_lines(const SightLines& lines, const ReachingPrimitives& reaching,
+                                                 const SegmentationTolerances& tolerances, const RunContext& run);
 
 }  // namespace cloud2csg

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "cells/crossings.hpp"
 #include "cells/infinity.hpp"
+#include "cells/sensor_views.hpp"
+#include "cells/sight_lines.hpp"
 #include "cells/surface_samples.hpp"
 #include "fitness/spatial_order.hpp"
 
@@ -14,22 +17,29 @@ namespace {
 /// Puts together what points and samples say.
 class ComplexBuilder {
  public:
-  enum class Source : std::uint8_t { points, samples };
+  /// Where points come from: of samples that no sensor could see, only the cells are of use.
+  enum class Source : std::uint8_t { points, samples, hidden_samples };
 
   CellIndex add_cell(const Cell& cell) { return cells_.find_or_insert(cell); }
 
-  void add(const Crossings& crossings, Source source) {
-    std::vector<CellIndex> number(crossings.cells.size());
-    for (CellIndex c = 0; c < number.size(); ++c) number[c] = add_cell(crossings.cells[c]);
-    patches_.reserve(patches_.size() + crossings.units.size());
-    for (const auto& [pair, units] : crossings.units) {
-      const CellIndex inner = number[Crossings::inner(pair)];
-      const CellIndex outer = number[Crossings::outer(pair)];
-      const double points = static_cast<double>(units) / k_sure_units;
-      Patch patch{.first = inner, .second = outer};
-      (source == Source::points ? patch.first_in : patch.area) = points;
-      patches_.push_back(patch);
+  void add(std::span<const Crossings> shares, Source source) {
+    std::size_t count = patches_.size();
+    for (const Crossings& share : shares) count += share.units.size();
+    patches_.reserve(count);
+    for (const Crossings& share : shares) add_share(share, source);
+  }
+
+  /// What is known to be empty, since sensors saw through it: each line stands for so many points. Lines are summed as
+  /// whole numbers, so that the sums do not depend on the shares.
+  void add_seen_through(std::span<const Crossings> shares, double points) {
+    for (const Crossings& share : shares) {
+      for (const auto& [pair, lines] : share.units) {
+        const CellIndex cell = add_cell(share.cells[Crossings::inner(pair)]);
+        seen_through_.resize(std::max<std::size_t>(seen_through_.size(), cell + 1));
+        seen_through_[cell] += lines;
+      }
     }
+    points_a_line_ = points;
   }
 
   /// `areas`: what a sample of each primitive stands for.
@@ -48,6 +58,12 @@ class ComplexBuilder {
     for (Patch& patch : result.patches) {
       if (patch.area > 0) patch.area *= area_of_sample(result.cells[patch.first], result.cells[patch.second], areas);
     }
+    if (!seen_through_.empty()) {
+      seen_through_.resize(place.size());
+      result.seen_through.resize(place.size());
+      for (CellIndex c = 0; c < place.size(); ++c)
+        result.seen_through[place[c]] = points_a_line_ * static_cast<double>(seen_through_[c]);
+    }
     result.unbounded.clear();
     for (const CellIndex cell : unbounded) result.unbounded.push_back(place[cell]);
     std::ranges::sort(result.unbounded);
@@ -55,6 +71,20 @@ class ComplexBuilder {
   }
 
  private:
+  void add_share(const Crossings& crossings, Source source) {
+    std::vector<CellIndex> number(crossings.cells.size());
+    for (CellIndex c = 0; c < number.size(); ++c) number[c] = add_cell(crossings.cells[c]);
+    for (const auto& [pair, units] : crossings.units) {
+      const CellIndex inner = number[Crossings::inner(pair)];
+      const CellIndex outer = number[Crossings::outer(pair)];
+      const double points = static_cast<double>(units) / k_sure_units;
+      Patch patch{.first = inner, .second = outer};
+      if (source == Source::points) patch.first_in = points;
+      if (source == Source::samples) patch.area = points;
+      patches_.push_back(patch);
+    }
+  }
+
   /// In lexicographic order; returns the place of each number.
   std::vector<CellIndex> sort_cells(std::vector<Cell>& sorted) const {
     std::vector<CellIndex> order(cells_.size());
@@ -91,8 +121,28 @@ class ComplexBuilder {
   }
 
   CellSet cells_;
-  std::vector<Patch> patches_;  // by the numbers of cells, the inner one first; area: samples
+  std::vector<Patch> patches_;               // by the numbers of cells, the inner one first; area: samples
+  std::vector<std::uint64_t> seen_through_;  // by the numbers of cells: lines
+  double points_a_line_ = 0;
 };
+
+/// The points of which `chosen` says so.
+PointCloud those(const PointCloud& points, const std::vector<bool>& chosen, bool says) {
+  PointCloud result;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (chosen[i] != says) continue;
+    result.positions.push_back(points.positions[i]);
+    result.normals.push_back(points.normals[i]);
+  }
+  return result;
+}
+
+void add_counts(const Crossings& share, CellComplex& sum) {
+  for (std::size_t p = 0; p < sum.points_of_primitive.size(); ++p) {
+    sum.points_of_primitive[p] += share.points_of_primitive[p];
+  }
+  sum.unassigned += share.unassigned;
+}
 
 }  // namespace
 
@@ -102,20 +152,31 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
   const AlignedBox box = bounds_of(cloud.positions);
   std::vector<std::uint32_t> order = spatial_order(cloud.positions, box, run);
   const ReachingPrimitives reaching = reaching_primitives(primitives, box, options);
-  const Crossings of_points = count_crossings(cloud, order, reaching, options.tolerances, run);
+  const std::vector<Crossings> of_points = count_crossings(cloud, order, reaching, options.tolerances, run);
   ComplexBuilder builder;
   builder.add_cell({});
   builder.add(of_points, Source::points);
   const SurfaceSamples samples = sample_surfaces(primitives, reaching.reach, box, options.samples, run);
-  if (const PointCloud& points = samples.points; points.size() > 0) {
+  const auto add_samples = [&](const PointCloud& points, Source source) {
+    if (points.size() == 0) return;
     const auto order_of_samples = spatial_order(points.positions, bounds_of(points.positions), run);
-    builder.add(count_crossings(points, order_of_samples, reaching, options.tolerances, run), Source::samples);
+    builder.add(count_crossings(points, order_of_samples, reaching, options.tolerances, run), source);
+  };
+  if (cloud.has_sensor_positions()) {
+    const std::vector<bool> seen = are_seen(samples.points, cloud, order, run);
+    add_samples(those(samples.points, seen, true), Source::samples);
+    add_samples(those(samples.points, seen, false), Source::hidden_samples);
+  } else {
+    add_samples(samples.points, Source::samples);
+  }
+  if (const SightLines lines = find_sight_lines(cloud, order, reaching, options, run); lines.count > 0) {
+    builder.add_seen_through(count_lines(lines, reaching, options.tolerances, run), lines.points_each);
   }
   std::vector<CellIndex> unbounded;
   for (const Cell& cell : cells_at_infinity(primitives)) unbounded.push_back(builder.add_cell(cell));
   CellComplex result = std::move(builder).build(samples.area_of_sample, unbounded);
-  result.points_of_primitive = of_points.points_of_primitive;
-  result.unassigned = of_points.unassigned;
+  result.points_of_primitive.resize(primitives.size());
+  for (const Crossings& share : of_points) add_counts(share, result);
   result.order = std::move(order);
   return result;
 }

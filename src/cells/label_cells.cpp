@@ -8,7 +8,10 @@
 namespace cloud2csg {
 namespace {
 
-/// Points per area of what is surface: the median over the points.
+/// Where points are sparsest: so large a share of them.
+constexpr double k_sparse_share = 0.05;
+
+/// Points per area of what is surface where it is seen badly: in clefts, and by few of the sensors.
 double density_of(const CellComplex& complex) {
   struct Seen {
     double density, points;
@@ -25,7 +28,7 @@ double density_of(const CellComplex& complex) {
   double sum = 0;
   for (const Seen& patch : seen) {
     sum += patch.points;
-    if (2 * sum >= all) return patch.density;
+    if (sum >= k_sparse_share * all) return patch.density;
   }
   return 0;
 }
@@ -121,12 +124,19 @@ class MinimumCut {
 class LabelCosts {
  public:
   LabelCosts(const CellComplex& complex, double density, const LabelOptions& options)
-      : complex_(complex), expected_(options.absence * density), in_(complex.cells.size()), out_(complex.cells.size()) {
+      : complex_(complex),
+        expected_(options.absence * density),
+        presence_(options.presence),
+        in_(complex.cells.size()),
+        out_(complex.cells.size()) {
     for (const Patch& patch : complex.patches) {
       in_[patch.first] += patch.first_in / 2;
       out_[patch.second] += patch.first_in / 2;
       in_[patch.second] += patch.second_in / 2;
       out_[patch.first] += patch.second_in / 2;
+    }
+    for (CellIndex cell = 0; cell < complex.seen_through.size(); ++cell) {
+      out_[cell] += options.sight * complex.seen_through[cell];
     }
   }
 
@@ -169,20 +179,21 @@ class LabelCosts {
  private:
   /// Points that would be on a patch, were it surface, and are not.
   [[nodiscard]] double missing_points(const Patch& patch) const {
-    return std::max(0.0, expected_ * patch.area - (patch.first_in + patch.second_in));
+    return std::max(0.0, expected_ * patch.area - presence_ * (patch.first_in + patch.second_in));
   }
 
   static constexpr double k_forbidden = 1e12;  // more than any cloud has points
 
   const CellComplex& complex_;
-  double expected_;               // points per area
+  double expected_;  // points per area
+  double presence_;
   std::vector<double> in_, out_;  // what points have against a cell's being out, and in
 };
 
 }  // namespace
 
 CellLabels label_cells(const CellComplex& complex, const LabelOptions& options) {
-  CellLabels result{.density = density_of(complex)};
+  CellLabels result{.density = density_of(complex), .options = options};
   const LabelCosts costs(complex, result.density, options);
   result.is_in = costs.cheapest();
   result.evidence = costs.evidence(result.is_in);

@@ -5,6 +5,8 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "fitness/mask_bits-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -13,14 +15,6 @@ namespace {
 /// Lanes that fit two bytes of bits.
 template <class Real>
 using Lanes = hn::CappedTag<Real, 16>;
-
-/// Read back byte by byte: a wider load would have to wait for the store.
-template <class D, class M>
-HWY_INLINE std::uint64_t bits_of(D tag, M mask) {
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(tag, mask, bytes.data());
-  return bytes[0] | std::uint64_t{bytes[1]} << 8U;
-}
 
 template <class Real>
 void sides_of_block(const BlockField<Real>& field, const BlockNormals<Real>& normals,

@@ -5,6 +5,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "cells/cell_hash.hpp"
 #include "cells/decompose.hpp"
 #include "cloud2csg/cells.hpp"
 #include "cloud2csg/restrict.hpp"
@@ -12,12 +13,6 @@
 
 namespace cloud2csg {
 namespace {
-
-std::size_t hash_of(const Cell& cell) {
-  std::uint64_t hash = cell.size();
-  for (const PrimitiveIndex p : cell) hash = (hash ^ p) * 0x9e37'79b9'7f4a'7c15ULL + (hash >> 32U);
-  return hash;
-}
 
 Cell without(const Cell& cell, PrimitiveIndex primitive) {
   Cell rest = cell;
@@ -75,8 +70,8 @@ class KnownCells {
   struct Hash {
     using is_transparent = void;
     const KnownCells* known;
-    std::size_t operator()(std::size_t place) const { return hash_of(known->cells_[place].cell); }
-    std::size_t operator()(const Cell& cell) const { return hash_of(cell); }
+    std::size_t operator()(std::size_t place) const { return CellHash()(known->cells_[place].cell); }
+    std::size_t operator()(const Cell& cell) const { return CellHash()(cell); }
   };
   struct Equal {
     using is_transparent = void;
@@ -337,7 +332,7 @@ std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLa
   const auto try_with = [&](double least_evidence, const MinimalFormulaOptions* minimal) {
     std::optional<CellSolution> solution = solve_sure_cells(complex, labels, least_evidence, minimal, run);
     if (!solution) return;
-    solution->cost = cost_of(complex, cells_in(solution->tree, complex), labels.density, options.labels);
+    solution->cost = cost_of(complex, cells_in(solution->tree, complex), labels.density, labels.options);
     if (!best || total(*solution) <= total(*best)) best = std::move(solution);
   };
   std::size_t sure = complex.cells.size() + 1;
@@ -352,7 +347,8 @@ std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLa
   }
   if (!best) return best;
   const double least = best->least_evidence;
-  if (!best->is_minimal()) try_with(least, &options.minimal);
+  // Without cores there is nothing that a minimal formula could replace.
+  if (!best->is_minimal() && !best->cores.empty()) try_with(least, &options.minimal);
   best->is_complete = best->is_minimal() || !run.stop.stop_requested();
   for (CellIndex cell = 0; cell < complex.cells.size(); ++cell) {
     if (labels.evidence[cell] < least) best->open_cells.push_back(cell);

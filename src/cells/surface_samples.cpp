@@ -4,45 +4,26 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "geometry/random_between.hpp"
 #include "primitive/bounds_index.hpp"
 #include "primitive/plain_surface.hpp"
+#include "primitive/sampled_field.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr std::uint64_t k_stream = 0x63656c6c73'00;
 
-bool is_plain(const Primitive& primitive) {
-  return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
-}
-
-struct Field {
-  explicit Field(std::size_t count) : distances(count), slopes(count) {}
-  std::vector<double> distances;
-  Points slopes;
-};
-
-void evaluate(const Primitive& primitive, const Points& points, Field& field) {
-  evaluate_field(primitive, points,
-                 {.distance = field.distances,
-                  .gradient_x = field.slopes.x,
-                  .gradient_y = field.slopes.y,
-                  .gradient_z = field.slopes.z});
-}
-
 /// Moves points onto f = 0 along the gradient and gives them its direction; those that do not get there are left out.
 PointCloud settled(const Primitive& primitive, Points points, double scale) {
   constexpr int k_steps = 12;
   constexpr double k_arrived = 1e-6;
-  Field field(points.size());
-  for (int step = 0; step <= k_steps; ++step) {
-    evaluate(primitive, points, field);
-    if (step == k_steps) break;
+  SampledField field = sample_field(primitive, points);
+  for (int step = 0; step < k_steps; ++step) {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3d slope = field.slopes[i];
-      const double square = slope.squaredNorm();
-      if (square > 0) points.set(i, points[i] - field.distances[i] / square * slope);
+      if (field.slopes[i].squaredNorm() > 0) points.set(i, points[i] - field.offset(i));
     }
+    field = sample_field(primitive, points);
   }
   PointCloud cloud;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -85,17 +66,12 @@ Layer draw_layer(const Primitive& primitive, const AlignedBox& box, double depth
   constexpr int k_rounds = 8;
   const std::size_t places = k_places_a_sample * samples;
   Points drawn(places);
-  Field field(places);
   Points near;
   int rounds = 0;
   while (rounds < k_rounds && near.size() < samples) {
     ++rounds;
-    for (std::size_t i = 0; i < places; ++i) {
-      Eigen::Vector3d place;
-      for (int axis = 0; axis < 3; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
-      drawn.set(i, place);
-    }
-    evaluate(primitive, drawn, field);
+    for (std::size_t i = 0; i < places; ++i) drawn.set(i, random_between(box.min(), box.max(), random));
+    const SampledField field = sample_field(primitive, drawn);
     for (std::size_t i = 0; i < places; ++i) {
       if (std::abs(field.distances[i]) <= depth * field.slopes[i].norm()) near.push_back(drawn[i]);
     }

@@ -1,16 +1,15 @@
 #include "compare/surfaces.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <nanoflann.hpp>
 #include <utility>
 
 #include "base/parallel.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "compare/triangle_tree.hpp"
+#include "geometry/neighbour_tree.hpp"
 #include "primitive/triangle_sampler.hpp"
 
 namespace cloud2csg {
@@ -25,10 +24,7 @@ constexpr std::uint64_t k_mesh_stream = 0x636d706d657368;
 template <typename Measure>
 std::vector<double> for_each_point(std::size_t count, const RunContext& run, const Measure& measure) {
   std::vector<double> distances(count);
-  for_each_index((count + k_chunk_points - 1) / k_chunk_points, run, [&](std::size_t chunk) {
-    const std::size_t last = std::min(count, (chunk + 1) * k_chunk_points);
-    for (std::size_t i = chunk * k_chunk_points; i < last; ++i) distances[i] = measure(i);
-  });
+  for_each_index_by_chunks(count, k_chunk_points, run, [&](std::size_t i) { distances[i] = measure(i); });
   return distances;
 }
 
@@ -48,40 +44,14 @@ Points sample_mesh(const TriangleMesh& mesh, const CompareOptions& options) {
   return points;
 }
 
-/// What nanoflann wants to know about points.
-struct PointsAdaptor {
-  const Points& points;
-
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return axis == 0 ? points.x[i] : axis == 1 ? points.y[i] : points.z[i];
-  }
-  template <typename BoundingBox>
-  bool kdtree_get_bbox(BoundingBox& /*box*/) const {
-    return false;  // nanoflann then finds it
-  }
-};
-
 std::vector<double> distances_to_cloud(const PointCloud& cloud, const Points& points, const RunContext& run) {
-  const PointsAdaptor adaptor{cloud.positions};
-  const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointsAdaptor>, PointsAdaptor, 3,
-                                            std::uint32_t>
-      tree(3, adaptor);
-  return for_each_point(points.size(), run, [&](std::size_t i) {
-    const std::array<double, 3> query{points.x[i], points.y[i], points.z[i]};
-    std::uint32_t nearest = 0;
-    double square = 0.0;
-    tree.knnSearch(query.data(), 1, &nearest, &square);
-    return std::sqrt(square);
-  });
+  const NeighbourTree tree(cloud.positions);
+  return for_each_point(points.size(), run, [&](std::size_t i) { return tree.nearest(points[i]).distance; });
 }
 
 bool has_bounded_slope(const Model& model) {
   const std::vector<PrimitiveIndex> used = primitives_of(*model.tree);
-  return std::ranges::all_of(used, [&](PrimitiveIndex p) {
-    const Primitive& primitive = model.primitives[p];
-    return !primitive.displacement && !std::holds_alternative<Expression>(primitive.shape);
-  });
+  return std::ranges::all_of(used, [&](PrimitiveIndex p) { return is_plain(model.primitives[p]); });
 }
 
 constexpr double k_no_foot = -1.0;

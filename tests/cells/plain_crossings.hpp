@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -89,11 +90,17 @@ inline PlainCrossings plain_crossings(const PointCloud& cloud, const PrimitiveSe
 }
 
 /// The same form of what was counted fast.
-inline PlainCrossings plain(const Crossings& crossings) {
-  PlainCrossings result{
-      .units = {}, .points_of_primitive = crossings.points_of_primitive, .unassigned = crossings.unassigned};
-  for (const auto& [pair, units] : crossings.units) {
-    result.units[{crossings.cells[Crossings::inner(pair)], crossings.cells[Crossings::outer(pair)]}] += units;
+inline PlainCrossings plain(std::span<const Crossings> shares) {
+  PlainCrossings result;
+  result.points_of_primitive.resize(shares.front().points_of_primitive.size());
+  for (const Crossings& share : shares) {
+    for (std::size_t p = 0; p < share.points_of_primitive.size(); ++p) {
+      result.points_of_primitive[p] += share.points_of_primitive[p];
+    }
+    result.unassigned += share.unassigned;
+    for (const auto& [pair, units] : share.units) {
+      result.units[{share.cells[Crossings::inner(pair)], share.cells[Crossings::outer(pair)]}] += units;
+    }
   }
   return result;
 }

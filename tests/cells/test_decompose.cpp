@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <map>
-#include <numeric>
-#include <span>
 
-#include "base/random.hpp"
 #include "cells/decompose.hpp"
+#include "cells/random_formulas.hpp"
 #include "cloud2csg/simplify.hpp"
 
 namespace cloud2csg {
@@ -39,30 +37,9 @@ bool agrees(const CsgTree& tree, const KnownRows& rows) {
          std::ranges::none_of(rows.off, [&](Assignment row) { return value_of(tree, row); });
 }
 
-/// Precondition: `leaves` is not empty.
-CsgTree random_tree(std::span<const PrimitiveIndex> leaves, RandomStream& random) {
-  if (leaves.size() == 1) return CsgTree::leaf(leaves.front());
-  const std::size_t cut = 1 + random.below(leaves.size() - 1);
-  const CsgTree a = random_tree(leaves.first(cut), random);
-  const CsgTree b = random_tree(leaves.subspan(cut), random);
-  switch (random.below(4)) {
-    case 0:
-      return unite(a, b);
-    case 1:
-      return intersect(a, b);
-    case 2:
-      return subtract(a, b);
-    default:
-      return subtract(b, a);
-  }
-}
-
 /// Each variable once; a complement at the root, maybe.
 CsgTree random_read_once_tree(std::size_t variables, RandomStream& random) {
-  std::vector<PrimitiveIndex> leaves(variables);
-  std::iota(leaves.begin(), leaves.end(), 0U);
-  for (std::size_t i = leaves.size(); i > 1; --i) std::swap(leaves[i - 1], leaves[random.below(i)]);
-  const CsgTree tree = random_tree(leaves, random);
+  const CsgTree tree = test::random_read_once_formula(variables, random);
   return random.chance(0.2) ? complement(tree) : tree;
 }
 

@@ -32,28 +32,34 @@ CellComplex random_complex(RandomStream& random) {
     }
   }
   complex.points_of_primitive.resize(cells);
+  for (std::size_t c = 0; random.chance(0.9) && c < cells; ++c) complex.seen_through.push_back(some(0.5, 5));
+  if (!complex.seen_through.empty()) complex.seen_through.resize(cells);
   return complex;
 }
 
 /// What the header says, patch by patch.
-double plain_cost(const CellComplex& complex, const Labels& is_in, double density, double absence) {
+double plain_cost(const CellComplex& complex, const Labels& is_in, double density, const LabelOptions& options) {
   double cost = 0;
   for (const Patch& patch : complex.patches) {
     const bool first = is_in[patch.first];
     const bool second = is_in[patch.second];
     cost += patch.first_in * ((first ? 0 : 0.5) + (second ? 0.5 : 0));
     cost += patch.second_in * ((second ? 0 : 0.5) + (first ? 0.5 : 0));
-    if (first != second) cost += std::max(0.0, absence * density * patch.area - patch.first_in - patch.second_in);
+    const double seen = options.presence * (patch.first_in + patch.second_in);
+    if (first != second) cost += std::max(0.0, options.absence * density * patch.area - seen);
+  }
+  for (std::size_t cell = 0; cell < complex.seen_through.size(); ++cell) {
+    if (is_in[cell]) cost += options.sight * complex.seen_through[cell];
   }
   return cost;
 }
 
-double least_cost(const CellComplex& complex, double density, double absence) {
+double least_cost(const CellComplex& complex, double density, const LabelOptions& options) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t code = 0; code < std::size_t{1} << complex.cells.size(); code += 2) {  // the first cell is out
     Labels is_in(complex.cells.size());
     for (std::size_t c = 0; c < is_in.size(); ++c) is_in[c] = (code >> c & 1U) != 0;
-    least = std::min(least, plain_cost(complex, is_in, density, absence));
+    least = std::min(least, plain_cost(complex, is_in, density, options));
   }
   return least;
 }
@@ -61,11 +67,13 @@ double least_cost(const CellComplex& complex, double density, double absence) {
 RC_GTEST_PROP(LabelCells, CostsTheLeastOfAllLabels, (std::uint64_t seed)) {
   RandomStream random(seed);
   const CellComplex complex = random_complex(random);
-  const LabelOptions options{.absence = random.chance(0.5) ? 0.5 : random.uniform()};
+  const LabelOptions options{.absence = random.chance(0.5) ? 0.5 : random.uniform(),
+                             .presence = random.chance(0.5) ? 1.0 : random.uniform(0, 10),
+                             .sight = random.uniform(0, 2)};
   const CellLabels labels = label_cells(complex, options);
   RC_ASSERT(!labels.is_in.front());
-  const double cost = plain_cost(complex, labels.is_in, labels.density, options.absence);
-  RC_ASSERT(std::abs(cost - least_cost(complex, labels.density, options.absence)) < 1e-9);
+  const double cost = plain_cost(complex, labels.is_in, labels.density, options);
+  RC_ASSERT(std::abs(cost - least_cost(complex, labels.density, options)) < 1e-9);
   RC_ASSERT(std::abs(cost - labels.cost) < 1e-9);
 }
 
@@ -75,8 +83,7 @@ RC_GTEST_PROP(LabelCells, CostOfAnyLabelsIsThatOfThePatches, (std::uint64_t seed
   Labels is_in(complex.cells.size());
   for (std::size_t c = 0; c < is_in.size(); ++c) is_in[c] = random.chance(0.5);
   const double density = random.uniform(0, 5);
-  RC_ASSERT(std::abs(cost_of(complex, is_in, density) - plain_cost(complex, is_in, density, LabelOptions{}.absence)) <
-            1e-9);
+  RC_ASSERT(std::abs(cost_of(complex, is_in, density) - plain_cost(complex, is_in, density, {})) < 1e-9);
 }
 
 RC_GTEST_PROP(LabelCells, EvidenceIsWhatAChangeOfOneLabelCosts, (std::uint64_t seed)) {
@@ -102,8 +109,8 @@ RC_GTEST_PROP(LabelCells, CountsThePointsThatSpeak, (std::uint64_t seed)) {
   RC_ASSERT(label_cells(complex).points == points);
 }
 
-/// The median, so that patches that are no surface, and have but a few points astray, do not lower it.
-TEST(Density, IsThatOfMostPoints) {
+/// Patches that are no surface, and have but a few points astray, do not lower it.
+TEST(Density, IsThatWherePointsAreSparse) {
   const CellComplex complex{.cells = {{}, {0}, {1}, {2}},
                             .patches = {{.first = 0, .second = 1, .first_in = 0, .second_in = 100, .area = 10},
                                         {.first = 0, .second = 2, .first_in = 0, .second_in = 190, .area = 20},

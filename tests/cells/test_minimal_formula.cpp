@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 
-#include "base/random.hpp"
+#include "cells/random_formulas.hpp"
 #include "cloud2csg/formula.hpp"
 
 namespace cloud2csg {
@@ -38,32 +37,6 @@ PartialFunction function_of(const CsgTree& tree, std::size_t variables, Keep&& k
 
 PartialFunction function_of(const CsgTree& tree, std::size_t variables) {
   return function_of(tree, variables, [] { return true; });
-}
-
-/// Precondition: `leaves` is not empty.
-CsgTree random_tree(std::span<const PrimitiveIndex> leaves, RandomStream& random) {
-  if (leaves.size() == 1) return CsgTree::leaf(leaves.front());
-  const std::size_t cut = 1 + random.below(leaves.size() - 1);
-  const CsgTree a = random_tree(leaves.first(cut), random);
-  const CsgTree b = random_tree(leaves.subspan(cut), random);
-  switch (random.below(4)) {
-    case 0:
-      return unite(a, b);
-    case 1:
-      return intersect(a, b);
-    case 2:
-      return subtract(a, b);
-    default:
-      return subtract(b, a);
-  }
-}
-
-/// Each variable once.
-CsgTree random_read_once_tree(std::size_t variables, RandomStream& random) {
-  Variables leaves(variables);
-  std::iota(leaves.begin(), leaves.end(), 0U);
-  for (std::size_t i = leaves.size(); i > 1; --i) std::swap(leaves[i - 1], leaves[random.below(i)]);
-  return random_tree(leaves, random);
 }
 
 bool has_complement_only_at_root(const CsgTree& tree) {
@@ -173,7 +146,7 @@ RC_GTEST_PROP(MinimalFormula, IsAsLargeHoweverFewFunctionsAreListed, (std::uint6
 RC_GTEST_PROP(MinimalFormula, FindsReadOnceFormulas, (std::uint64_t seed)) {
   RandomStream random(seed);
   const std::size_t variables = 2 + random.below(5);
-  const CsgTree tree = random_read_once_tree(variables, random);
+  const CsgTree tree = test::random_read_once_formula(variables, random);
   RC_ASSERT(least_leaves_of(function_of(tree, variables)) == variables);
 }
 
@@ -182,7 +155,7 @@ RC_GTEST_PROP(MinimalFormula, IsNeverLargerThanTheFormulaThatRowsAreTakenFrom, (
   const std::size_t variables = 2 + random.below(5);
   Variables leaves(variables + random.below(3));
   for (PrimitiveIndex& leaf : leaves) leaf = random.below(variables);
-  const CsgTree tree = random_tree(leaves, random);
+  const CsgTree tree = test::random_formula(leaves, random);
   const double share = random.uniform();
   const PartialFunction some = function_of(tree, variables, [&] { return random.chance(share); });
   const std::size_t least = least_leaves_of(some);
@@ -269,14 +242,14 @@ TEST_F(KnownFunctions, UseVariablesThatTellRowsApart) {
 TEST(MinimalFormula, HasRowsOfManyWords) {
   RandomStream random(6);
   for (const std::size_t variables : {7U, 8U, 9U}) {
-    const CsgTree tree = random_read_once_tree(variables, random);
+    const CsgTree tree = test::random_read_once_formula(variables, random);
     EXPECT_EQ(least_leaves_of(function_of(tree, variables)), variables);
   }
 }
 
 TEST(MinimalFormula, IsNotLookedForInTooManyRows) {
   RandomStream random(7);
-  EXPECT_FALSE(minimal_formula(function_of(random_read_once_tree(10, random), 10)).has_value());
+  EXPECT_FALSE(minimal_formula(function_of(test::random_read_once_formula(10, random), 10)).has_value());
 }
 
 }  // namespace

@@ -64,7 +64,6 @@ BlockSides plain_sides(const Block<Real>& block, const SegmentationTolerances& t
   BlockSides sides;
   const auto& [f, gx, gy, gz] = block.field;
   for (std::size_t i = 0; i < k_block_points; ++i) {
-    const std::uint64_t bit = std::uint64_t{1} << (i % 64);
     const Real nx = block.normal_columns[0].values[i];
     const Real ny = block.normal_columns[1].values[i];
     const Real nz = block.normal_columns[2].values[i];
@@ -72,11 +71,11 @@ BlockSides plain_sides(const Block<Real>& block, const SegmentationTolerances& t
     const Real square = gx[i] * gx[i] + gy[i] * gy[i] + gz[i] * gz[i];
     const bool is_near = std::abs(f[i]) <= static_cast<Real>(tolerances.distance);
     const bool agrees = dot * dot >= static_cast<Real>(tolerances.cosine * tolerances.cosine) * square && square > 0;
-    if (f[i] < 0) sides.inside[i / 64] |= bit;
-    if (is_near) sides.near[i / 64] |= bit;
-    if (std::abs(f[i]) <= static_cast<Real>(tolerances.distance * k_open_share)) sides.open[i / 64] |= bit;
-    if (is_near && agrees && dot > 0) sides.along[i / 64] |= bit;
-    if (is_near && agrees && dot < 0) sides.against[i / 64] |= bit;
+    if (f[i] < 0) add_point(sides.inside, i);
+    if (is_near) add_point(sides.near, i);
+    if (std::abs(f[i]) <= static_cast<Real>(tolerances.distance * k_open_share)) add_point(sides.open, i);
+    if (is_near && agrees && dot > 0) add_point(sides.along, i);
+    if (is_near && agrees && dot < 0) add_point(sides.against, i);
   }
   return sides;
 }

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "cloud2csg/cells.hpp"
+#include "tree/mix.hpp"
+
+namespace cloud2csg {
+
+/// For tables of cells.
+struct CellHash {
+  std::size_t operator()(const Cell& cell) const {
+    std::uint64_t hash = cell.size();
+    for (const PrimitiveIndex p : cell) hash = mix(hash ^ p);
+    return hash;
+  }
+};
+
+}  // namespace cloud2csg
