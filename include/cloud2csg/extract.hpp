@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "cloud2csg/cells.hpp"
 #include "cloud2csg/evolve.hpp"
 #include "cloud2csg/objective.hpp"
+#include "cloud2csg/refine.hpp"
 #include "cloud2csg/segmentation.hpp"
 
 /// The whole method: a cloud and fitted primitives in, one tree out.
@@ -45,6 +47,7 @@ struct ExtractOptions {
   /// what they say. Elsewhere partitions are searched too, and the tree of the higher E is taken. Above 1: no cells.
   double cell_trust = 0.97;
   SampleCounts cell_samples = {};
+  LabelOptions cell_labels = {};
   CellSolveOptions cell_solve = {};
   /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
   std::optional<double> overlap_tolerance = {};
@@ -69,10 +72,11 @@ void validate(const ExtractOptions& options);
 
 /// Wall-clock seconds of each stage; those of the command line (reading, writing) are filled in by it.
 struct StageSeconds {
-  double read = 0, clean = 0, normals = 0, detect = 0;
+  double read = 0, clean = 0, normals = 0, detect = 0, solids = 0;
   double segment = 0, overlap = 0, partition = 0, classes = 0, search = 0, merge = 0, simplify = 0;
+  double refine = 0;
   double write = 0;
-  double extraction = 0;  ///< from cloud and primitives in memory to the simplified tree
+  double extraction = 0;  ///< from cloud and primitives in memory to the simplified tree, or, refined, to the last one
   double total = 0;
 };
 
@@ -116,6 +120,23 @@ struct CellStatistics {
   std::size_t peeled = 0;          ///< primitives that were split off
   std::vector<std::size_t> cores;  ///< how many primitives the rests had that were solved by formula
   bool is_minimal = false;         ///< it is proved that no smaller tree of its primitives has all sure labels
+
+  /// Of what the points say, the share that is contradicted.
+  [[nodiscard]] double contradicted_share() const { return contradicted_points / std::max(1.0, speaking_points); }
+};
+
+/// Of the way from a raw cloud to primitives.
+struct FindingStatistics {
+  std::size_t raw_points = 0;        ///< that were given; those that were left out are not in ExtractStatistics::points
+  bool normals_estimated = false;    ///< those given were of no use, or there were none
+  double diagonal = 0, spacing = 0;  ///< see Scale
+  double noise = 0, tolerance = 0;   ///< of the points; how far they may be from their surface
+  /// Planes, spheres, cylinders, cones, tori.
+  std::array<std::size_t, 5> surfaces = {};
+  std::size_t unexplained_points = 0;              ///< on no surface
+  std::size_t snaps = 0;                           ///< what was made regular
+  double largest_turn_deg = 0, largest_shift = 0;  ///< ... and by how much
+  double disagreement = 0;                         ///< see SolidChoice
 };
 
 struct TreeStatistics {
@@ -132,6 +153,16 @@ struct FitStatistics {
   double p95_angle_deg = 0;  ///< 95 % of the normals are nearer than this to the surface's
 };
 
+/// Of extract_refined_csg(): what became of the primitives. See Refinement.
+struct RefineStatistics {
+  bool is_taken = false;  ///< false: the result has the primitives that were given, and no change below is in it
+  int rounds = 0;
+  std::size_t points = 0;
+  double rms_before = 0, rms_after = 0;
+  std::vector<PrimitiveChange> changes;
+  std::vector<Regularity> regularities;
+};
+
 struct ExtractStatistics {
   Strategy strategy = Strategy::automatic;
   Parallel parallel = Parallel::both;
@@ -145,7 +176,9 @@ struct ExtractStatistics {
   std::size_t components = 0;
   std::vector<PartitionStatistics> partitions;
   MergeStatistics merge;
-  std::optional<CellStatistics> cells;  ///< when the tree is that of the cells
+  std::optional<CellStatistics> cells;       ///< when the tree is that of the cells
+  std::optional<FindingStatistics> finding;  ///< when the primitives were found in the cloud
+  std::optional<RefineStatistics> refine;    ///< when the primitives were to be refined
   TreeStatistics before_simplification, tree;
   FitStatistics fit;
   StageSeconds seconds;
@@ -164,6 +197,20 @@ struct Extraction {
 /// Cancelled when stopped before the search began.
 [[nodiscard]] Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const ExtractOptions& options = {}, const RunContext& run = {});
+
+struct RefinedExtraction {
+  PrimitiveSet primitives;  ///< that the tree is over: refined, or as given
+  Extraction extraction;
+};
+
+/// extract_csg(), refine_primitives() on its tree, and extract_csg() again over what comes out; of the trees over both
+/// sets of primitives, the one with the highest E, measured with the refined noise. The statistics are those of the
+/// extraction that was taken, with the seconds of all. Stopped early, or past its time limit: the best so far.
+/// @throws Error as extract_csg() and validate(RefineOptions); Cancelled.
+[[nodiscard]] RefinedExtraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                                    const ExtractOptions& options = {},
+                                                    const RefineOptions& refine_options = {},
+                                                    const RunContext& run = {});
 
 /// The points that a tree does not explain: farther from its surface than the tolerance, or with a normal that is not
 /// within the angle of the surface's outward one. Ascending. O(points x primitives near each)

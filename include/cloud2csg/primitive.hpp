@@ -84,9 +84,12 @@ using PrimitiveSet = std::vector<Primitive>;
 /// empty or unbounded, an expression does not parse.
 void validate(const Primitive& primitive);
 
-/// Whether signed_distance() is the Euclidean distance to the surface everywhere: true for every shape but
-/// Expression and anything displaced. For a polytope it is exact inside and a lower bound outside, near
-/// edges and vertices: false as well.
+/// Whether it is neither an Expression nor displaced. Then its field has a gradient of length one wherever it has one,
+/// so that the distance changes by no more than one moves, and its surface has a closed form.
+[[nodiscard]] bool is_plain(const Primitive& primitive);
+
+/// Whether signed_distance() is the Euclidean distance to the surface everywhere: true for what is plain, but for
+/// polytopes, whose distance is exact inside and a lower bound outside, near edges and vertices.
 [[nodiscard]] bool has_exact_distance(const Primitive& primitive);
 
 /// Whether the solid is convex and undisplaced, so that support() holds.

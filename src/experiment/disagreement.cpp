@@ -1,15 +1,13 @@
 #include <numeric>
 
 #include "base/parallel.hpp"
-#include "base/random.hpp"
 #include "cloud2csg/scaling.hpp"
+#include "geometry/random_between.hpp"
 #include "synth/neighbourhood.hpp"
 #include "synth/primitive_surface.hpp"
 
 namespace cloud2csg {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr std::uint64_t k_stream = 0x646966666572'00;
 /// Of each primitive: as many on either side of its surface and within its bounds.
@@ -23,9 +21,7 @@ Points places_around(const Primitive& primitive, double offset, RandomStream& ra
     const SurfacePoint point = surface.draw(random);
     places.push_back(point.position + offset * point.normal);
     places.push_back(point.position - offset * point.normal);
-    Vector3d inside;
-    for (int axis = 0; axis < 3; ++axis) inside[axis] = random.uniform(box.min()[axis], box.max()[axis]);
-    places.push_back(inside);
+    places.push_back(random_between(box.min(), box.max(), random));
   }
   return places;
 }

@@ -37,7 +37,7 @@ std::string mode_check(const PaperResults& results) {
                      fmt::join(disagreements, "\n- "));
 }
 
-Report report_of(const PaperResults& results) {
+TableReport report_of(const PaperResults& results) {
   return {.name = "paper",
           .introduction = "# The paper's evaluation\n\n" + setting(results) + '\n' + mode_check(results),
           .tables = paper_tables(results),

@@ -89,7 +89,7 @@ class ReferenceExtractor {
   /// The graph and the cliques are timed by the preparation; its tables are not part of the paper's method, only their
   /// weights are taken, and the segmentation is made without them.
   void prepare_partitions() {
-    const Scale scale = measure_scale(cloud_, input_, options_, with_threads_if(false), statistics_);
+    const NoiseScale scale = measure_scale(cloud_, input_, options_, with_threads_if(false), statistics_);
     prepared_ = prepare(cloud_, input_, scale, options_, with_threads_if(false), statistics_);
     Stopwatch watch;
     segmentation_ = segment_points(cloud_, prepared_.primitives, prepared_.scale.tolerances,

@@ -29,7 +29,7 @@ void add_text(OutputSet& texts, const std::filesystem::path& file, const std::st
 
 }  // namespace
 
-std::string to_markdown(const Report& report, bool has_pictures) {
+std::string to_markdown(const TableReport& report, bool has_pictures) {
   std::string text = report.introduction;
   for (const Table& table : report.tables) text += '\n' + to_markdown(table);
   if (!has_pictures) return text;
@@ -38,7 +38,7 @@ std::string to_markdown(const Report& report, bool has_pictures) {
   return text;
 }
 
-std::vector<std::string> write_report(const std::filesystem::path& folder, const Report& report) {
+std::vector<std::string> write_report(const std::filesystem::path& folder, const TableReport& report) {
   for (const Figure& figure : report.figures) write_text_file(folder / (figure.name + ".gp"), figure.script);
   OutputSet pictures;
   const bool has_pictures = add_pictures(pictures, folder, report.figures);

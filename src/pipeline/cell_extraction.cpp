@@ -1,22 +1,22 @@
 #include "pipeline/cell_extraction.hpp"
 
-#include <algorithm>
-
 #include "base/stopwatch.hpp"
 #include "cloud2csg/cells.hpp"
 
 namespace cloud2csg {
+
 double CellExtraction::trust() const {
   // Where most points are near several surfaces at once, the cells do not tell much.
   constexpr double k_least_share = 0.25;
-  const auto assigned = static_cast<double>(order.size() - unassigned_points);
+  const auto assigned = static_cast<double>(complex.order.size() - complex.unassigned);
   if (is_constant(tree) || statistics.speaking_points < k_least_share * assigned) return 0;
-  return 1 - statistics.contradicted_points / std::max(1.0, statistics.speaking_points);
+  return 1 - statistics.contradicted_share();
 }
 
 std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                               const Scale& scale, const ExtractOptions& options, const RunContext& run,
-                                               const RunContext& search_run, StageSeconds& seconds) {
+                                               const NoiseScale& scale, const ExtractOptions& options,
+                                               const RunContext& run, const RunContext& search_run,
+                                               StageSeconds& seconds) {
   Stopwatch watch;
   SupportedPrimitives supported = take_all(primitives);
   CellExtraction result{};
@@ -31,7 +31,7 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
   } while (drop_unsupported(complex.points_of_primitive, supported, result.warnings));
   seconds.segment += watch.lap();
   search_run.report("search", 0, 1);
-  const CellLabels labels = label_cells(complex, options.cell_solve.labels);
+  const CellLabels labels = label_cells(complex, options.cell_labels);
   const std::optional<CellSolution> solution = solve_cells(complex, labels, options.cell_solve, search_run);
   seconds.search += watch.lap();
   search_run.report("search", 1, 1);
@@ -39,8 +39,6 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
   result.tree = renumber(solution->tree, supported.original);
   result.is_complete = solution->is_complete;
   result.supported = std::move(supported);
-  result.unassigned_points = complex.unassigned;
-  result.order = std::move(complex.order);
   result.statistics = {.cells = complex.cells.size(),
                        .patches = complex.patches.size(),
                        .open_cells = solution->open_cells.size(),

@@ -9,13 +9,11 @@ namespace cloud2csg {
 struct CellExtraction {
   CsgTree tree;  ///< over the input's primitives
   CellStatistics statistics;
-  std::size_t unassigned_points = 0;
   bool is_complete = true;  ///< false when it was stopped early
   SupportedPrimitives supported;
   CellComplex complex = {};
   std::vector<CellIndex> open_cells = {};
   std::vector<std::string> warnings;
-  std::vector<std::uint32_t> order;  ///< all points, so that neighbours are near each other
 
   /// The share of what the points say that the tree does not contradict; none where few of them say anything.
   [[nodiscard]] double trust() const;
@@ -25,7 +23,7 @@ struct CellExtraction {
 /// over the points runs as `run` says, the search as `search_run`.
 /// @throws Error when no point is near any primitive; Cancelled.
 [[nodiscard]] std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                                             const Scale& scale, const ExtractOptions& options,
+                                                             const NoiseScale& scale, const ExtractOptions& options,
                                                              const RunContext& run, const RunContext& search_run,
                                                              StageSeconds& seconds);
 

@@ -11,6 +11,7 @@
 
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "base/without_stop.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/simplify.hpp"
 #include "pipeline/cell_extraction.hpp"
@@ -108,9 +109,7 @@ class Extractor {
   std::optional<CsgTree> solve_by_cells(const RunContext& run) {
     const bool is_asked_for = options_.strategy == Strategy::cells;
     if (!is_asked_for && (options_.strategy != Strategy::automatic || options_.cell_trust > 1)) return std::nullopt;
-    RunContext search = run;
-    search.stop = limit_.token();
-    by_cells_ = extract_by_cells(cloud_, input_, scale_, options_, run, search, statistics_.seconds);
+    by_cells_ = extract_by_cells(cloud_, input_, scale_, options_, run, search_run(), statistics_.seconds);
     limit_.enforce();
     if (!by_cells_) {
       if (is_asked_for) {
@@ -125,10 +124,10 @@ class Extractor {
 
   CsgTree take_cells() {
     statistics_.cells = by_cells_->statistics;
-    statistics_.unassigned_points = by_cells_->unassigned_points;
+    statistics_.unassigned_points = by_cells_->complex.unassigned;
     statistics_.warnings = by_cells_->warnings;
     statistics_.complete = by_cells_->is_complete;
-    order_ = std::move(by_cells_->order);
+    order_ = std::move(by_cells_->complex.order);
     return by_cells_->tree;
   }
 
@@ -145,10 +144,8 @@ class Extractor {
   }
 
   [[nodiscard]] FitStatistics fit_of(const CsgTree& tree, const RunContext& run) const {
-    RunContext to_the_end = run;
-    to_the_end.stop = {};  // the tree of an interrupted search has a fit, too
     const Objective objective = resolve(options_.objective, cloud_.size(), scale_.noise);
-    return measure_fit(tree, input_, cloud_, objective, scale_.noise, to_the_end, order_);
+    return measure_fit(tree, input_, cloud_, objective, scale_.noise, without_stop(run), order_);
   }
 
   /// How a single search runs: its population in parallel, or not.
@@ -251,14 +248,12 @@ class Extractor {
     request.primitives.resize(set.size());
     request.stride = stride_for(set.size(), cloud_.size());
     std::iota(request.primitives.begin(), request.primitives.end(), PrimitiveIndex{0});
-    RunContext pass_run = search_run();
-    pass_run.stop = {};  // a pass is short, and the search after it sees the stop
     const PointPass pass = build_rank_classes(cloud_, members, std::span(&request, 1),
                                               {.tolerances = scale_.tolerances,
                                                .objective = options_.objective,
                                                .noise = scale_.noise,
                                                .precision = options_.precision},
-                                              pass_run);
+                                              without_stop(search_run()));
     const Evolution evolution =
         evolve_tree(pass.tables.front(), options_.search, k_joint_items + joint_solutions_++, search_run());
     statistics_.complete = statistics_.complete && evolution.complete;
@@ -310,8 +305,7 @@ class Extractor {
 
   /// What the way by cells does without, and who reads the statistics wants to see.
   void describe_cells(const RunContext& run) {
-    RunContext to_the_end = run;
-    to_the_end.stop = {};
+    const RunContext to_the_end = without_stop(run);
     statistics_.cells->open_volume = open_volume(*by_cells_, bounds_of(cloud_.positions), to_the_end);
     if (!statistics_.clique_histogram.empty()) return;
     const OverlapGraph graph = overlap_graph_of(cloud_, by_cells_->supported.primitives, scale_, options_, to_the_end);
@@ -325,7 +319,7 @@ class Extractor {
   const RunContext& run_;
   const TimeLimit& limit_;
   ExtractStatistics statistics_;
-  Scale scale_{};
+  NoiseScale scale_{};
   std::optional<CellExtraction> by_cells_;
   Preparation prepared_;
   std::vector<std::uint32_t> order_;  // of the points: neighbours are near each other

@@ -195,8 +195,8 @@ std::size_t stride_for(std::size_t primitives, std::size_t points) {
   return std::max<std::size_t>(1, points * row_bytes / k_table_bytes);
 }
 
-Scale measure_scale(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
-                    const RunContext& run, ExtractStatistics& statistics) {
+NoiseScale measure_scale(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+                         const RunContext& run, ExtractStatistics& statistics) {
   Stopwatch watch;
   const double noise = estimate_noise(cloud, primitives, options.segmentation.angle_tolerance_deg, run);
   statistics.noise = noise;
@@ -236,7 +236,7 @@ bool drop_unsupported(std::span<const std::size_t> points_of_primitive, Supporte
   return dropped > 0;
 }
 
-OverlapGraph overlap_graph_of(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
+OverlapGraph overlap_graph_of(const PointCloud& cloud, const PrimitiveSet& primitives, const NoiseScale& scale,
                               const ExtractOptions& options, const RunContext& run) {
   return build_overlap_graph(primitives,
                              {.tolerance = options.overlap_tolerance.value_or(scale.noise),
@@ -244,7 +244,7 @@ OverlapGraph overlap_graph_of(const PointCloud& cloud, const PrimitiveSet& primi
                              run);
 }
 
-Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
+Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const NoiseScale& scale,
                     const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics) {
   Preparation preparation;
   static_cast<SupportedPrimitives&>(preparation) = take_all(primitives);

@@ -15,14 +15,15 @@ struct TableWindow {
 };
 
 /// How exact the points are.
-struct Scale {
+struct NoiseScale {
   double noise;
   SegmentationTolerances tolerances;
 };
 
 /// Fills in the noise in the statistics, and its seconds.
-[[nodiscard]] Scale measure_scale(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                  const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics);
+[[nodiscard]] NoiseScale measure_scale(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                       const ExtractOptions& options, const RunContext& run,
+                                       ExtractStatistics& statistics);
 
 /// Primitives that points support, and which of the input's each is.
 struct SupportedPrimitives {
@@ -36,12 +37,13 @@ bool drop_unsupported(std::span<const std::size_t> points_of_primitive, Supporte
                       std::vector<std::string>& warnings);
 
 /// The overlap graph; of unbounded primitives, that of what their points extend over.
-[[nodiscard]] OverlapGraph overlap_graph_of(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
-                                            const ExtractOptions& options, const RunContext& run);
+[[nodiscard]] OverlapGraph overlap_graph_of(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                            const NoiseScale& scale, const ExtractOptions& options,
+                                            const RunContext& run);
 
 /// Everything the search needs, over the primitives that points support.
 struct Preparation : SupportedPrimitives {
-  Scale scale{};
+  NoiseScale scale{};
   OverlapGraph graph;
   std::vector<Clique> cliques;  ///< of the whole graph
   std::vector<std::vector<PrimitiveIndex>> components;
@@ -55,7 +57,7 @@ struct Preparation : SupportedPrimitives {
 /// Overlap graph, partitions and the pass over the points. Primitives without a single point are dropped, with a
 /// warning in `statistics`, and the rest is prepared anew. Fills in the statistics of its stages.
 /// @throws Error when no point is near any primitive; Cancelled.
-[[nodiscard]] Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const Scale& scale,
+[[nodiscard]] Preparation prepare(const PointCloud& cloud, const PrimitiveSet& primitives, const NoiseScale& scale,
                                   const ExtractOptions& options, const RunContext& run, ExtractStatistics& statistics);
 
 /// How many bytes a table may take while it is made, when each of its points may be a class of its own.

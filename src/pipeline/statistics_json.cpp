@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cloud2csg/extract.hpp"
@@ -12,28 +13,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json seconds_json(const StageSeconds& s) {
-  return {{"read", s.read},
-          {"clean", s.clean},
-          {"normals", s.normals},
-          {"detect", s.detect},
-          {"segment", s.segment},
-          {"overlap", s.overlap},
-          {"partition", s.partition},
-          {"classes", s.classes},
-          {"search", s.search},
-          {"merge", s.merge},
-          {"simplify", s.simplify},
-          {"write", s.write},
-          {"extraction", s.extraction},
-          {"total", s.total}};
+  return {{"read", s.read},       {"clean", s.clean},     {"normals", s.normals},       {"detect", s.detect},
+          {"solids", s.solids},   {"segment", s.segment}, {"overlap", s.overlap},       {"partition", s.partition},
+          {"classes", s.classes}, {"search", s.search},   {"merge", s.merge},           {"simplify", s.simplify},
+          {"refine", s.refine},   {"write", s.write},     {"extraction", s.extraction}, {"total", s.total}};
 }
 
 /// Of each stage in the extraction.
 Json share_json(const StageSeconds& s) {
   const auto share = [&s](double seconds) { return s.extraction > 0 ? seconds / s.extraction : 0.0; };
-  return {{"segment", share(s.segment)},  {"overlap", share(s.overlap)}, {"partition", share(s.partition)},
-          {"classes", share(s.classes)},  {"search", share(s.search)},   {"merge", share(s.merge)},
-          {"simplify", share(s.simplify)}};
+  return {{"segment", share(s.segment)},   {"overlap", share(s.overlap)}, {"partition", share(s.partition)},
+          {"classes", share(s.classes)},   {"search", share(s.search)},   {"merge", share(s.merge)},
+          {"simplify", share(s.simplify)}, {"refine", share(s.refine)}};
 }
 
 Json search_json(const std::vector<PartitionStatistics>& partitions) {
@@ -79,6 +70,56 @@ Json cells_json(const CellStatistics& s) {
           {"is_minimal", s.is_minimal}};
 }
 
+Json refine_json(const RefineStatistics& s) {
+  Json changes = Json::array();
+  double largest_shift = 0;
+  double largest_turn = 0;
+  for (const PrimitiveChange& change : s.changes) {
+    changes.push_back({{"points", change.points},
+                       {"largest_shift", change.largest_shift},
+                       {"turn_deg", change.turn_deg},
+                       {"rms_before", change.rms_before},
+                       {"rms_after", change.rms_after}});
+    largest_shift = std::max(largest_shift, change.largest_shift);
+    largest_turn = std::max(largest_turn, change.turn_deg);
+  }
+  Json regularities = Json::array();
+  for (const Regularity& regularity : s.regularities) {
+    regularities.push_back(
+        {{"type", to_string(regularity.type)}, {"primitives", regularity.primitives}, {"spread", regularity.spread}});
+  }
+  return {{"is_taken", s.is_taken},
+          {"rounds", s.rounds},
+          {"points", s.points},
+          {"rms_before", s.rms_before},
+          {"rms_after", s.rms_after},
+          {"largest_shift", largest_shift},
+          {"largest_turn_deg", largest_turn},
+          {"primitives", std::move(changes)},
+          {"regularities", std::move(regularities)}};
+}
+
+Json finding_json(const FindingStatistics& s) {
+  const auto [planes, spheres, cylinders, cones, tori] = s.surfaces;
+  return {{"raw_points", s.raw_points},
+          {"normals_estimated", s.normals_estimated},
+          {"diagonal", s.diagonal},
+          {"spacing", s.spacing},
+          {"noise", s.noise},
+          {"tolerance", s.tolerance},
+          {"surfaces", planes + spheres + cylinders + cones + tori},
+          {"planes", planes},
+          {"spheres", spheres},
+          {"cylinders", cylinders},
+          {"cones", cones},
+          {"tori", tori},
+          {"unexplained_points", s.unexplained_points},
+          {"snaps", s.snaps},
+          {"largest_turn_deg", s.largest_turn_deg},
+          {"largest_shift", s.largest_shift},
+          {"disagreement", s.disagreement}};
+}
+
 Json tree_json(const TreeStatistics& tree) {
   return {{"size", tree.size}, {"leaves", tree.leaves}, {"depth", tree.depth}};
 }
@@ -102,7 +143,9 @@ std::string to_json(const ExtractStatistics& s) {
                      {"share", share_json(s.seconds)},
                      {"search", search_json(s.partitions)},
                      {"merge", merge_json(s.merge)},
+                     {"finding", s.finding ? finding_json(*s.finding) : Json(nullptr)},
                      {"cells", s.cells ? cells_json(*s.cells) : Json(nullptr)},
+                     {"refine", s.refine ? refine_json(*s.refine) : Json(nullptr)},
                      {"tree_before_simplification", tree_json(s.before_simplification)},
                      {"tree", tree_json(s.tree)},
                      {"fit",

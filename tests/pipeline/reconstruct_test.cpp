@@ -1,0 +1,156 @@
+#include "cloud2csg/reconstruct.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stop_token>
+#include <string>
+
+#include "cloud2csg/compare.hpp"
+#include "cloud2csg/error.hpp"
+#include "pipeline/fit.hpp"
+#include "support/known_solids.hpp"
+#include "support/random_scene.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// A plate with two holes and a boss on it.
+Model plate() {
+  PrimitiveSet primitives{test::placed("plate", Box{{4, 3, 0.6}}, {0, 0, 0}),
+                          test::placed("boss", Cylinder{.radius = 0.6, .height = 1}, {0.2, 0.2, 0.6}),
+                          test::placed("left", Cylinder{.radius = 0.4, .height = 2}, {-1.3, 0.3, 0}),
+                          test::placed("right", Cylinder{.radius = 0.35, .height = 2}, {1.4, -0.6, 0})};
+  const CsgTree body = unite_all(std::vector{CsgTree::leaf(0), CsgTree::leaf(1)});
+  return {.primitives = std::move(primitives), .tree = subtract(subtract(body, CsgTree::leaf(2)), CsgTree::leaf(3))};
+}
+
+PointCloud cloud_of(const Model& model, double noise, std::size_t count = 20'000) {
+  return sample_surface(*model.tree, model.primitives, {.count = count, .noise = noise, .seed = 5});
+}
+
+/// Intersection over union by membership on a lattice.
+double iou(const Reconstruction& result, const Model& truth) {
+  const Points places = test::lattice(test::bounds_of_all(truth.primitives), 50);
+  const std::vector<double> in_truth = implicit_value(*truth.tree, truth.primitives, places);
+  const std::vector<double> in_result = implicit_value(result.tree, result.solids, places);
+  std::size_t both = 0;
+  std::size_t either = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    both += in_truth[i] < 0 && in_result[i] < 0 ? 1U : 0U;
+    either += in_truth[i] < 0 || in_result[i] < 0 ? 1U : 0U;
+  }
+  return static_cast<double>(both) / static_cast<double>(either);
+}
+
+TEST(Reconstruct, FindsThePlateWithItsHolesAndBoss) {
+  const Model truth = plate();
+  for (const double noise : {0.0, 0.008}) {
+    const Reconstruction result = reconstruct(cloud_of(truth, noise));
+    EXPECT_GT(iou(result, truth), 0.99);
+    EXPECT_EQ(leaf_count(result.tree), 4U);
+    ASSERT_TRUE(result.statistics.finding);
+    EXPECT_EQ(result.statistics.finding->surfaces[0], 7U);
+    EXPECT_EQ(result.statistics.finding->surfaces[2], 3U);
+    EXPECT_LT(result.statistics.finding->disagreement, 0.03);
+  }
+}
+
+bool has_warning(const Reconstruction& result, const std::string& part) {
+  return std::ranges::any_of(result.statistics.warnings,
+                             [&part](const std::string& warning) { return warning.find(part) != std::string::npos; });
+}
+
+/// A hole in the cloud that is as large as a face is closed, and the user is told of it.
+TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
+  const Model truth{.primitives = {test::placed("block", Box{{4, 3, 3}}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
+  const PointCloud whole = cloud_of(truth, 0.0);
+  EXPECT_FALSE(has_warning(reconstruct(whole), "no points near"));
+  PointCloud open;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (whole.positions.z[i] > 1.499) continue;  // the top
+    open.positions.push_back(whole.positions[i]);
+    open.normals.push_back(whole.normals[i]);
+  }
+  const Reconstruction result = reconstruct(open);
+  EXPECT_GT(iou(result, truth), 0.9);
+  EXPECT_TRUE(has_warning(result, "no points near"));
+}
+
+TEST(Reconstruct, NeedsNoNormals) {
+  const Model truth = plate();
+  PointCloud cloud = cloud_of(truth, 0.005, 30'000);
+  cloud.normals = {};
+  const Reconstruction result = reconstruct(cloud);
+  EXPECT_TRUE(result.statistics.finding->normals_estimated);
+  EXPECT_GT(iou(result, truth), 0.97);
+}
+
+TEST(Reconstruct, DoesNotDependOnThreads) {
+  const PointCloud cloud = cloud_of(plate(), 0.01);
+  const Reconstruction one = reconstruct(cloud, {}, {.threads = 1});
+  const Reconstruction two = reconstruct(cloud, {}, {.threads = 2});
+  EXPECT_TRUE(one.tree == two.tree);
+  ASSERT_EQ(one.solids.size(), two.solids.size());
+  for (std::size_t k = 0; k < one.solids.size(); ++k) {
+    EXPECT_EQ(one.solids[k].pose.position, two.solids[k].pose.position);
+  }
+}
+
+TEST(Reconstruct, DoesNotDependOnUnits) {
+  const Model truth = plate();
+  const PointCloud cloud = cloud_of(truth, 0.008);
+  for (const double scale : {0.01, 3000.0}) {
+    PointCloud other = cloud;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      other.positions.set(i, scale * (cloud.positions[i] + Eigen::Vector3d(500, -200, 900)));
+    }
+    EXPECT_EQ(leaf_count(reconstruct(other).tree), 4U) << scale;
+  }
+}
+
+TEST(Reconstruct, RefusesAFogOrSaysThatItIsDoubtful) {
+  RandomStream random(3);
+  PointCloud fog;
+  for (int i = 0; i < 3000; ++i) {
+    fog.positions.push_back(test::random_within(1, random));
+    fog.normals.push_back(test::random_direction(random));
+  }
+  try {
+    EXPECT_FALSE(reconstruct(fog).statistics.warnings.empty());
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.parts().expected.empty());
+  }
+}
+
+/// Also where the tree of the choice of solids is taken, as of a free form.
+TEST(Reconstruct, MeasuresTheFitOfTheTreeThatItGives) {
+  Model wavy{.primitives = {test::placed("ball", Sphere{.radius = 4}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
+  wavy.primitives[0].displacement = Displacement{.frequency = 0.6};
+  for (const bool is_wavy : {false, true}) {
+    const Reconstruction result = reconstruct(is_wavy ? cloud_of(wavy, 0.0, 3000) : cloud_of(plate(), 0.005));
+    EXPECT_EQ(result.statistics.cells.has_value(), !is_wavy);
+    const double noise = result.statistics.noise;
+    const FitStatistics fit = measure_fit(result.tree, result.solids, result.cloud,
+                                          resolve(ObjectiveOptions{}, result.cloud.size(), noise), noise, {});
+    EXPECT_NEAR(result.statistics.fit.rms_distance, fit.rms_distance, 1e-9);
+    EXPECT_NEAR(result.statistics.fit.objective / fit.objective, 1, 1e-9);
+  }
+}
+
+TEST(Reconstruct, EndsWhenItsTimeIsOver) {
+  EXPECT_THROW((void)reconstruct(cloud_of(plate(), 0.01), {.extraction = {.time_limit_seconds = 0.0}}), Error);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW((void)reconstruct(cloud_of(plate(), 0.01), {}, {.stop = stop.get_token()}), Cancelled);
+}
+
+TEST(FindPrimitives, GivesSolidsWhoseTreeIsNearTheCloud) {
+  const FoundPrimitives found = find_primitives(cloud_of(plate(), 0.005));
+  EXPECT_FALSE(found.choice.solids.empty());
+  EXPECT_LT(found.choice.disagreement, 0.03);
+  for (const Primitive& solid : found.choice.solids) EXPECT_NO_THROW(validate(solid));
+}
+
+}  // namespace
+}  // namespace cloud2csg
