@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "cloud2csg/brep.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/model.hpp"
@@ -24,16 +25,19 @@ struct OpenScadOptions {
 struct ExportOptions {
   OpenScadOptions openscad = {};
   MeshingOptions meshing = {};
+  BrepOptions brep = {};
 };
 
 /// What a file does not say of itself.
 struct ExportReport {
-  /// Meshes and OpenSCAD know bounded solids only: one that goes on beyond its primitives (a lone half-space, a
-  /// complement) is cut at this box around them. Absent when nothing was cut.
+  /// STEP, BREP, meshes and OpenSCAD know bounded solids only: one that goes on beyond its primitives (a lone
+  /// half-space, a complement) is cut at this box around them. Absent when nothing was cut.
   std::optional<AlignedBox> cut_at = {};
+  std::optional<BrepReport> brep = {};  ///< STEP and BREP
 };
 
-/// Writes a model by the file's ending: .json, .scad, .dot, .stl, .off, .obj. All but .json need a tree.
+/// Writes a model by the file's ending: .json, .scad, .step, .stp, .brep, .stl, .off, .obj, .dot. All but .json need a
+/// tree, STEP and BREP need OpenCASCADE (has_brep()).
 /// Nothing half-written. @throws Error
 ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options = {},
                           const RunContext& run = {});

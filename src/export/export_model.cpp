@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <utility>
 
 #include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
-#include "export/model_extent.hpp"
+#include "mesh/model_extent.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -52,6 +53,13 @@ ExportReport export_mesh(const std::filesystem::path& file, const Model& model, 
   return {.cut_at = cut_at(tree, model.primitives, extent)};
 }
 
+ExportReport export_brep(const std::filesystem::path& file, const Model& model, const std::string& ending,
+                         const BrepOptions& options, const RunContext& run) {
+  const auto write = ending == ".brep" ? write_brep : write_step;
+  const BrepReport report = write(file, tree_of(model, file), model.primitives, options, run);
+  return {.cut_at = report.cut_at, .brep = report};
+}
+
 }  // namespace
 
 ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
@@ -67,11 +75,16 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
   }
   if (ending == ".scad") return export_openscad(file, model, options.openscad);
   if (ending == ".stl" || ending == ".off" || ending == ".obj") return export_mesh(file, model, options.meshing, run);
-  throw Error({.file = file.string(),
-               .where = {},
-               .expected = fmt::format("expected a file ending in .json, .scad, .dot, .stl, .off or .obj, found \"{}\"",
-                                       ending),
-               .remedy = {}});
+  if (ending == ".step" || ending == ".stp" || ending == ".brep") {
+    return export_brep(file, model, ending, options.brep, run);
+  }
+  throw Error(
+      {.file = file.string(),
+       .where = {},
+       .expected = fmt::format("expected a file ending in .json, .scad, .step, .stp, .brep, .stl, .off, .obj or "
+                               ".dot, found \"{}\"",
+                               ending),
+       .remedy = {}});
 }
 
 }  // namespace cloud2csg

@@ -8,9 +8,9 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/simplify.hpp"
-#include "export/model_extent.hpp"
 #include "export/openscad_solids.hpp"
 #include "export/openscad_text.hpp"
+#include "mesh/model_extent.hpp"
 
 namespace cloud2csg {
 namespace {

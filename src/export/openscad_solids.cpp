@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cloud2csg/mesh.hpp"
+#include "primitive/polytope_faces.hpp"
 
 namespace cloud2csg::openscad {
 namespace {
@@ -31,36 +32,9 @@ std::string polyhedron(const std::vector<Eigen::Vector3d>& points, const std::ve
                      fmt::join(face_texts, ", "));
 }
 
-/// The corners on one plane, in order around it.
-FaceCorners corners_on(const Plane& plane, const std::vector<Eigen::Vector3d>& points, double tolerance) {
-  FaceCorners on_plane;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (std::abs(plane.normal.dot(points[i]) - plane.offset) > tolerance) continue;
-    on_plane.push_back(i);
-    centre += points[i];
-  }
-  centre /= std::max(1.0, static_cast<double>(on_plane.size()));
-  const Eigen::Vector3d u = plane.normal.unitOrthogonal();
-  const Eigen::Vector3d v = plane.normal.cross(u);
-  const auto angle = [&](std::size_t i) { return std::atan2(v.dot(points[i] - centre), u.dot(points[i] - centre)); };
-  std::sort(on_plane.begin(), on_plane.end(), [&](std::size_t a, std::size_t b) { return angle(a) < angle(b); });
-  return on_plane;
-}
-
 std::string polytope_body(const Polytope& polytope, const NumberFormat& number) {
-  constexpr double k_on_plane = 1e-9;  // as a part of the size
-  const std::vector<Eigen::Vector3d> points = corners(polytope);
-  AlignedBox box;
-  for (const Eigen::Vector3d& point : points) box.extend(point);
-  std::vector<FaceCorners> faces;
-  for (const Plane& plane : polytope.planes) {
-    FaceCorners face = corners_on(plane, points, k_on_plane * box.diagonal().norm());
-    // A plane that only touches the solid has no face; one that is given twice has one.
-    if (face.size() >= 3 && std::find(faces.begin(), faces.end(), face) == faces.end())
-      faces.push_back(std::move(face));
-  }
-  return polyhedron(points, faces, number);
+  const PolytopeFaces surface = faces_of(polytope);
+  return polyhedron(surface.corners, surface.faces, number);
 }
 
 std::string torus_body(const Torus& torus, const NumberFormat& number) {
@@ -129,7 +103,7 @@ class Body {
 }  // namespace
 
 bool needs_mesh(const Primitive& primitive) {
-  return primitive.displacement.has_value() || std::holds_alternative<Expression>(primitive.shape);
+  return !is_plain(primitive);
 }
 
 std::string solid(const Primitive& primitive, const SolidContext& context) {

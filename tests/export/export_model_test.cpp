@@ -189,7 +189,8 @@ TEST(ExportModel, RefusesUnknownEndingsAndMissingTrees) {
     }
     return "no error";
   };
-  EXPECT_NE(message_for("model.docx").find(".json, .scad, .dot, .stl, .off or .obj"), std::string::npos);
+  EXPECT_NE(message_for("model.docx").find(".json, .scad, .step, .stp, .brep, .stl, .off, .obj or .dot"),
+            std::string::npos);
   model.tree.reset();
   EXPECT_NE(message_for("model.scad").find("a model with a tree"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(temporary("model.scad")));

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "brep/kernel.hpp"
+
+namespace cloud2csg::brep {
+
+/// The module with OpenCASCADE.
+struct Kernel {
+  KernelRun run = nullptr;   ///< absent when there is none
+  std::string missing = {};  ///< then, why
+  std::string remedy = {};   ///< and what to do about it
+};
+
+/// Loads it, once a process; it stays. Looked for where the program looks for its libraries: beside the installed
+/// program's (its run path), then where the system's are, then in LD_LIBRARY_PATH.
+[[nodiscard]] const Kernel& load_kernel();
+
+}  // namespace cloud2csg::brep
