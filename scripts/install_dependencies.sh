@@ -5,9 +5,13 @@ set -euo pipefail
 packages=(
   g++ make cmake ninja-build pkg-config ccache
   libeigen3-dev libtbb-dev libhwy-dev libboost-dev libboost-graph-dev libccd-dev libmuparser-dev libassimp-dev
-  libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libfmt-dev
-  libgtest-dev librapidcheck-dev libbenchmark-dev openscad gnuplot-nox
+  libceres-dev libembree-dev libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libfmt-dev
+  libocct-data-exchange-dev zlib1g-dev libmeshoptimizer-dev libcpp-httplib-dev
+  libgtest-dev librapidcheck-dev libbenchmark-dev openscad gnuplot-nox chromium
 )
+# The page of reports is built by Node.js. One that is there already, from wherever, is used; Debian's npm is large.
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
 case "${1:-}" in
   lint) packages+=(git clang clang-format clang-tidy python3) ;;
   instructions) packages+=(valgrind) ;;

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cloud2csg/extract.hpp"
+#include "cloud2csg/model.hpp"
+#include "cloud2csg/point_cloud.hpp"
+#include "cloud2csg/run_context.hpp"
+#include "cloud2csg/solids.hpp"
+
+/// The report: one HTML file to look at a cloud, the solid that was made of it, and how far apart they are.
+namespace cloud2csg {
+
+/// An option that was in force.
+struct ReportParameter {
+  std::string group, name, value;
+};
+
+/// A file that the page offers to save.
+struct ReportDownload {
+  std::string name;  ///< without a folder
+  std::string content;
+};
+
+/// What a report tells of; what is absent has no place on the page.
+struct Report {
+  std::string title = {};   ///< e.g. the name of the cloud's file
+  std::string source = {};  ///< a line on where it comes from
+  Model model = {};         ///< with a tree
+  std::optional<PointCloud> cloud = {};
+  std::optional<ExtractStatistics> statistics = {};
+  std::vector<Snap> snaps = {};  ///< of the surfaces that the solids were made of
+  std::vector<ReportParameter> parameters = {};
+  std::vector<ReportDownload> downloads = {};
+  std::vector<std::string> warnings = {};  ///< beyond those of the statistics
+};
+
+struct ReportOptions {
+  /// Points to show; of more, so many are taken, evenly in space. Figures are of all points. So many take about a
+  /// megabyte.
+  std::size_t most_points = 100'000;
+  /// Cells along the longest side of the meshes of the whole solid, and of its parts: fewer, where there are many.
+  int resolution = 128, part_resolution = 64;
+  /// Triangles of the whole solid, and of all meshes together: flat parts need few.
+  std::size_t most_triangles = 24'000, most_triangles_in_all = 120'000;
+  /// Parts of the tree that have a mesh of their own: the whole, then primitives, then inner nodes from the root on.
+  std::size_t most_meshes = 240;
+};
+
+/// @throws Error naming the field when an option is out of range.
+void validate(const ReportOptions& options);
+
+/// A distance report as in metrology: signed distances of points to a solid's surface, positive outside.
+struct DeviationSummary {
+  std::size_t points = 0;
+  double mean = 0, standard_deviation = 0;
+  double rms = 0;
+  double p95 = 0;  ///< 95 % are nearer than this
+  double least = 0, greatest = 0;
+};
+
+/// Of the distances given; all 0 for none. O(n)
+[[nodiscard]] DeviationSummary summarise_deviation(std::vector<double> signed_distances);
+
+/// Whether this build has the page that reports are made of: it takes Node.js to build it.
+[[nodiscard]] bool has_report_page();
+
+/// The report as the text of a page that needs nothing else, no network either: meshes and points are quantised
+/// (positions to 1/65535 of the bounds, distances to 11 bits) and compressed in it. All texts of the model are part of
+/// that, so that none can be taken for HTML.
+/// @throws Error when the model has no tree, the page is not in this build, an option is out of range; Cancelled
+[[nodiscard]] std::string report_page(const Report& report, const ReportOptions& options = {},
+                                      const RunContext& run = {});
+
+/// Nothing half-written. @throws as report_page(), and when the file cannot be written.
+void write_report(const std::filesystem::path& file, const Report& report, const ReportOptions& options = {},
+                  const RunContext& run = {});
+
+}  // namespace cloud2csg

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "cloud2csg/report.hpp"
+
+namespace cloud2csg {
+
+/// All that the page shows, as the bytes of a Payload. Precondition: the model has a tree; valid options.
+/// @throws Cancelled
+[[nodiscard]] std::string gather_payload(const Report& report, const ReportOptions& options, const RunContext& run);
+
+}  // namespace cloud2csg

@@ -1,0 +1,12 @@
+import { defineConfig } from "vite";
+import { viteSingleFile } from "vite-plugin-singlefile";
+
+export default defineConfig({
+  plugins: [viteSingleFile({ removeViteModuleLoader: true })],
+  build: {
+    target: "es2022",
+    cssTarget: "chrome110",
+    chunkSizeWarningLimit: 2000,
+    reportCompressedSize: false,
+  },
+});
