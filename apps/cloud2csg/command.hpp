@@ -24,8 +24,11 @@ struct Command {
 // Each adds its subcommand to the program; one file a subcommand.
 [[nodiscard]] Command add_extract(CLI::App& program);
 [[nodiscard]] Command add_sample(CLI::App& program);
+[[nodiscard]] Command add_scan(CLI::App& program);
+[[nodiscard]] Command add_detect(CLI::App& program);
 [[nodiscard]] Command add_compare(CLI::App& program);
 [[nodiscard]] Command add_convert(CLI::App& program);
+[[nodiscard]] Command add_view(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
 [[nodiscard]] Command add_bench(CLI::App& program);
 

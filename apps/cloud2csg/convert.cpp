@@ -8,6 +8,7 @@
 #include "cloud2csg/model.hpp"
 #include "command.hpp"
 #include "outputs.hpp"
+#include "reports.hpp"
 #include "values.hpp"
 
 namespace cloud2csg::app {
@@ -29,10 +30,15 @@ void ConvertCommand::run(std::stop_token stop) const {
   const Model read = read_model(model);
   if (std::any_of(outputs.begin(), outputs.end(), needs_tree)) (void)tree_of(read, model);
   OutputSet written;
-  const std::vector<std::string> warnings =
-      naming(model, [&] { return add_models(written, outputs, read, exporting, session.run()); });
+  AddedModels added = naming(model, [&] { return add_models(written, outputs, read, exporting, session.run()); });
+  const Report report{.title = std::filesystem::path(model).filename().string(),
+                      .source = read.description,
+                      .model = read,
+                      .downloads = std::move(added.texts),
+                      .warnings = added.warnings};
+  naming(model, [&] { add_reports(written, outputs, report, session.run()); });
   written.commit();
-  for (const std::string& warning : warnings) session.display().note("warning: " + warning);
+  for (const std::string& warning : added.warnings) session.display().note("warning: " + warning);
 }
 
 void add_options(CLI::App& app, ConvertCommand& command) {
@@ -49,6 +55,15 @@ void add_options(CLI::App& app, ConvertCommand& command) {
       ->type_name("N")
       ->group("Output")
       ->capture_default_str();
+  app.add_flag("--with-primitives", command.exporting.brep.with_primitives,
+               "STEP: the primitives, too, as components with their names")
+      ->group("Output");
+  app.add_option("--facet-resolution", command.exporting.brep.facet_resolution,
+                 "STEP, BREP: cells along the longest side of what has no exact surface")
+      ->transform(whole_number(4, 256))
+      ->type_name("N")
+      ->group("Output")
+      ->capture_default_str();
   add_run_options(app, command.running);
 }
 
@@ -56,7 +71,7 @@ void add_options(CLI::App& app, ConvertCommand& command) {
 
 Command add_convert(CLI::App& program) {
   CLI::App* app = program.add_subcommand("convert", "Writes a model in other formats");
-  app->footer(example("  cloud2csg convert bracket.json -o bracket.scad -o bracket.stl"));
+  app->footer(example("  cloud2csg convert bracket.json -o bracket.scad -o bracket.step -o bracket.stl"));
   auto command = std::make_shared<ConvertCommand>();
   add_options(*app, *command);
   return {.options = app, .run = [command](std::stop_token stop) { command->run(std::move(stop)); }};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -11,11 +12,15 @@
 #include "base/stopwatch.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
+#include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
+#include "cloud2csg/reconstruct.hpp"
 #include "command.hpp"
 #include "extract_arguments.hpp"
 #include "outputs.hpp"
+#include "raw_arguments.hpp"
+#include "reports.hpp"
 #include "summary.hpp"
 #include "values.hpp"
 
@@ -24,48 +29,57 @@ namespace {
 
 constexpr std::array<std::string_view, 1> k_statistics_endings{".json"};
 
+/// The cloud that the tree speaks of, its solids, and the tree.
+struct Extracted {
+  PointCloud points;
+  PrimitiveSet solids;
+  Extraction result;
+  std::vector<Snap> snaps = {};  // of the surfaces that the solids were made of
+};
+
 struct ExtractCommand {
   std::string cloud;
-  std::string primitives;
+  std::string primitives;  // empty: to be found in the cloud
   std::vector<std::string> outputs;
   std::optional<std::string> statistics;
   std::optional<std::string> unexplained;
+  bool refine = false;
   ExtractArguments arguments;
+  RawArguments raw;
   RunOptions running;
+  std::vector<ReportParameter> parameters;  // options, for reports
 
   void run(const std::stop_token& stop) const;
+  /// `given` is empty when the primitives are to be found.
+  [[nodiscard]] Extracted extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
+  [[nodiscard]] Extracted extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
   /// What is going to be written, after a look at whether it can be.
   [[nodiscard]] std::vector<std::string> check_files() const;
-  [[nodiscard]] PointCloud unexplained_part(const PointCloud& points, const PrimitiveSet& solids,
-                                            const Extraction& result, int threads) const;
-  /// Returns warnings.
-  [[nodiscard]] std::vector<std::string> write(const Extraction& result, const PrimitiveSet& solids,
-                                               const RunContext& run, OutputSet& written) const;
+  [[nodiscard]] PointCloud unexplained_part(const Extracted& extracted, int threads) const;
+  [[nodiscard]] AddedModels write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run,
+                                  OutputSet& written) const;
+  void report(Extracted extracted, std::vector<ReportDownload> downloads, const RunContext& run,
+              OutputSet& written) const;
 };
 
-PointCloud read_cloud_with_normals(const std::string& file, const RunContext& run) {
-  PointCloud cloud = read_point_cloud(file, run);
-  if (!cloud.has_normals()) {
-    throw Error(
-        {.file = file,
-         .where = {},
-         .expected = "the points have no normals, which extract needs",
-         .remedy = "estimate outward normals, e.g. with MeshLab or CloudCompare, and save them with the points"});
-  }
-  return cloud;
+void check_normals(const PointCloud& cloud, const std::string& file) {
+  if (cloud.has_normals()) return;
+  throw Error(
+      {.file = file,
+       .where = {},
+       .expected = "the points have no normals, which extract needs to combine given primitives",
+       .remedy =
+           "estimate outward normals and save them with the points, or leave out --primitives to find them anew"});
 }
 
 /// The points that the tree contradicts.
-PointCloud ExtractCommand::unexplained_part(const PointCloud& points, const PrimitiveSet& solids,
-                                            const Extraction& result, int threads) const {
+PointCloud ExtractCommand::unexplained_part(const Extracted& extracted, int threads) const {
+  const Extraction& result = extracted.result;
   const SegmentationTolerances tolerances =
       segmentation_tolerances(arguments.options().segmentation, result.statistics.noise);
-  PointCloud part;
-  for (const std::uint32_t i : unexplained_points(result.tree, solids, points, tolerances, {.threads = threads})) {
-    part.positions.push_back(points.positions[i]);
-    part.normals.push_back(points.normals[i]);
-  }
-  return part;
+  const std::vector<std::uint32_t> indices =
+      unexplained_points(result.tree, extracted.solids, extracted.points, tolerances, {.threads = threads});
+  return select_points(extracted.points, indices);
 }
 
 std::string headline(const ExtractStatistics& statistics, const std::string& cloud) {
@@ -77,14 +91,62 @@ std::string headline(const ExtractStatistics& statistics, const std::string& clo
       statistics.fit.rms_angle_deg);
 }
 
-std::vector<std::string> ExtractCommand::write(const Extraction& result, const PrimitiveSet& solids,
-                                               const RunContext& run, OutputSet& written) const {
+AddedModels ExtractCommand::write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run,
+                                  OutputSet& written) const {
   const std::string comment = headline(result.statistics, cloud);
   const Model model{.primitives = solids, .tree = result.tree, .description = comment};
   // Not to be stopped: what has been found is written also after an interrupt.
   const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
-  return naming(primitives,
+  return naming(primitives.empty() ? cloud : primitives,
                 [&] { return add_models(written, outputs, model, {.openscad = {.comment = comment}}, writing); });
+}
+
+void ExtractCommand::report(Extracted extracted, std::vector<ReportDownload> downloads, const RunContext& run,
+                            OutputSet& written) const {
+  if (std::none_of(outputs.begin(), outputs.end(), is_report)) return;
+  const ExtractStatistics& outcome = extracted.result.statistics;
+  Report report{.title = std::filesystem::path(cloud).filename().string(),
+                .source = headline(outcome, cloud),
+                .model = {.primitives = std::move(extracted.solids), .tree = extracted.result.tree},
+                .cloud = std::move(extracted.points),
+                .statistics = outcome,
+                .snaps = std::move(extracted.snaps),
+                .parameters = parameters,
+                .downloads = std::move(downloads)};
+  const std::vector<ReportParameter> in_force = parameters_of(arguments.options());
+  report.parameters.insert(report.parameters.end(), in_force.begin(), in_force.end());
+  const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
+  naming(cloud, [&] { add_reports(written, outputs, report, writing); });
+}
+
+Extracted ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const {
+  const ExtractOptions options = arguments.options();
+  if (!refine) {
+    Extraction result = extract_csg(points, solids, options, run);
+    return {.points = std::move(points), .solids = solids, .result = std::move(result)};
+  }
+  RefinedExtraction refined = extract_refined_csg(
+      points, solids, options, {.angle_tolerance_deg = options.segmentation.angle_tolerance_deg}, run);
+  return {
+      .points = std::move(points), .solids = std::move(refined.primitives), .result = std::move(refined.extraction)};
+}
+
+Extracted ExtractCommand::extract(Input input, const PrimitiveSet& given, const RunContext& run) const {
+  if (!primitives.empty()) {
+    check_normals(input.cloud, cloud);
+    return naming(cloud + " with " + primitives, [&] { return extract_over(std::move(input.cloud), given, run); });
+  }
+  const ReconstructOptions from_raw = raw.options(arguments.options(), input);
+  Reconstruction found = naming(cloud, [&] { return reconstruct(input.cloud, from_raw, run); });
+  if (refine) {
+    Extracted refined = extract_over(found.cloud, found.solids, run);
+    refined.snaps = found.snaps;
+    if (refined.result.statistics.fit.objective > found.statistics.fit.objective) return refined;
+  }
+  return {.points = std::move(found.cloud),
+          .solids = std::move(found.solids),
+          .result = {.tree = std::move(found.tree), .statistics = std::move(found.statistics)},
+          .snaps = std::move(found.snaps)};
 }
 
 std::vector<std::string> ExtractCommand::check_files() const {
@@ -95,7 +157,8 @@ std::vector<std::string> ExtractCommand::check_files() const {
   if (unexplained) written.push_back(*unexplained);
   if (statistics) written.push_back(*statistics);
   std::vector<std::string> all = written;
-  all.insert(all.end(), {cloud, primitives});
+  all.push_back(cloud);
+  if (!primitives.empty()) all.push_back(primitives);
   check_distinct(all);
   return written;
 }
@@ -105,41 +168,50 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   const std::vector<std::string> to_write = check_files();
   Session session(running, stop);
 
-  const PrimitiveSet solids = read_model(primitives).primitives;
-  const PointCloud points = read_cloud_with_normals(cloud, session.run());
+  PrimitiveSet given;
+  if (!primitives.empty()) given = read_model(primitives).primitives;
+  Input input = read_cloud_or_mesh(cloud, raw.input(arguments.options()), session.run());
+  const std::vector<std::string> doubts = std::move(input.warnings);
   const double read_seconds = total.seconds();
-  Extraction result = naming(cloud + " with " + primitives,
-                             [&] { return extract_csg(points, solids, arguments.options(), session.run()); });
+  Extracted extracted = extract(std::move(input), given, session.run());
+  Extraction& result = extracted.result;
+  result.statistics.warnings.insert(result.statistics.warnings.begin(), doubts.begin(), doubts.end());
 
   const Stopwatch writing;
   OutputSet written;
-  std::vector<std::string> warnings = write(result, solids, session.run(), written);
+  AddedModels models = write(result, extracted.solids, session.run(), written);
   if (unexplained) {
     written.add(*unexplained, [&](const std::filesystem::path& path) {
-      write_point_cloud(path, unexplained_part(points, solids, result, session.run().threads));
+      write_point_cloud(path, unexplained_part(extracted, session.run().threads));
     });
   }
   StageSeconds& seconds = result.statistics.seconds;
   seconds.read = read_seconds;
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
-  result.statistics.warnings.insert(result.statistics.warnings.end(), warnings.begin(), warnings.end());
+  result.statistics.warnings.insert(result.statistics.warnings.end(), models.warnings.begin(), models.warnings.end());
   if (statistics) {
     written.add(*statistics,
                 [&](const std::filesystem::path& path) { write_text_file(path, to_json(result.statistics)); });
   }
+  const ExtractStatistics summary = result.statistics;
+  report(std::move(extracted), std::move(models.texts), session.run(), written);
   written.commit();
 
-  for (const std::string& warning : result.statistics.warnings) session.display().note("warning: " + warning);
-  for (const std::string& line : summary_of(result.statistics, to_write)) session.display().note(line);
-  if (stop.stop_requested() && !result.statistics.complete) {
+  for (const std::string& warning : summary.warnings) session.display().note("warning: " + warning);
+  for (const std::string& line : summary_of(summary, to_write)) session.display().note(line);
+  if (stop.stop_requested() && !summary.complete) {
     throw Error({.file = {}, .where = "interrupted", .expected = "the best tree so far was written", .remedy = {}});
   }
 }
 
 void add_options(CLI::App& app, ExtractCommand& command) {
-  add_file(app, "cloud", command.cloud, "Point cloud with normals: .ply .pcd .xyz .xyzn .txt .pts")->type_name("CLOUD");
-  add_file(app, "--primitives", command.primitives, "Model file with the primitives to combine")
+  add_file(app, "cloud", command.cloud,
+           "Point cloud: .ply .pcd .xyz .xyzn .txt .pts, or mesh: .stl .off .obj .ply .3mf .glb")
+      ->type_name("CLOUD|MESH");
+  app.add_option("--primitives", command.primitives,
+                 "Model file with the primitives to combine; if not given, they are found in the cloud")
+      ->check(file_name())
       ->type_name("MODEL.json")
       ->group("Input");
   add_outputs(app, command.outputs, join_endings(model_endings()));
@@ -152,6 +224,11 @@ void add_options(CLI::App& app, ExtractCommand& command) {
       ->check(file_name())
       ->type_name("CLOUD")
       ->group("Output");
+  app.add_flag("--refine", command.refine,
+               "Move, turn and size the primitives to where the points are, make regular what nearly is, and extract "
+               "again")
+      ->group("Fit");
+  add_raw_arguments(app, command.raw, "Finding primitives");
   add_extract_arguments(app, command.arguments);
   add_run_options(app, command.running);
 }
@@ -159,13 +236,18 @@ void add_options(CLI::App& app, ExtractCommand& command) {
 }  // namespace
 
 Command add_extract(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("extract", "Turns a point cloud and its primitives into a CSG tree");
+  CLI::App* app = program.add_subcommand("extract", "Turns a point cloud, a scan or a mesh into a CSG tree");
   app->footer(
-      "A .json output keeps all primitives as they were given; the tree leaves out those that no point supports.\n\n" +
-      example("  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json"));
+      "A .json output keeps all primitives, with --refine as they are then, else as they were given or found; the tree "
+      "leaves out those that no point supports.\n\n" +
+      example("  cloud2csg extract scan.ply -o bracket.scad\n"
+              "  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json"));
   auto command = std::make_shared<ExtractCommand>();
   add_options(*app, *command);
-  app->final_callback([app, command] { check_arguments(*app, command->arguments); });
+  app->final_callback([app, command] {
+    check_arguments(*app, command->arguments);
+    command->parameters = parameters_of(*app);
+  });
   return {.options = app, .run = [command](const std::stop_token& stop) { command->run(stop); }};
 }
 

@@ -36,6 +36,7 @@ Json describe(const PointCloud& cloud) {
   return {{"kind", "cloud"},
           {"points", cloud.size()},
           {"normals", cloud.has_normals()},
+          {"sensor_positions", cloud.has_sensor_positions()},
           {"bounds", to_json(bounds_of(cloud.positions))}};
 }
 

@@ -46,8 +46,9 @@ int run_command(const Command& command) {
 int run(int argc, char** argv) {
   CLI::App program;
   describe(program);
-  const std::vector<Command> commands{add_extract(program), add_sample(program), add_compare(program),
-                                      add_convert(program), add_info(program),   add_bench(program)};
+  const std::vector<Command> commands{add_extract(program), add_detect(program),  add_sample(program),
+                                      add_scan(program),    add_compare(program), add_convert(program),
+                                      add_view(program),    add_info(program),    add_bench(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

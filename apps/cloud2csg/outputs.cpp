@@ -8,16 +8,21 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.hpp"
+#include "cloud2csg/brep.hpp"
 #include "cloud2csg/error.hpp"
+#include "reports.hpp"
 
 namespace cloud2csg::app {
 namespace {
 
 constexpr std::array<std::string_view, 6> k_cloud_endings{".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"};
-constexpr std::array<std::string_view, 6> k_model_endings{".json", ".scad", ".dot", ".stl", ".off", ".obj"};
+constexpr std::array<std::string_view, 10> k_model_endings{".json", ".scad", ".step", ".stp", ".brep",
+                                                           ".stl",  ".off",  ".obj",  ".dot", ".html"};
 
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -25,11 +30,62 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+/// What reads as well on a page as in a file of its own.
+bool is_text_model(const std::filesystem::path& file) {
+  const std::string ending = lower_ending(file);
+  return ending == ".scad" || ending == ".json" || ending == ".step" || ending == ".stp";
+}
+
+/// A page is what is overwritten by a page: another file of that name is somebody's work under a wrong name.
+void check_report(const std::filesystem::path& file) {
+  constexpr std::string_view k_begin = "<!doctype html>";
+  check_report_page(file.string());
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  std::ifstream older(file, std::ios::binary);
+  std::string begin(k_begin.size(), '\0');
+  older.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(older.gcount()));
+  if (begin.empty() || lower_case(begin) == k_begin) return;
+  throw Error({.file = file.string(),
+               .where = {},
+               .expected = "is there already and is no HTML page",
+               .remedy = "remove it, or choose another name"});
+}
+
 std::string corner(const Eigen::Vector3d& point) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", point.x(), point.y(), point.z());
 }
 
+/// What a user should know of a solid that was written, and the file does not say.
+void add_brep_warnings(std::vector<std::string>& warnings, const std::string& file, const BrepReport& report,
+                       const PrimitiveSet& primitives, const BrepOptions& options) {
+  for (const FailedNode& failed : report.failed) {
+    warnings.push_back(fmt::format("{}: {} has facets, since its exact solid could not be made: {}", file, failed.node,
+                                   failed.reason));
+  }
+  for (const PrimitiveIndex index : report.faceted) {
+    warnings.push_back(
+        fmt::format("{}: '{}' has no exact surface: it was written with facets", file, primitives[index].id));
+  }
+  if (!report.is_valid) warnings.push_back(fmt::format("{}: OpenCASCADE finds faults in the solid", file));
+  if (report.volume_difference() > options.volume_tolerance) {
+    warnings.push_back(fmt::format("{}: the solid's volume is {:.6g}, the tree's is {:.6g}, {:.2g} % off", file,
+                                   report.volume, report.tree_volume, 100 * report.volume_difference()));
+  }
+}
+
+/// A file that a user names is to have a part of this name, not of the temporary one that is written.
+ExportOptions named_for(const std::string& file, ExportOptions options) {
+  if (options.brep.name.empty()) options.brep.name = std::filesystem::path(file).stem().string();
+  return options;
+}
+
 }  // namespace
+
+std::string lower_ending(const std::filesystem::path& file) {
+  return lower_case(file.extension().string());
+}
 
 std::span<const std::string_view> cloud_endings() {
   return k_cloud_endings;
@@ -46,11 +102,12 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
   const auto refuse = [&file](std::string expected, std::string remedy) {
     throw Error({.file = file.string(), .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
   };
-  const std::string ending = lower_case(file.extension().string());
+  const std::string ending = lower_ending(file);
   if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
     refuse(ending.empty() ? std::string("the name has no ending") : fmt::format("unknown ending '{}'", ending),
            fmt::format("use one of {}", join_endings(endings)));
   }
+  if (ending == ".step" || ending == ".stp" || ending == ".brep") require_brep(file);
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
@@ -61,23 +118,30 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
     refuse(fmt::format("cannot be written: folder '{}' ({})", folder.string(), std::strerror(errno)),
            "check its permissions");
   }
+  if (is_report(file.string())) check_report(file);
 }
 
 bool needs_tree(const std::filesystem::path& file) {
-  return lower_case(file.extension().string()) != ".json";
+  return lower_ending(file) != ".json";
 }
 
-std::vector<std::string> add_models(OutputSet& set, std::span<const std::string> files, const Model& model,
-                                    const ExportOptions& options, const RunContext& run) {
-  std::vector<std::string> warnings;
+AddedModels add_models(OutputSet& set, std::span<const std::string> files, const Model& model,
+                       const ExportOptions& options, const RunContext& run) {
+  AddedModels added;
   for (const std::string& file : files) {
+    if (is_report(file)) continue;
     ExportReport report;
-    set.add(file, [&](const std::filesystem::path& path) { report = export_model(path, model, options, run); });
+    set.add(file, [&](const std::filesystem::path& path) {
+      report = export_model(path, model, named_for(file, options), run);
+      if (!is_text_model(file) || !std::filesystem::is_regular_file(path)) return;
+      added.texts.push_back({std::filesystem::path(file).filename().string(), read_text_file(path)});
+    });
+    if (report.brep) add_brep_warnings(added.warnings, file, *report.brep, model.primitives, options.brep);
     if (!report.cut_at) continue;
-    warnings.push_back(fmt::format("{}: the solid has no bounds: it was cut at {} to {}; intersect it with a box", file,
-                                   corner(report.cut_at->min()), corner(report.cut_at->max())));
+    added.warnings.push_back(fmt::format("{}: the solid has no bounds: it was cut at {} to {}; intersect it with a box",
+                                         file, corner(report.cut_at->min()), corner(report.cut_at->max())));
   }
-  return warnings;
+  return added;
 }
 
 void check_distinct(std::span<const std::string> files) {

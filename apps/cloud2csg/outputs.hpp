@@ -8,10 +8,14 @@
 
 #include "base/output_set.hpp"
 #include "cloud2csg/export.hpp"
+#include "cloud2csg/report.hpp"
 
 namespace cloud2csg::app {
 
-/// What write_point_cloud() and export_model() take.
+/// The ending of a file's name in lower case, with its dot.
+[[nodiscard]] std::string lower_ending(const std::filesystem::path& file);
+
+/// What write_point_cloud() takes; what export_model() and write_report() take.
 [[nodiscard]] std::span<const std::string_view> cloud_endings();
 [[nodiscard]] std::span<const std::string_view> model_endings();
 
@@ -19,17 +23,21 @@ namespace cloud2csg::app {
 [[nodiscard]] std::string join_endings(std::span<const std::string_view> endings);
 
 /// Finds before the work starts what would stop the result from being written when it ends.
-/// @throws Error for an ending that is not among `endings`, a folder that is missing or cannot be written to.
+/// @throws Error for an ending that is not among `endings`, a folder that is missing or cannot be written to, a report
+/// over a file that is no page.
 void check_output(const std::filesystem::path& file, std::span<const std::string_view> endings);
 
 /// Whether a model must have a tree to be written to a file of this ending.
 [[nodiscard]] bool needs_tree(const std::filesystem::path& file);
 
-/// Writes a model to several files of a set. Returns warnings: what their formats cannot hold.
-/// @throws Error, Cancelled
-[[nodiscard]] std::vector<std::string> add_models(OutputSet& set, std::span<const std::string> files,
-                                                  const Model& model, const ExportOptions& options,
-                                                  const RunContext& run);
+struct AddedModels {
+  std::vector<std::string> warnings;  ///< what the formats cannot hold
+  std::vector<ReportDownload> texts;  ///< the .scad, .json and .step that were written, for a report
+};
+
+/// Writes a model to those files of a set that are no reports. @throws Error, Cancelled
+[[nodiscard]] AddedModels add_models(OutputSet& set, std::span<const std::string> files, const Model& model,
+                                     const ExportOptions& options, const RunContext& run);
 
 /// Refuses a list of inputs and outputs in which two name the same file.
 /// @throws Error

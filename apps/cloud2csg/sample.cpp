@@ -4,9 +4,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/output_set.hpp"
-#include "cloud2csg/model.hpp"
+#include "cloud2csg/compare.hpp"
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/input.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "command.hpp"
 #include "outputs.hpp"
@@ -16,24 +19,55 @@ namespace cloud2csg::app {
 namespace {
 
 struct SampleCommand {
-  std::string model;
+  std::string shape;
   std::vector<std::string> outputs;
   SampleOptions sampling;
   CloudWriteOptions writing;
+  std::optional<double> relative_noise;
   bool is_ascii = false;
   RunOptions running;
 
   void run(std::stop_token stop) const;
+  [[nodiscard]] PointCloud sample(const Shape3d& read, const RunContext& run) const;
 };
+
+/// Points of a mesh, uniform by area; the noise is left to the caller.
+PointCloud sample_of_mesh(const TriangleMesh& mesh, const SampleOptions& sampling, const RunContext& run) {
+  if (sampling.density > 0 || sampling.normal_noise_deg > 0) {
+    throw Error({.file = {},
+                 .where = sampling.density > 0 ? "--density" : "--normal-noise",
+                 .expected = "works on models only, this is a mesh",
+                 .remedy = "give --count and --noise"});
+  }
+  return sample_mesh(mesh, {.mesh_points = sampling.count, .seed = sampling.seed}, run);
+}
+
+PointCloud SampleCommand::sample(const Shape3d& read, const RunContext& run) const {
+  SampleOptions exact = sampling;
+  if (read.mesh || relative_noise) exact.noise = 0;
+  PointCloud cloud;
+  if (read.model) {
+    cloud = sample_surface(tree_of(*read.model, shape), read.model->primitives, exact, run);
+  } else if (read.mesh) {
+    cloud = sample_of_mesh(*read.mesh, exact, run);
+  } else {
+    throw Error({.file = {},
+                 .where = {},
+                 .expected = "expected a model with a tree or a mesh, found a point cloud",
+                 .remedy = "sample what the cloud was made of"});
+  }
+  const double noise = relative_noise ? *relative_noise * bounds_of(cloud.positions).diagonal().norm() : sampling.noise;
+  return exact.noise == 0 && noise > 0 ? with_noise(std::move(cloud), noise, sampling.seed) : cloud;
+}
 
 void SampleCommand::run(std::stop_token stop) const {
   for (const std::string& file : outputs) check_output(file, cloud_endings());
-  check_distinct(outputs);
+  std::vector<std::string> files = outputs;
+  files.push_back(shape);  // a mesh and a cloud may both be .ply
+  check_distinct(files);
   Session session(running, std::move(stop));
-  const Model read = read_model(model);
-  const CsgTree& tree = tree_of(read, model);
-  const PointCloud cloud =
-      naming(model, [&] { return sample_surface(tree, read.primitives, sampling, session.run()); });
+  const Shape3d read = read_shape(shape);
+  const PointCloud cloud = naming(shape, [&] { return sample(read, session.run()); });
   OutputSet written;
   for (const std::string& file : outputs) {
     written.add(file, [&](const std::filesystem::path& path) {
@@ -45,7 +79,8 @@ void SampleCommand::run(std::stop_token stop) const {
 }
 
 void add_options(CLI::App& app, SampleCommand& command) {
-  add_file(app, "model", command.model, "Model file with a tree")->type_name("MODEL.json");
+  add_file(app, "shape", command.shape, "Model file with a tree, or mesh: .stl .off .obj .ply")
+      ->type_name("MODEL.json|MESH");
   add_outputs(app, command.outputs, join_endings(cloud_endings()));
   app.add_flag("--ascii", command.is_ascii, "Text instead of binary numbers in .ply and .pcd")->group("Output");
   SampleOptions& sampling = command.sampling;
@@ -59,11 +94,16 @@ void add_options(CLI::App& app, SampleCommand& command) {
       ->type_name("D")
       ->excludes(count)
       ->group("Sampling");
-  app.add_option("--noise", sampling.noise, "Standard deviation by which each coordinate is moved")
+  CLI::Option* noise = app.add_option("--noise", sampling.noise, "Standard deviation by which each coordinate is moved")
+                           ->check(number_not_negative())
+                           ->type_name("SIGMA")
+                           ->group("Sampling")
+                           ->capture_default_str();
+  app.add_option("--relative-noise", command.relative_noise, "The same as a share of the diagonal, instead of --noise")
       ->check(number_not_negative())
-      ->type_name("SIGMA")
-      ->group("Sampling")
-      ->capture_default_str();
+      ->type_name("SHARE")
+      ->excludes(noise)
+      ->group("Sampling");
   app.add_option("--normal-noise", sampling.normal_noise_deg,
                  "Standard deviation by which normals are tilted, in degrees")
       ->check(number_not_negative())
@@ -81,7 +121,7 @@ void add_options(CLI::App& app, SampleCommand& command) {
 }  // namespace
 
 Command add_sample(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("sample", "Makes a point cloud on the surface of a model");
+  CLI::App* app = program.add_subcommand("sample", "Makes a point cloud on the surface of a model or mesh");
   app->footer(example("  cloud2csg sample bracket.json -n 50000 --noise 0.01 -o bracket.ply"));
   auto command = std::make_shared<SampleCommand>();
   add_options(*app, *command);

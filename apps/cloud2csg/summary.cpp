@@ -22,9 +22,33 @@ std::string partitions_line(const ExtractStatistics& s) {
 }
 
 std::string cells_line(const CellStatistics& cells) {
-  const double points = std::max(1.0, cells.speaking_points);
   return fmt::format("cells        {}, {} of them open; {:.2g} % of what the points say is contradicted", cells.cells,
-                     cells.open_cells, 100 * cells.contradicted_points / points);
+                     cells.open_cells, 100 * cells.contradicted_share());
+}
+
+std::string refine_line(const RefineStatistics& s) {
+  if (!s.is_taken) return "refined      nothing: the primitives are where the points are";
+  double shift = 0;
+  double turn = 0;
+  for (const PrimitiveChange& change : s.changes) {
+    shift = std::max(shift, change.largest_shift);
+    turn = std::max(turn, change.turn_deg);
+  }
+  return fmt::format("refined      rms distance {:.3g} -> {:.3g}; up to {:.2g} and {:.2g} deg; {} regularities",
+                     s.rms_before, s.rms_after, shift, turn, s.regularities.size());
+}
+
+/// How the primitives were found.
+std::vector<std::string> finding_lines(const FindingStatistics& s, const StageSeconds& seconds) {
+  const auto [planes, spheres, cylinders, cones, tori] = s.surfaces;
+  return {fmt::format("scale        diagonal {:.4g}, spacing {:.3g}, noise {:.3g}: tolerance {:.3g}{}", s.diagonal,
+                      s.spacing, s.noise, s.tolerance, s.normals_estimated ? "; normals estimated" : ""),
+          fmt::format("surfaces     {} planes, {} spheres, {} cylinders, {} cones, {} tori; {} points on none", planes,
+                      spheres, cylinders, cones, tori, s.unexplained_points),
+          fmt::format("regular      {} values snapped, by at most {:.2g} and {:.2g} deg", s.snaps, s.largest_shift,
+                      s.largest_turn_deg),
+          fmt::format("found in     {:.2f} s: clean and normals {:.2f}, detect {:.2f}, solids {:.2f}",
+                      seconds.clean + seconds.detect + seconds.solids, seconds.clean, seconds.detect, seconds.solids)};
 }
 
 /// The stages that took at least a thousandth of the extraction, in milliseconds.
@@ -34,7 +58,7 @@ std::string stage_times(const StageSeconds& seconds) {
   const std::array stages{Stage{"segment", seconds.segment},     Stage{"overlap", seconds.overlap},
                           Stage{"partition", seconds.partition}, Stage{"classes", seconds.classes},
                           Stage{"search", seconds.search},       Stage{"merge", seconds.merge},
-                          Stage{"simplify", seconds.simplify}};
+                          Stage{"simplify", seconds.simplify},   Stage{"refine", seconds.refine}};
   for (const auto& [name, value] : stages) {
     if (value < 1e-3 * seconds.extraction) continue;
     text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, value * 1e3);
@@ -45,7 +69,9 @@ std::string stage_times(const StageSeconds& seconds) {
 }  // namespace
 
 std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const std::string> files) {
-  std::vector<std::string> lines{
+  std::vector<std::string> lines;
+  if (s.finding) lines = finding_lines(*s.finding, s.seconds);
+  std::vector<std::string> extraction{
       fmt::format("points       {}, {} of them on no primitive; noise {:.3g}", s.points, s.unassigned_points, s.noise),
       fmt::format("primitives   {}; cliques by size ({})", s.primitives, fmt::join(s.clique_histogram, ", ")),
       s.cells ? cells_line(*s.cells) : partitions_line(s),
@@ -56,6 +82,8 @@ std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const 
       fmt::format("extraction   {:.1f} ms: {}", s.seconds.extraction * 1e3, stage_times(s.seconds)),
       fmt::format("in all       {:.1f} ms: read {:.1f}, write {:.1f}", s.seconds.total * 1e3, s.seconds.read * 1e3,
                   s.seconds.write * 1e3)};
+  if (s.refine) extraction.insert(extraction.begin() + 2, refine_line(*s.refine));
+  lines.insert(lines.end(), extraction.begin(), extraction.end());
   for (std::size_t k = 0; k < files.size(); ++k) {
     lines.push_back(fmt::format("{}{}", k == 0 ? "wrote        " : "             ", files[k]));
   }

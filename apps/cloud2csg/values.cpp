@@ -69,6 +69,11 @@ CLI::Validator number_not_negative() {
   return number_between("a finite number of 0 or more", 0, std::numeric_limits<double>::max());
 }
 
+CLI::Validator number_positive() {
+  return number_between("a finite number above 0", std::numeric_limits<double>::min(),
+                        std::numeric_limits<double>::max());
+}
+
 CLI::Validator share() {
   return number_between("a number from 0 to 1", 0, 1);
 }

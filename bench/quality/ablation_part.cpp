@@ -17,8 +17,9 @@ std::vector<Setting> ablations() {
     change(setting.options);
     settings.push_back(setting);
   };
-  add("no evidence of absence", [](ExtractOptions& o) { o.cell_solve.labels.absence = 0; });
-  add("absence counts twice", [](ExtractOptions& o) { o.cell_solve.labels.absence *= 2; });
+  add("no evidence of absence", [](ExtractOptions& o) { o.cell_labels.absence = 0; });
+  add("absence counts twice", [](ExtractOptions& o) { o.cell_labels.absence *= 2; });
+  add("any point counts once", [](ExtractOptions& o) { o.cell_labels.presence = 1; });
   add("16 samples a primitive", [](ExtractOptions& o) { o.cell_samples = {.base = 16, .a_neighbour = 0}; });
   add("a quarter of the samples", [](ExtractOptions& o) { o.cell_samples = {.base = 12, .a_neighbour = 10}; });
   add("all labels are sure", [](ExtractOptions& o) { o.cell_solve.least_evidence = {0}; });

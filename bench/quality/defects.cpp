@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "base/random.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/restrict.hpp"
 #include "cloud2csg/sample.hpp"
+#include "geometry/random_between.hpp"
 #include "primitive/overloaded.hpp"
 
 namespace cloud2csg::bench {
@@ -33,6 +33,7 @@ PointCloud select_points(const PointCloud& cloud, const std::vector<bool>& is_ke
     if (!is_kept[i]) continue;
     selected.positions.push_back(cloud.positions[i]);
     selected.normals.push_back(cloud.normals[i]);
+    if (cloud.has_sensor_positions()) selected.sensor_positions.push_back(cloud.sensor_positions[i]);
   }
   return selected;
 }
@@ -70,9 +71,7 @@ PointCloud with_outliers(PointCloud cloud, RandomStream& random) {
   const auto count =
       static_cast<std::size_t>(static_cast<double>(cloud.size()) * k_outlier_share / (1 - k_outlier_share));
   for (std::size_t i = 0; i < count; ++i) {
-    Vector3d position;
-    for (int axis = 0; axis < 3; ++axis) position[axis] = random.uniform(box.min()[axis], box.max()[axis]);
-    cloud.positions.push_back(position);
+    cloud.positions.push_back(random_between(box.min(), box.max(), random));
     cloud.normals.push_back(random_direction(random));
   }
   return cloud;

@@ -41,11 +41,24 @@ Outcome extract_and_judge(const Task& task, const Setting& setting) {
     outcome.failure = fault_of(result.tree, task.primitives.size());
     if (!outcome.failure.empty()) return outcome;
     outcome.iou = task.judge->intersection_over_union(renumber(result.tree, task.judge_index));
-    outcome.size_ratio = static_cast<double>(result.tree.size()) / static_cast<double>(task.true_size);
+    outcome.size_ratio = static_cast<double>(result.tree.size()) / static_cast<double>(task.truth.tree->size());
   } catch (const std::exception& error) {
     outcome.failure = error.what();
   }
   return outcome;
+}
+
+/// For looking at.
+void keep(const std::filesystem::path& stem, const Task& task, const Setting& setting) {
+  std::filesystem::create_directories(stem.parent_path());
+  ExtractOptions options = setting.options;
+  options.seed = task.seed;
+  const auto file = [&stem](const char* ending) { return std::filesystem::path(stem.string() + ending); };
+  write_model(file(".truth.json"), task.truth);
+  write_model(file(".result.json"), {.primitives = task.primitives,
+                                     .tree = extract_csg(task.cloud, task.primitives, options).tree,
+                                     .description = {}});
+  write_point_cloud(file(".ply"), task.cloud);
 }
 
 /// A line that is overwritten on a terminal; elsewhere, only its end.
@@ -59,7 +72,7 @@ void show_progress(const std::string& label, std::size_t done, std::size_t count
 
 Task make_task(const Model& model, PointCloud cloud, std::shared_ptr<const Judge> judge, std::uint64_t seed) {
   Task task{.judge = std::move(judge),
-            .true_size = model.tree->size(),
+            .truth = model,
             .primitives = model.primitives,
             .judge_index = std::vector<PrimitiveIndex>(model.primitives.size()),
             .cloud = std::move(cloud),
@@ -82,6 +95,12 @@ std::vector<std::vector<Outcome>> run_tasks(const std::string& label, std::size_
     const std::lock_guard lock(reporting);
     show_progress(label, ++done, count);
   });
+  for (std::size_t s = 0; s < options.settings.size() && !options.keep.empty() && count > 0; ++s) {
+    const auto worst = std::ranges::min_element(outcomes[s], {}, &Outcome::iou) - outcomes[s].begin();
+    std::string name = label + "." + options.settings[s].name;
+    std::ranges::replace(name, ' ', '_');
+    keep(options.keep / name, make(static_cast<std::size_t>(worst)), options.settings[s]);
+  }
   return outcomes;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -17,7 +18,7 @@ namespace cloud2csg::bench {
 /// A cloud and primitives to extract from, and the truth to hold the tree against.
 struct Task {
   std::shared_ptr<const Judge> judge;
-  std::size_t true_size = 0;                ///< nodes of the true tree
+  Model truth;                              ///< with a tree
   PrimitiveSet primitives;                  ///< those that are given to the extraction
   std::vector<PrimitiveIndex> judge_index;  ///< by primitive: its index for the judge
   PointCloud cloud;
@@ -39,10 +40,13 @@ struct Outcome {
 struct RunOptions {
   std::vector<Setting> settings;
   int threads = 0;  ///< of the whole: a task has one; 0 = all cores
+  /// A folder for the worst task of each call of run_tasks(), by IoU and by setting; empty: none is kept.
+  std::filesystem::path keep = {};
 };
 
 /// Makes tasks 0 .. count - 1, several at a time, and extracts each by all settings on one thread. Outcomes by setting,
-/// then by task; but for the times, they do not depend on the threads. Progress goes to the standard error.
+/// then by task; but for the times, they do not depend on the threads. Progress goes to the standard error. Kept tasks
+/// are LABEL.SETTING.truth.json, .result.json and .ply, the label's spaces as underscores.
 [[nodiscard]] std::vector<std::vector<Outcome>> run_tasks(const std::string& label, std::size_t count,
                                                           const std::function<Task(std::size_t)>& make,
                                                           const RunOptions& options);

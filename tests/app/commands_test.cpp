@@ -28,6 +28,51 @@ TEST_F(Commands, SampleMakesAsManyPointsAsAsked) {
   EXPECT_LT(info["bounds"][1][1].get<double>(), 1.2);
 }
 
+TEST_F(Commands, ScanSeesModelsAndMeshes) {
+  const Outcome outcome = run({"scan", shipped("m1.json"), "-n", "1234", "--resolution", "48", "-o", path("m.pcd")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find("1234 points from 20 views"), std::string::npos) << outcome.err;
+  const json info = json::parse(run({"info", path("m.pcd"), "--json"}).out);
+  EXPECT_EQ(info["points"], 1234);
+  EXPECT_EQ(info["sensor_positions"], true);
+  EXPECT_EQ(info["normals"], false);
+
+  ASSERT_EQ(run({"convert", shipped("m1.json"), "-o", path("m.stl"), "--resolution", "48"}).status, 0);
+  ASSERT_EQ(
+      run({"scan", path("m.stl"), "--views", "3", "--angular-step", "1", "--normals", "--perfect", "-o", path("m.ply")})
+          .status,
+      0);
+  EXPECT_EQ(json::parse(run({"info", path("m.ply"), "--json"}).out)["normals"], true);
+  const json comparison =
+      json::parse(run({"compare", path("m.stl"), path("m.ply"), "--samples", "1000", "--json"}).out);
+  EXPECT_LT(comparison["mean_distance"].get<double>(), 0.1);
+}
+
+TEST_F(Commands, ScanIsRepeatableForAnyNumberOfThreads) {
+  const auto scan = [this](const std::string& name, const std::string& seed, const std::string& threads) {
+    EXPECT_EQ(run({"scan", shipped("m1.json"), "-n", "500", "--resolution", "48", "--seed", seed, "--threads", threads,
+                   "-o", path(name)})
+                  .status,
+              0);
+    return read_file(path(name));
+  };
+  const std::string once = scan("a.ply", "3", "1");
+  EXPECT_EQ(once, scan("b.ply", "3", "2"));
+  EXPECT_NE(once, scan("c.ply", "4", "1"));
+}
+
+TEST_F(Commands, ScanRefusesCloudsAndItsOwnInput) {
+  ASSERT_EQ(run({"sample", shipped("m1.json"), "-n", "100", "-o", path("c.ply")}).status, 0);
+  const Outcome cloud = run({"scan", path("c.ply"), "-o", path("d.ply")});
+  EXPECT_EQ(cloud.status, 1);
+  EXPECT_NE(cloud.err.find("found a point cloud"), std::string::npos) << cloud.err;
+  EXPECT_EQ(run({"scan", path("c.ply"), "-o", path("c.ply")}).status, 1);
+  EXPECT_EQ(run({"scan", shipped("m1.json"), "--perfect", "--noise", "0.1", "-o", path("d.ply")}).status, 2);
+  EXPECT_EQ(run({"scan", shipped("m1.json"), "--distance", "0.5", "-o", path("d.ply")}).status, 1);
+  EXPECT_EQ(files(), std::vector<std::string>{"c.ply"});
+}
+
 TEST_F(Commands, SampleIsRepeatable) {
   const auto sample = [this](const std::string& name, const std::string& seed) {
     EXPECT_EQ(run({"sample", shipped("m1.json"), "-n", "500", "--seed", seed, "-o", path(name)}).status, 0);
@@ -64,6 +109,58 @@ TEST_F(Commands, ConvertWritesEveryEnding) {
     EXPECT_EQ(info["watertight"], true) << mesh;
     EXPECT_GT(info["volume"].get<double>(), 0.2) << mesh;
   }
+}
+
+/// Whether the program was built with OpenCASCADE.
+bool writes_step(const Outcome& outcome) {
+  return outcome.err.find("need OpenCASCADE") == std::string::npos;
+}
+
+TEST_F(Commands, ConvertWritesExactSolids) {
+  const Outcome outcome = run({"convert", shipped("m3.json"), "-o", path("it's \"m3\".step"), "-o", path("m.STP"), "-o",
+                               path("m.brep"), "--with-primitives", "--quiet"});
+  if (!writes_step(outcome)) GTEST_SKIP() << "needs OpenCASCADE";
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "") << "nothing that the kernel prints";
+  EXPECT_EQ(files(), (std::vector<std::string>{"it's \"m3\".step", "m.STP", "m.brep"}));
+  const std::string step = read_file(path("it's \"m3\".step"));
+  EXPECT_EQ(step.rfind("ISO-10303-21;", 0), 0U);
+  EXPECT_NE(step.find("PRODUCT('it''s \"m3\" assembly'"), std::string::npos);
+  EXPECT_NE(step.find("PRODUCT('housing'"), std::string::npos);
+  EXPECT_NE(read_file(path("m.brep")).find("CASCADE Topology"), std::string::npos);
+}
+
+TEST_F(Commands, ExtractWritesExactSolids) {
+  const std::string cloud = path("c.ply");
+  ASSERT_EQ(run({"sample", shipped("m3.json"), "-n", "20000", "-o", cloud}).status, 0);
+  const Outcome outcome = run({"extract", cloud, "--primitives", shipped("m3.json"), "-o", path("x.step"), "--quiet"});
+  if (!writes_step(outcome)) GTEST_SKIP() << "needs OpenCASCADE";
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(read_file(path("x.step")).find("MANIFOLD_SOLID_BREP('x'"), std::string::npos);
+}
+
+TEST_F(Commands, ExactSolidsSayWhatHasFacets) {
+  const std::string model = file("egg.json", R"({"format": "cloud2csg", "version": 1, "primitives": [
+      {"id": "egg", "type": "expression", "distance": "sqrt(x^2+y^2+2*z^2)-1", "bounds": [[-2,-2,-2],[2,2,2]]}],
+      "tree": {"primitive": "egg"}})");
+  const Outcome outcome = run({"convert", model, "-o", path("egg.step"), "--facet-resolution", "8"});
+  if (!writes_step(outcome)) GTEST_SKIP() << "needs OpenCASCADE";
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("'egg' has no exact surface"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Commands, FailedExactSolidsLeaveOlderFiles) {
+  const std::string model = file("none.json", R"({"format": "cloud2csg", "version": 1, "primitives": [
+      {"id": "a", "type": "sphere", "radius": 1},
+      {"id": "b", "type": "sphere", "radius": 1, "pose": {"position": [9, 0, 0]}}],
+      "tree": {"op": "intersection", "children": [{"primitive": "a"}, {"primitive": "b"}]}})");
+  const std::string older = file("x.step", "an older result");
+  const Outcome outcome = run({"convert", model, "-o", path("x.scad"), "-o", older, "--quiet"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find(older), std::string::npos) << outcome.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"none.json", "x.step"}));
+  EXPECT_EQ(read_file(older), "an older result");
 }
 
 TEST_F(Commands, ConvertWarnsWhereItCuts) {

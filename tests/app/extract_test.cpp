@@ -33,6 +33,35 @@ TEST_F(Extract, FindsTheModelAgain) {
   EXPECT_GT(json::parse(compared.out)["intersection_over_union"].get<double>(), 0.99) << compared.err;
 }
 
+TEST_F(Extract, RefinesPrimitives) {
+  const std::string cloud = sampled("m2.json", "4000");
+  json model = json::parse(read_file(shipped("m2.json")));
+  const double radius = model["primitives"][0]["radius"];
+  model.erase("tree");
+  for (json& primitive : model["primitives"]) primitive["radius"] = 1.02 * radius;
+  const std::string given = file("given.json", model.dump());
+  const auto refine = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"extract",      cloud,     "--primitives", given,       "-o",
+                                       path("m.json"), "--stats", path("s.json"), "--threads", "2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  ASSERT_EQ(refine({}).status, 0);
+  EXPECT_TRUE(json::parse(read_file(path("s.json")))["refine"].is_null());
+  const Outcome outcome = refine({"--refine"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("refined "), std::string::npos) << outcome.err;
+  const json refined = json::parse(read_file(path("m.json")));
+  for (const json& primitive : refined["primitives"]) {
+    EXPECT_NEAR(primitive["radius"].get<double>(), radius, 0.005 * radius);
+  }
+  const json statistics = json::parse(read_file(path("s.json")))["refine"];
+  EXPECT_EQ(statistics["is_taken"], true);
+  EXPECT_LT(statistics["rms_after"].get<double>(), statistics["rms_before"].get<double>());
+  EXPECT_EQ(statistics["primitives"].size(), 20U);
+  EXPECT_GT(statistics["largest_shift"].get<double>(), 0.01 * radius);
+}
+
 TEST_F(Extract, WritesStatistics) {
   const std::string cloud = sampled("m2.json", "4000");
   const Outcome outcome = run({"extract", cloud, "--primitives", shipped("m2.json"), "-o", path("m.json"), "--stats",

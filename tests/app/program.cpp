@@ -46,6 +46,10 @@ void RunningProgram::send_signal(int signal) const {
   ::kill(pid_, signal);
 }
 
+std::string RunningProgram::out_so_far() const {
+  return read_file(out_);
+}
+
 std::string RunningProgram::err_so_far() const {
   return read_file(err_);
 }

@@ -22,6 +22,7 @@ class RunningProgram {
   RunningProgram(pid_t pid, std::filesystem::path out, std::filesystem::path err)
       : pid_(pid), out_(std::move(out)), err_(std::move(err)) {}
   void send_signal(int signal) const;
+  [[nodiscard]] std::string out_so_far() const;
   [[nodiscard]] std::string err_so_far() const;
   [[nodiscard]] Outcome wait();
 

@@ -19,7 +19,7 @@ TEST_F(Usage, VersionIsAResult) {
 TEST_F(Usage, HelpListsWhatThereIs) {
   const Outcome outcome = run({"--help"});
   EXPECT_EQ(outcome.status, 0);
-  for (const char* command : {"extract", "sample", "compare", "convert", "info", "bench"}) {
+  for (const char* command : {"extract", "sample", "scan", "compare", "convert", "info", "bench"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
     const Outcome help = run({command, "--help"});
     EXPECT_EQ(help.status, 0);
@@ -56,7 +56,7 @@ TEST_F(Usage, FarNamesSuggestNothing) {
 TEST_F(Usage, EveryValueOfEveryCommandIsChecked) {
   // "--name TYPE" or "--name TYPE=default" in the help: options with a value. Few names are numbers, no number is -x.
   const std::regex option_line(R"(^  (?:-\w,)?(--[a-z-]+) [A-Z](?:[^a-z]|$))");
-  for (const std::string command : {"extract", "sample", "compare", "convert"}) {
+  for (const std::string command : {"extract", "sample", "scan", "compare", "convert"}) {
     std::istringstream help(run({command, "--help"}).out);
     std::size_t options = 0;
     for (std::string line; std::getline(help, line);) {
@@ -112,7 +112,7 @@ TEST_F(Usage, ValuesAreChecked) {
   const std::string model = shipped("m1.json");
   const std::string out = path("x.ply");
   expect_failure(run({"sample", model}), 2, {"--output"});
-  expect_failure(run({"sample", "-o", out}), 2, {"model"});
+  expect_failure(run({"sample", "-o", out}), 2, {"shape"});
   expect_failure(run({"sample", model, "-o"}), 2, {"--output"});
   expect_failure(run({"sample", model, "-o", out, "-n", "0"}), 2, {"--count"});
   expect_failure(run({"sample", model, "-o", out, "-n", "many"}), 2, {"--count", "many"});
@@ -122,7 +122,7 @@ TEST_F(Usage, ValuesAreChecked) {
   expect_failure(run({"sample", model, "-o", out, "-n", "5", "-n", "6"}), 2, {"--count: given more than once"});
   expect_failure(run({"sample", model, "-o", out, "-n", "5", "--density", "6"}), 2, {"--count", "--density"});
   expect_failure(run({"sample", model, "-o", ""}), 2, {"--output: expected the name of a file"});
-  expect_failure(run({"sample", "", "-o", out}), 2, {"model: expected the name of a file"});
+  expect_failure(run({"sample", "", "-o", out}), 2, {"shape: expected the name of a file"});
   const std::vector<std::string> extract{"extract", "c.ply", "--primitives", model, "-o", "x.json"};
   const auto with = [&extract](std::vector<std::string> more) {
     more.insert(more.begin(), extract.begin(), extract.end());

@@ -1,0 +1,72 @@
+#include "raw_arguments.hpp"
+
+#include <string>
+
+#include "values.hpp"
+
+namespace cloud2csg::app {
+
+ReconstructOptions RawArguments::options(const ExtractOptions& extraction, const Input& input) const {
+  ReconstructOptions options{.extraction = extraction};
+  options.preparation.clean.remove_outliers = !keeps_outliers;
+  options.preparation.clean.point_budget = point_budget;
+  options.preparation.keep_normals = !estimates_normals;
+  // Points drawn from a mesh lie on it, and so do not have to be looked at.
+  options.preparation.is_exact = input.mesh.has_value();
+  options.detection.distance_tolerance = tolerance;
+  if (normal_tolerance_deg) options.detection.angle_tolerance_deg = *normal_tolerance_deg;
+  options.detection.least_points = least_points;
+  options.detection.seed = extraction.seed;
+  options.solids.leaf_cost = leaf_cost;
+  options.solids.places.seed = extraction.seed;
+  options.solids.regularity.snap = !does_not_snap;
+  return options;
+}
+
+InputOptions RawArguments::input(const ExtractOptions& extraction) const {
+  return {.mesh_points = mesh_points, .seed = extraction.seed};
+}
+
+void add_raw_arguments(CLI::App& app, RawArguments& arguments, const std::string& group) {
+  app.add_option("--tolerance", arguments.tolerance,
+                 "How far points may be from their surface, in the cloud's units (default: 3 x the measured noise, at "
+                 "least 0.15 % of the diagonal)")
+      ->check(number_positive())
+      ->type_name("D")
+      ->group(group);
+  app.add_option("--normal-tolerance", arguments.normal_tolerance_deg,
+                 "... and how far their normals may be turned from the surface's (default: 25)")
+      ->check(number_positive())
+      ->type_name("DEG")
+      ->group(group);
+  app.add_option("--least-points", arguments.least_points,
+                 "Surfaces with fewer are left alone (default: one in 2000, at least 30)")
+      ->transform(whole_number_from(1))
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--leaf-cost", arguments.leaf_cost,
+                 "What a solid must gain, as a share of the volume and surface: more gives smaller trees")
+      ->check(number_positive())
+      ->type_name("SHARE")
+      ->group(group)
+      ->capture_default_str();
+  app.add_flag("--no-snap", arguments.does_not_snap,
+               "Keep directions, offsets and radii as they were measured: nothing is made parallel or equal")
+      ->group(group);
+  app.add_flag("--estimate-normals", arguments.estimates_normals, "Do not use the normals that the cloud has")
+      ->group(group);
+  app.add_flag("--keep-outliers", arguments.keeps_outliers, "Do not look for outliers: the cloud is clean")
+      ->group(group);
+  app.add_option("--point-budget", arguments.point_budget, "Larger clouds are thinned to about so many points")
+      ->transform(whole_number_from(1000))
+      ->type_name("N")
+      ->group(group)
+      ->capture_default_str();
+  app.add_option("--mesh-points", arguments.mesh_points, "How many points are drawn from a mesh")
+      ->transform(whole_number_from(100))
+      ->type_name("N")
+      ->group(group)
+      ->capture_default_str();
+}
+
+}  // namespace cloud2csg::app

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "browser.hpp"
+#include "cloud2csg/input.hpp"
+#include "cloud2csg/report.hpp"
+#include "command.hpp"
+#include "page_server.hpp"
+#include "reports.hpp"
+#include "values.hpp"
+
+namespace cloud2csg::app {
+namespace {
+
+struct ViewCommand {
+  std::string model;
+  std::string cloud;  // empty: none
+  int port = 0;
+  bool no_browser = false;
+  RunOptions running;
+  std::vector<ReportParameter> parameters;
+
+  void run(const std::stop_token& stop) const;
+  [[nodiscard]] Report report(const RunContext& run) const;
+};
+
+Report ViewCommand::report(const RunContext& run) const {
+  Report report{
+      .title = std::filesystem::path(model).filename().string(), .model = read_model(model), .parameters = parameters};
+  (void)tree_of(report.model, model);
+  report.source = report.model.description;
+  if (cloud.empty()) return report;
+  Input input = read_cloud_or_mesh(cloud, {}, run);
+  report.cloud = std::move(input.cloud);
+  report.warnings = std::move(input.warnings);
+  return report;
+}
+
+void ViewCommand::run(const std::stop_token& stop) const {
+  check_report_page(model);
+  std::string page;
+  {
+    const Session session(running, stop);
+    page = naming(model, [&] { return report_page(report(session.run()), {}, session.run()); });
+  }
+  serve_page(page, port, stop, [this](const std::string& address) {
+    fmt::print("{}\n", address);
+    (void)std::fflush(stdout);
+    const bool is_opened = !no_browser && open_in_browser(address);
+    if (running.quiet) return;
+    fmt::print(stderr, "{}Ctrl-C ends it\n",
+               is_opened ? "opened in the browser; " : "open this address in a browser; ");
+  });
+}
+
+void add_options(CLI::App& app, ViewCommand& command) {
+  add_file(app, "model", command.model, "Model file with a tree")->type_name("MODEL.json");
+  app.add_option("--cloud", command.cloud, "Points to show beside the solid, and how far they are from it")
+      ->check(file_name())
+      ->type_name("CLOUD|MESH");
+  app.add_option("--port", command.port, "Port on 127.0.0.1; 0 = any that is free")
+      ->transform(whole_number(0, 65'535))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--no-browser", command.no_browser, "Print the address only");
+  add_run_options(app, command.running);
+}
+
+}  // namespace
+
+Command add_view(CLI::App& program) {
+  CLI::App* app = program.add_subcommand("view", "Shows a model, and a cloud beside it, in the browser");
+  app->footer("The page is the one that '-o report.html' writes. It is served to this machine only, until Ctrl-C.\n\n" +
+              example("  cloud2csg view bracket.json --cloud bracket.ply"));
+  auto command = std::make_shared<ViewCommand>();
+  add_options(*app, *command);
+  app->final_callback([app, command] { command->parameters = parameters_of(*app); });
+  return {.options = app, .run = [command](const std::stop_token& stop) { command->run(stop); }};
+}
+
+}  // namespace cloud2csg::app
