@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """From meshes to trees, judged outside: how good and how fast `cloud2csg extract` is on a folder of meshes.
 
-    bench/inversecsg.py FOLDER [--program build/release/cloud2csg] [--variants clean noise scan] [--markdown]
+    bench/inversecsg.py FOLDER [--program build/release/cloud2csg] [--variants clean noise scan]
 
 For each mesh of the folder: 100 000 points without noise, with noise of 0.2 % of the diagonal, and a virtual scan from 20
-viewpoints without normals. The tree is written as .scad, rendered by OpenSCAD, and that mesh is compared with the
+viewpoints without normals; with the variant "table" such a scan from above only, of a part that lies on a table. The tree is written as .scad, rendered by OpenSCAD, and that mesh is compared with the
 input. Prints a table; nothing is known of a model but its mesh.
 """
 
@@ -39,7 +39,8 @@ def make_cloud(program, mesh, variant, points, seed, folder):
         run([program, "sample", mesh, "-n", str(points), "--seed", str(seed), "--relative-noise", "0.002",
              "-o", cloud, "-q"])
     else:
-        run([program, "scan", mesh, "--seed", str(seed), "-o", cloud, "-q"])
+        above = ["--on-table"] if variant == "table" else []
+        run([program, "scan", mesh, "--seed", str(seed), *above, "-o", cloud, "-q"])
     return cloud
 
 
@@ -111,7 +112,8 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--program", default="build/release/cloud2csg")
     parser.add_argument("--openscad", default="openscad", help="the program; '' to judge without it, which is faster")
-    parser.add_argument("--variants", nargs="+", default=["clean", "noise", "scan"])
+    parser.add_argument("--variants", nargs="+", choices=["clean", "noise", "scan", "table"],
+                        default=["clean", "noise", "scan"])
     parser.add_argument("--models", nargs="+", help="only these, by the file's name without its ending")
     parser.add_argument("--points", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)

@@ -17,6 +17,7 @@ struct RawArguments {
   double leaf_cost = SolidOptions{}.leaf_cost;
   bool estimates_normals = false;
   bool keeps_outliers = false;
+  bool leaves_open = false;
   bool does_not_snap = false;
   std::size_t point_budget = CleanOptions{}.point_budget;
   std::size_t mesh_points = InputOptions{}.mesh_points;

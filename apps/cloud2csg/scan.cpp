@@ -68,6 +68,8 @@ void add_scanner_options(CLI::App& app, ScanOptions& scanning) {
   add("--views", scanning.views, "N", "Sensors, spread evenly around the part")->transform(whole_number(1, 1'000'000));
   add("--distance", scanning.distance, "R", "From the middle of the part, in radii of its bounding sphere")
       ->check(number_not_negative());
+  app.add_flag("--on-table", scanning.on_table, "Sensors above the part only: its underside, along z, is not seen")
+      ->group("Scanner");
   app.add_option("--field-of-view", scanning.field_of_view_deg,
                  "Width and height of a view in degrees; if not given, just the bounding sphere")
       ->check(number_not_negative())

@@ -14,14 +14,18 @@ namespace cloud2csg {
 struct ReconstructOptions {
   PrepareOptions preparation = {};
   DetectOptions detection = {};
+  /// Close a side that is missing as a whole, as that on which the part stood, by a plane: else nothing tells how far
+  /// the solid reaches there.
+  bool close_unseen_side = true;
   SolidOptions solids = {};
   ExtractOptions extraction = {};
 };
 
 struct FoundPrimitives {
-  PreparedCloud prepared;  ///< the cloud that everything else speaks of
-  Detection detection;     ///< the surfaces that it lies on
-  SolidChoice choice;      ///< a few solids that these bound, and a tree over them
+  PreparedCloud prepared;        ///< the cloud that everything else speaks of
+  Detection detection;           ///< the surfaces that it lies on
+  std::size_t added_points = 0;  ///< on a side that was not seen: the last ones of the cloud
+  SolidChoice choice;            ///< a few solids that these bound, and a tree over them
   double prepare_seconds = 0, detect_seconds = 0, choose_seconds = 0;
   std::vector<std::string> warnings;  ///< sentences for the user: what is doubtful, and where
 };

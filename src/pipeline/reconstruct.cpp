@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "pipeline/bare_surface.hpp"
 #include "pipeline/fit.hpp"
 #include "pipeline/time_limit.hpp"
+#include "solids/unseen_side.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -46,6 +48,7 @@ void check_detection(const Detection& detection, const PointCloud& cloud, std::v
 FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t raw_points) {
   const Scale& scale = found.prepared.scale;
   FindingStatistics statistics{.raw_points = raw_points,
+                               .added_points = found.added_points,
                                .normals_estimated = found.prepared.normals_estimated,
                                .diagonal = scale.diagonal,
                                .spacing = scale.spacing,
@@ -119,6 +122,30 @@ void check_surface(const CsgTree& tree, const FoundPrimitives& found, const RunC
                   100 * bare->share, bare->middle.x(), bare->middle.y(), bare->middle.z()));
 }
 
+void append(Points& points, const Points& more) {
+  points.x.insert(points.x.end(), more.x.begin(), more.x.end());
+  points.y.insert(points.y.end(), more.y.begin(), more.y.end());
+  points.z.insert(points.z.end(), more.z.begin(), more.z.end());
+}
+
+/// Adds the side, if one is missing, to the cloud and to the surfaces.
+void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
+  PointCloud& cloud = found.prepared.cloud;
+  const std::optional<UnseenSide> side = find_unseen_side(cloud, found.detection.surfaces, found.prepared.scale, run);
+  if (!side) return;
+  DetectedSurface plane{.surface = {.position = side->points.positions[0], .axis = side->normal}, .points = {}};
+  plane.points.resize(side->points.size());
+  std::iota(plane.points.begin(), plane.points.end(), static_cast<std::uint32_t>(cloud.size()));
+  found.added_points = side->points.size();
+  append(cloud.positions, side->points.positions);
+  append(cloud.normals, side->points.normals);
+  append(cloud.sensor_positions, side->points.sensor_positions);
+  found.detection.surfaces.push_back(std::move(plane));
+  found.warnings.push_back(fmt::format(
+      "the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed by a plane",
+      side->normal.x(), side->normal.y(), side->normal.z(), 100 * side->share));
+}
+
 }  // namespace
 
 FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
@@ -131,6 +158,7 @@ FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOption
 
   found.detection = detect_surfaces(found.prepared.cloud, found.prepared.scale, options.detection, run);
   check_detection(found.detection, found.prepared.cloud, found.warnings);
+  if (options.close_unseen_side) close_unseen_side(found, run);
   found.detect_seconds = watch.lap();
 
   run.report("solids", 0, 1);

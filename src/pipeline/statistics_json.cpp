@@ -102,6 +102,7 @@ Json refine_json(const RefineStatistics& s) {
 Json finding_json(const FindingStatistics& s) {
   const auto [planes, spheres, cylinders, cones, tori] = s.surfaces;
   return {{"raw_points", s.raw_points},
+          {"added_points", s.added_points},
           {"normals_estimated", s.normals_estimated},
           {"diagonal", s.diagonal},
           {"spacing", s.spacing},

@@ -38,6 +38,19 @@ Vector3d spiral_direction(std::size_t i, std::size_t n) {
   return {across * std::cos(longitude), across * std::sin(longitude), height};
 }
 
+/// The way from the part to each sensor.
+std::vector<Vector3d> view_directions(const ScanOptions& options) {
+  RandomStream random(options.seed, k_turn_stream);
+  const Quaterniond turn =
+      options.on_table ? Quaterniond(Eigen::AngleAxisd(2.0 * std::numbers::pi * random.uniform(), Vector3d::UnitZ()))
+                       : random_orientation(random);
+  const std::size_t steps = options.on_table ? 2 * options.views : options.views;  // the first half is above
+  std::vector<Vector3d> directions;
+  directions.reserve(options.views);
+  for (std::size_t i = 0; i < options.views; ++i) directions.emplace_back(turn * spiral_direction(i, steps));
+  return directions;
+}
+
 /// A small turn around the middle of the part, then a shift.
 Pose misplacement(const ScanTarget& target, const ScanOptions& options, RandomStream& random) {
   const double angle = options.rotation_deg * std::numbers::pi / 180.0 * random.normal();
@@ -51,12 +64,11 @@ Pose misplacement(const ScanTarget& target, const ScanOptions& options, RandomSt
 }  // namespace
 
 std::vector<View> place_views(const ScanTarget& target, const ScanOptions& options) {
-  RandomStream turn_random(options.seed, k_turn_stream);
-  const Quaterniond turn = random_orientation(turn_random);
+  const std::vector<Vector3d> directions = view_directions(options);
   std::vector<View> views;
   for (std::size_t i = 0; i < options.views; ++i) {
     RandomStream random(options.seed, k_view_stream, i);
-    const Vector3d outward = turn * spiral_direction(i, options.views);
+    const Vector3d& outward = directions[i];
     const Vector3d position = target.middle + options.distance * target.radius * outward;
     View view{.sensor = pose_from_axis(position, -outward),
               .misplacement = {},

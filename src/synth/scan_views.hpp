@@ -21,7 +21,8 @@ struct View {
   double column_shift, row_shift;  ///< of the raster, in steps from 0 to 1
 };
 
-/// One view each in the directions of a Fibonacci spiral, which covers the sphere evenly for any number of them.
+/// One view each in the directions of a Fibonacci spiral, which covers the sphere evenly for any number of them, or the
+/// half of it above the table.
 [[nodiscard]] std::vector<View> place_views(const ScanTarget& target, const ScanOptions& options);
 
 /// The rays of a view: a square raster of equal angles, row by row, within the field of view.

@@ -8,6 +8,7 @@
 
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/error.hpp"
+#include "cloud2csg/scan.hpp"
 #include "pipeline/fit.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
@@ -61,7 +62,7 @@ bool has_warning(const Reconstruction& result, const std::string& part) {
                              [&part](const std::string& warning) { return warning.find(part) != std::string::npos; });
 }
 
-/// A hole in the cloud that is as large as a face is closed, and the user is told of it.
+/// A hole in the cloud that is as large as a face: the user is told of it.
 TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
   const Model truth{.primitives = {test::placed("block", Box{{4, 3, 3}}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
   const PointCloud whole = cloud_of(truth, 0.0);
@@ -72,9 +73,24 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
     open.positions.push_back(whole.positions[i]);
     open.normals.push_back(whole.normals[i]);
   }
-  const Reconstruction result = reconstruct(open);
+  const Reconstruction result = reconstruct(open, {.close_unseen_side = false});
   EXPECT_GT(iou(result, truth), 0.9);
   EXPECT_TRUE(has_warning(result, "no points near"));
+  EXPECT_FALSE(has_warning(result, "closed by a plane"));
+  const Reconstruction closed = reconstruct(open);
+  EXPECT_GT(iou(closed, truth), 0.99);
+  EXPECT_TRUE(has_warning(closed, "closed by a plane"));
+  EXPECT_FALSE(has_warning(closed, "no points near"));
+}
+
+/// Its ground is not seen, nor are parts of its holes.
+TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
+  const Model truth = plate();
+  const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.on_table = true, .count = 60'000});
+  const Reconstruction result = reconstruct(scan);
+  EXPECT_GT(iou(result, truth), 0.97);
+  EXPECT_TRUE(has_warning(result, "closed by a plane"));
+  EXPECT_GT(result.statistics.finding->added_points, 5000U);
 }
 
 TEST(Reconstruct, NeedsNoNormals) {

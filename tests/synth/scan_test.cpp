@@ -157,6 +157,22 @@ TEST(Scan, SensorsStandEvenlyAroundThePart) {
   }
 }
 
+TEST(Scan, SeesNothingOfTheUndersideOnATable) {
+  ScanOptions options = perfect();
+  options.on_table = true;
+  options.with_normals = true;
+  const PointCloud cloud = scan_mesh(octahedron(), options);
+  std::size_t views = 1;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    EXPECT_GT(cloud.sensor_positions.z[i], 0);
+    EXPECT_GE(cloud.positions.z[i], -1.0);
+    views += i > 0 && cloud.sensor_positions[i] != cloud.sensor_positions[i - 1] ? 1 : 0;
+  }
+  EXPECT_EQ(views, options.views);
+  const PrimitiveSet block{{.id = "block", .shape = Box{{4, 3, 3}}}};
+  EXPECT_GT(std::ranges::min(scan_model(CsgTree::leaf(0), block, options).normals.z), -0.1);
+}
+
 TEST(Scan, GivesAsManyPointsAsWanted) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{30'000}}) {
     const PointCloud cloud = scan_mesh(square(), {.count = count});
