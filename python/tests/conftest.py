@@ -33,4 +33,4 @@ def m0():
 def endless():
     """Options of a search that does not end by itself."""
     return cloud2csg.ExtractOptions(strategy="baseline", search=cloud2csg.GaOptions(
-        idle_generations=1_000_000_000, generation_limit=1_000_000_000, listing_limit=0))
+        idle_generations=1_000_000_000, generation_limit=1_000_000_000, listing_limit=0, trust=0))

@@ -13,7 +13,7 @@ import cloud2csg
 ENDLESS = """
 import cloud2csg, sys
 options = cloud2csg.ExtractOptions(strategy="baseline", search=cloud2csg.GaOptions(
-    idle_generations=10**9, generation_limit=10**9, listing_limit=0))
+    idle_generations=10**9, generation_limit=10**9, listing_limit=0, trust=0))
 model = cloud2csg.Model.read(sys.argv[1])
 cloud = cloud2csg.sample(model, count=3000, noise=0.01)
 def progress(stage, done, total):
