@@ -17,7 +17,7 @@ import tomllib
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-OPTIONS = ["-DCMAKE_BUILD_TYPE=Release", "-DCLOUD2CSG_PYTHON=ON", "-DCLOUD2CSG_BUILD_TESTS=OFF",
+OPTIONS = ["--preset", "release", "-DCLOUD2CSG_PYTHON=ON", "-DCLOUD2CSG_BUILD_TESTS=OFF",
            "-DCLOUD2CSG_BUILD_BENCHMARKS=OFF"]
 
 
@@ -43,10 +43,9 @@ def installed_package(stage, build_folder):
     """The folder `cloud2csg` as CMake installs it, complete in itself."""
     build = pathlib.Path(build_folder or ROOT / "build/wheel")
     if build_folder is None:
-        subprocess.run(["cmake", "-S", ROOT, "-B", build, "-G", "Ninja", *OPTIONS,
-                        f"-DPython_EXECUTABLE={sys.executable}"], check=True)
-    subprocess.run(["cmake", "--build", build, "--target", "cloud2csg_package"], check=True)
-    for component in ("python", "wheel"):
+        subprocess.run(["cmake", *OPTIONS, "-B", build, f"-DPython_EXECUTABLE={sys.executable}"], cwd=ROOT, check=True)
+        subprocess.run(["cmake", "--build", build, "--target", "cloud2csg_package"], check=True)
+    for component in ("Python", "Wheel"):
         subprocess.run(["cmake", "--install", build, "--prefix", stage, "--component", component, "--strip"],
                        check=True)
     return next(pathlib.Path(stage).rglob("cloud2csg/__init__.py")).parent

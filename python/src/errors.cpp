@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
+#include <utility>
 
 #include "bindings.hpp"
 #include "cloud2csg/error.hpp"
@@ -33,7 +34,7 @@ void bind_errors(py::module_& module) {
       "Error", py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_Exception)), members);
   py::register_local_exception_translator([](std::exception_ptr pending) {
     try {
-      if (pending) std::rethrow_exception(pending);
+      if (pending) std::rethrow_exception(std::move(pending));
     } catch (const Error& error) {
       raise(error);
     } catch (const Cancelled& cancelled) {

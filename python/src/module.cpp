@@ -1,6 +1,5 @@
 #include "bindings.hpp"
 
-namespace py = pybind11;
 namespace c2c = cloud2csg::python;
 
 PYBIND11_MODULE(_native, module) {

@@ -9,8 +9,10 @@ namespace {
 
 namespace py = pybind11;
 
+/// In ASCII, so that it reads the same in a page of any encoding.
 std::string escaped(const std::string& text) {
-  return py::module_::import("html").attr("escape")(text, true).cast<std::string>();
+  const py::object safe = py::module_::import("html").attr("escape")(text, true);
+  return safe.attr("encode")("ascii", "xmlcharrefreplace").cast<std::string>();
 }
 
 }  // namespace

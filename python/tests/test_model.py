@@ -160,6 +160,7 @@ def test_page_in_a_notebook(plate):
     if not cloud2csg.has_viewer():
         assert shown.startswith("<pre>") and "viewer" in shown
         return
+    assert shown.isascii()
     (tag, attributes), = Tags(shown).found
     assert tag == "iframe" and attributes["sandbox"] == "allow-scripts allow-downloads"
     assert "allow-same-origin" not in attributes["sandbox"]
