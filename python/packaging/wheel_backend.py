@@ -7,6 +7,7 @@ the machine's shared libraries (TBB, fmt, Embree...), so it is for machines like
 """
 import base64
 import hashlib
+import os
 import pathlib
 import re
 import subprocess
@@ -44,7 +45,9 @@ def installed_package(stage, build_folder):
     build = pathlib.Path(build_folder or ROOT / "build/wheel")
     if build_folder is None:
         subprocess.run(["cmake", *OPTIONS, "-B", build, f"-DPython_EXECUTABLE={sys.executable}"], cwd=ROOT, check=True)
-        subprocess.run(["cmake", "--build", build, "--target", "cloud2csg_package"], check=True)
+        # As the preset does, so that builds share what the compiler's cache has.
+        cached = {**os.environ, "CCACHE_BASEDIR": str(ROOT), "CCACHE_NOHASHDIR": "1"}
+        subprocess.run(["cmake", "--build", build, "--target", "cloud2csg_package"], env=cached, check=True)
     for component in ("Python", "Wheel"):
         subprocess.run(["cmake", "--install", build, "--prefix", stage, "--component", component, "--strip"],
                        check=True)

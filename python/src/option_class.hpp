@@ -27,9 +27,9 @@ std::string python_type() {
   return {};
 }
 template <typename Value>
-constexpr bool k_is_optional = false;
+struct IsOptional : std::false_type {};
 template <typename Value>
-constexpr bool k_is_optional<std::optional<Value>> = true;
+struct IsOptional<std::optional<Value>> : std::true_type {};
 
 /// An options struct as a Python class: a constructor with the fields as keywords, attributes with their default and
 /// meaning as docstrings, repr, equality, copies and pickles. Values of a wrong type are a TypeError that names the
@@ -105,7 +105,7 @@ class OptionClass {
 
   template <typename Value>
   static std::string type_of() {
-    if constexpr (k_is_optional<Value>) {
+    if constexpr (IsOptional<Value>::value) {
       return python_type<typename Value::value_type>() + " | None";
     } else {
       return python_type<Value>();
