@@ -7,6 +7,7 @@ packages=(
   libeigen3-dev libtbb-dev libhwy-dev libboost-dev libboost-graph-dev libccd-dev libmuparser-dev libassimp-dev
   libceres-dev libembree-dev libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libfmt-dev
   libocct-data-exchange-dev zlib1g-dev libmeshoptimizer-dev libcpp-httplib-dev
+  pybind11-dev python3-dev python3-numpy python3-pytest
   libgtest-dev librapidcheck-dev libbenchmark-dev openscad gnuplot-nox chromium
 )
 # The page of reports is built by Node.js. One that is there already, from wherever, is used; Debian's npm is large.

@@ -1,0 +1,88 @@
+"""From point clouds to editable CSG trees.
+
+>>> import cloud2csg
+>>> model = cloud2csg.Model.read("data/models/m0.json")
+>>> cloud = cloud2csg.sample(model, count=20_000, noise=0.01)
+>>> result = cloud2csg.extract(cloud, model)
+>>> cloud2csg.compare(model, result).intersection_over_union > 0.999
+True
+>>> result.model.to_scad().splitlines()[0]
+'$fn = 64;  // facets of a full circle'
+
+Points are NumPy arrays of shape (n, 3), float64, in the cloud's units; angles are in degrees where a name ends in
+``_deg``, else in radians. Functions that have work to do release the interpreter's lock, take ``threads`` (0 = all
+cores) and ``progress`` (a callable of stage, done, total), and end soon with KeyboardInterrupt on Ctrl-C. Bad input
+raises cloud2csg.Error, an array of a wrong shape or with NaN ValueError. docs/python.md tells more.
+"""
+from cloud2csg._native import (
+    Box,
+    BrepOptions,
+    BrepReport,
+    CellSolveOptions,
+    CleanOptions,
+    CloudWriteOptions,
+    CompareOptions,
+    Comparison,
+    Cone,
+    Cylinder,
+    DetectedSurface,
+    Detection,
+    DetectOptions,
+    Error,
+    ExportOptions,
+    ExportReport,
+    Expression,
+    ExtractOptions,
+    FailedNode,
+    GaOptions,
+    HalfSpace,
+    InputOptions,
+    LabelOptions,
+    MeshingOptions,
+    MinimalFormulaOptions,
+    Model,
+    ObjectiveOptions,
+    OpenScadOptions,
+    PlaceOptions,
+    PointCloud,
+    Polytope,
+    PrepareOptions,
+    Primitive,
+    ReconstructOptions,
+    RefineOptions,
+    RegularityOptions,
+    ReportOptions,
+    Result,
+    SampleCounts,
+    SampleOptions,
+    ScanOptions,
+    SegmentationOptions,
+    SolidOptions,
+    Sphere,
+    Torus,
+    TriangleMesh,
+    __version__,
+    compare,
+    detect,
+    extract,
+    has_brep,
+    has_viewer,
+    read_cloud,
+    read_mesh,
+    sample,
+    scan,
+)
+from cloud2csg.tree import Complement, Difference, Empty, Full, Intersection, Leaf, Node, Union
+
+__all__ = [
+    "Box", "BrepOptions", "BrepReport", "CellSolveOptions", "CleanOptions", "CloudWriteOptions",
+    "CompareOptions", "Comparison", "Complement", "Cone", "Cylinder", "DetectOptions", "DetectedSurface",
+    "Detection", "Difference", "Empty", "Error", "ExportOptions", "ExportReport", "Expression",
+    "ExtractOptions", "FailedNode", "Full", "GaOptions", "HalfSpace", "InputOptions", "Intersection",
+    "LabelOptions", "Leaf", "MeshingOptions", "MinimalFormulaOptions", "Model", "Node", "ObjectiveOptions",
+    "OpenScadOptions", "PlaceOptions", "PointCloud", "Polytope", "PrepareOptions", "Primitive",
+    "ReconstructOptions", "RefineOptions", "RegularityOptions", "ReportOptions", "Result", "SampleCounts",
+    "SampleOptions", "ScanOptions", "SegmentationOptions", "SolidOptions", "Sphere", "Torus", "TriangleMesh",
+    "Union", "__version__", "compare", "detect", "extract", "has_brep", "has_viewer", "read_cloud", "read_mesh",
+    "sample", "scan",
+]

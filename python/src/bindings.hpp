@@ -1,0 +1,23 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+/// The Python module, a concept a file. Names, defaults and units are those of the library; see docs/python.md.
+namespace cloud2csg::python {
+
+namespace py = pybind11;
+
+// Each adds its classes and functions to the module; those of a later one use those of the ones before it.
+void bind_errors(py::module_& module);
+void bind_cloud_options(py::module_& module);
+void bind_extract_options(py::module_& module);
+void bind_output_options(py::module_& module);
+void bind_clouds(py::module_& module);
+void bind_primitives(py::module_& module);
+void bind_models(py::module_& module);
+void bind_synth(py::module_& module);
+void bind_compare(py::module_& module);
+void bind_detect(py::module_& module);
+void bind_extract(py::module_& module);
+
+}  // namespace cloud2csg::python

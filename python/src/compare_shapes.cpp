@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "bindings.hpp"
+#include "cloud.hpp"
+#include "cloud2csg/compare.hpp"
+#include "option_class.hpp"
+#include "run_work.hpp"
+
+namespace cloud2csg::python {
+namespace {
+
+Shape3d to_shape(const py::object& shape) {
+  if (py::isinstance<Model>(shape)) return {.model = shape.cast<const Model&>()};
+  if (py::isinstance<TriangleMesh>(shape)) return {.mesh = shape.cast<const TriangleMesh&>()};
+  if (py::isinstance<Cloud>(shape)) return {.cloud = shape.cast<const Cloud&>().points()};
+  if (py::hasattr(shape, "model")) return to_shape(shape.attr("model"));
+  if (py::isinstance<py::str>(shape) || py::hasattr(shape, "__fspath__")) {
+    const auto file = shape.cast<std::filesystem::path>();
+    const py::gil_scoped_release unlocked;
+    return read_shape(file);
+  }
+  throw py::type_error(
+      fmt::format("compare: expected a Model, Result, TriangleMesh, PointCloud or the name of a file, found {}",
+                  py::repr(shape).cast<std::string>()));
+}
+
+Comparison compare_shapes(const py::object& truth, const py::object& result,
+                          const std::optional<CompareOptions>& options, int threads, const py::object& progress,
+                          const py::kwargs& fields) {
+  const CompareOptions comparing = with_fields(options, fields);
+  const Shape3d first = to_shape(truth);
+  const Shape3d second = to_shape(result);
+  return run_work({.threads = threads, .progress = progress},
+                  [&](const RunContext& run) { return compare(first, second, comparing, run); });
+}
+
+std::string number_text(const std::optional<double>& number) {
+  return number ? fmt::format("{:.6g}", *number) : "None";
+}
+
+}  // namespace
+
+void bind_compare(py::module_& module) {
+  py::class_<Comparison>(module, "Comparison",
+                         "How alike two solids are. What cannot be had from the inputs (a volume from a cloud, a tree "
+                         "from a mesh) is None.")
+      .def_readonly("intersection_over_union", &Comparison::intersection_over_union, "Of the volumes; 1: the same.")
+      .def_readonly("volume_truth", &Comparison::volume_truth, "In cubed units.")
+      .def_readonly("volume_result", &Comparison::volume_result, "In cubed units.")
+      .def_readonly("mean_distance", &Comparison::mean_distance,
+                    "Mean over both surfaces of the distance to the other one, in units of length.")
+      .def_readonly("hausdorff_distance", &Comparison::hausdorff_distance, "The largest of these.")
+      .def_readonly("size_ratio", &Comparison::size_ratio, "Nodes of the trees: result / truth.")
+      .def_readonly("depth_ratio", &Comparison::depth_ratio, "Depth of the trees: result / truth.")
+      .def("__repr__", [](const Comparison& self) {
+        return fmt::format(
+            "Comparison(intersection_over_union={}, mean_distance={:.6g}, hausdorff_distance={:.6g}, size_ratio={})",
+            number_text(self.intersection_over_union), self.mean_distance, self.hausdorff_distance,
+            number_text(self.size_ratio));
+      });
+  module.def("compare", &compare_shapes, py::arg("truth"), py::arg("result"), py::arg("options") = py::none(),
+             py::kw_only(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+             "How alike two solids are: Comparison.\n\n"
+             "Each is a Model with a tree, a Result, a TriangleMesh, a PointCloud, or the name of a file with one of "
+             "these. Further keywords are fields of CompareOptions. progress: callable(stage, done, total).\n\n"
+             "Raises Error when a shape is empty or unbounded.");
+}
+
+}  // namespace cloud2csg::python

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "cloud.hpp"
+#include "cloud2csg/model.hpp"
+#include "cloud2csg/reconstruct.hpp"
+#include "field_arrays.hpp"
+#include "raw_options.hpp"
+
+namespace cloud2csg::python {
+
+ReconstructOptions raw_options(const ReconstructOptions& options, const Cloud& cloud,
+                               std::optional<std::uint64_t> seed) {
+  ReconstructOptions raw = options;
+  if (cloud.is_exact()) raw.preparation.is_exact = true;
+  if (seed) raw.extraction.seed = raw.detection.seed = raw.solids.places.seed = *seed;
+  return raw;
+}
+
+namespace {
+
+/// What detect() found. The cloud and the model are shared with Python.
+struct Found {
+  std::shared_ptr<Cloud> cloud;
+  std::shared_ptr<Model> model;
+  std::vector<std::shared_ptr<DetectedSurface>> surfaces;
+  std::size_t unexplained;
+  double distance_tolerance, noise, spacing, diagonal;
+  bool normals_estimated;
+  std::vector<std::string> warnings;
+};
+
+Found detect(const py::object& cloud, const std::optional<ReconstructOptions>& options,
+             std::optional<std::uint64_t> seed, int threads, const py::object& progress) {
+  const py::object owner = to_cloud(cloud);
+  const auto& given = owner.cast<const Cloud&>();
+  const ReconstructOptions raw = raw_options(options.value_or(ReconstructOptions{}), given, seed);
+  FoundPrimitives found = run_work({.threads = threads, .progress = progress},
+                                   [&](const RunContext& run) { return find_primitives(given.points(), raw, run); });
+  Found result{.cloud = std::make_shared<Cloud>(std::move(found.prepared.cloud), given.is_exact()),
+               .model = std::make_shared<Model>(
+                   Model{.primitives = std::move(found.choice.solids), .tree = std::move(found.choice.tree)}),
+               .surfaces = {},
+               .unexplained = found.detection.unexplained,
+               .distance_tolerance = found.detection.distance_tolerance,
+               .noise = found.prepared.scale.noise,
+               .spacing = found.prepared.scale.spacing,
+               .diagonal = found.prepared.scale.diagonal,
+               .normals_estimated = found.prepared.normals_estimated,
+               .warnings = given.warnings()};
+  result.surfaces.reserve(found.detection.surfaces.size());
+  for (DetectedSurface& surface : found.detection.surfaces) {
+    result.surfaces.push_back(std::make_shared<DetectedSurface>(std::move(surface)));
+  }
+  result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+  return result;
+}
+
+using SurfaceClass = py::class_<DetectedSurface, std::shared_ptr<DetectedSurface>>;
+
+void bind_surface(py::module_& module) {
+  SurfaceClass(module, "DetectedSurface",
+               "A surface without ends that points lie on: a plane, sphere, cylinder, cone or torus.")
+      .def_property_readonly(
+          "type", [](const DetectedSurface& self) { return std::string(type_name(self.surface.type)); },
+          "'plane', 'sphere', 'cylinder', 'cone', 'torus'.")
+      .def_property_readonly(
+          "position", [](const DetectedSurface& self) { return self.surface.position; },
+          "Shape (3,): a point of the plane or of a cylinder's axis, a centre, a cone's apex.")
+      .def_property_readonly(
+          "axis", [](const DetectedSurface& self) { return self.surface.axis; },
+          "Shape (3,), unit length: a plane's outward normal, an axis. No meaning for spheres.")
+      .def_property_readonly(
+          "radius", [](const DetectedSurface& self) { return self.surface.radius; },
+          "Of a sphere or cylinder, in the cloud's units; a torus' major one.")
+      .def_property_readonly(
+          "minor_radius", [](const DetectedSurface& self) { return self.surface.minor_radius; }, "Of a torus' tube.")
+      .def_property_readonly(
+          "half_angle", [](const DetectedSurface& self) { return self.surface.half_angle; },
+          "Of a cone, between axis and surface, in radians.")
+      .def_property_readonly(
+          "concave", [](const DetectedSurface& self) { return self.surface.concave; },
+          "Whether the material is outside, as around a hole.")
+      .def_readonly("rms", &DetectedSurface::rms, "Of the distances of its points, in the cloud's units.")
+      .def_property_readonly(
+          "points", [](const py::object& self) { return view(self.cast<const DetectedSurface&>().points, self); },
+          "Indices into Detection.cloud of the points that lie on it, ascending: shape (k,), uint32, read-only, no "
+          "copy.")
+      .def(
+          "distance",
+          [](const DetectedSurface& self, const py::object& points) {
+            return distances_at(points, {}, [&](PointsView at) { return signed_distance(self.surface, at); });
+          },
+          py::arg("points"), "Signed distance at points of shape (n, 3), negative in the material: shape (n,).")
+      .def("__repr__", [](const DetectedSurface& self) {
+        return fmt::format("<cloud2csg.DetectedSurface: {}{}, {} points, rms {:.3g}>",
+                           self.surface.concave ? "concave " : "", type_name(self.surface.type), self.points.size(),
+                           self.rms);
+      });
+}
+
+}  // namespace
+
+void bind_detect(py::module_& module) {
+  bind_surface(module);
+  py::class_<Found>(module, "Detection", "What detect() found in a cloud.")
+      .def_readonly("cloud", &Found::cloud, "The PointCloud that all else speaks of: cleaned, with outward normals.")
+      .def_readonly("surfaces", &Found::surfaces, "list of DetectedSurface.")
+      .def_readonly("model", &Found::model, "A few solids that these bound, and a tree over them: Model.")
+      .def_readonly("unexplained", &Found::unexplained, "How many points lie on no surface.")
+      .def_readonly("distance_tolerance", &Found::distance_tolerance,
+                    "How far points may be from their surface, in the cloud's units.")
+      .def_readonly("noise", &Found::noise, "Standard deviation of the points from the surface, in the cloud's units.")
+      .def_readonly("spacing", &Found::spacing, "Square root of the surface a point stands for, in the cloud's units.")
+      .def_readonly("diagonal", &Found::diagonal, "Of the cloud's bounds, in its units.")
+      .def_readonly("normals_estimated", &Found::normals_estimated,
+                    "Whether the normals given were of no use, or there were none.")
+      .def_readonly("warnings", &Found::warnings, "Sentences: what is doubtful, and where.")
+      .def("__repr__", [](const Found& self) {
+        return fmt::format("<cloud2csg.Detection: {} surfaces, {} solids, {} of {} points unexplained>",
+                           self.surfaces.size(), self.model->primitives.size(), self.unexplained,
+                           self.cloud->points().size());
+      });
+  module.def("detect", &detect, py::arg("cloud"), py::arg("options") = py::none(), py::kw_only(),
+             py::arg("seed") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+             "The surfaces that a raw cloud lies on, and solids that these bound: Detection.\n\n"
+             "cloud: PointCloud, or positions of shape (n, 3). options: ReconstructOptions. seed: instead of all seeds "
+             "in the options. threads: 0 = all cores; the result does not depend on them. progress: callable(stage, "
+             "done, total).\n\n"
+             "Raises Error when no surface is found.");
+}
+
+}  // namespace cloud2csg::python

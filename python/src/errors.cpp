@@ -1,0 +1,46 @@
+#include <pybind11/pybind11.h>
+
+#include <exception>
+#include <utility>
+
+#include "bindings.hpp"
+#include "cloud2csg/error.hpp"
+
+namespace cloud2csg::python {
+namespace {
+
+/// Translators are functions without a state, so the class of the module is looked up.
+void raise(const Error& error) {
+  const py::object type = py::module_::import("cloud2csg._native").attr("Error");
+  const py::object raised = type(error.what());
+  raised.attr("file") = error.parts().file;
+  raised.attr("where") = error.parts().where;
+  raised.attr("expected") = error.parts().expected;
+  raised.attr("remedy") = error.parts().remedy;
+  PyErr_SetObject(type.ptr(), raised.ptr());
+}
+
+}  // namespace
+
+void bind_errors(py::module_& module) {
+  py::dict members;
+  members["__module__"] = "cloud2csg";
+  members["__doc__"] =
+      "Bad input: a file, an option or a model that the library cannot work with.\n\n"
+      "str() is one line. file, where (line, byte or path of the field), expected and remedy are its parts, '' where "
+      "there is nothing to say.";
+  for (const char* part : {"file", "where", "expected", "remedy"}) members[part] = "";
+  module.attr("Error") = py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(&PyType_Type))(
+      "Error", py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_Exception)), members);
+  py::register_local_exception_translator([](std::exception_ptr pending) {
+    try {
+      if (pending) std::rethrow_exception(std::move(pending));
+    } catch (const Error& error) {
+      raise(error);
+    } catch (const Cancelled& cancelled) {
+      PyErr_SetString(PyExc_KeyboardInterrupt, cancelled.what());
+    }
+  });
+}
+
+}  // namespace cloud2csg::python

@@ -1,0 +1,204 @@
+#include "cloud2csg/extract.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "bindings.hpp"
+#include "cloud.hpp"
+#include "cloud2csg/reconstruct.hpp"
+#include "model.hpp"
+#include "raw_options.hpp"
+#include "reports.hpp"
+
+namespace cloud2csg::python {
+namespace {
+
+/// What extract() found. Cloud and model are shared with Python.
+struct Result {
+  std::shared_ptr<Cloud> cloud;
+  std::shared_ptr<Model> model;
+  ExtractStatistics statistics;
+  std::vector<Snap> snaps = {};
+};
+
+struct Request {
+  ReconstructOptions options;
+  std::optional<RefineOptions> refine;
+};
+
+using AnyOptions = std::optional<std::variant<ExtractOptions, ReconstructOptions>>;
+
+std::optional<RefineOptions> refine_options(const py::object& refine, const ExtractOptions& options) {
+  if (py::isinstance<RefineOptions>(refine)) return refine.cast<RefineOptions>();
+  if (!py::isinstance<py::bool_>(refine)) throw py::type_error("refine: expected a bool or RefineOptions");
+  if (!refine.cast<bool>()) return std::nullopt;
+  return RefineOptions{.angle_tolerance_deg = options.segmentation.angle_tolerance_deg};
+}
+
+Request make_request(const AnyOptions& options, const Cloud& cloud, std::optional<std::uint64_t> seed,
+                     const py::object& refine) {
+  ReconstructOptions raw;
+  if (options && std::holds_alternative<ExtractOptions>(*options)) {
+    raw.extraction = std::get<ExtractOptions>(*options);
+  } else if (options) {
+    raw = std::get<ReconstructOptions>(*options);
+  }
+  raw = raw_options(raw, cloud, seed);
+  return {.options = raw, .refine = refine_options(refine, raw.extraction)};
+}
+
+/// Over primitives that are known.
+Result extract_over(std::shared_ptr<Cloud> cloud, const PrimitiveSet& primitives, const Request& request,
+                    const RunContext& run) {
+  RefinedExtraction found{.primitives = primitives, .extraction = {}};
+  const ExtractOptions& options = request.options.extraction;
+  if (request.refine) {
+    found = extract_refined_csg(cloud->points(), primitives, options, *request.refine, run);
+  } else {
+    found.extraction = extract_csg(cloud->points(), primitives, options, run);
+  }
+  return {.cloud = std::move(cloud),
+          .model = std::make_shared<Model>(
+              Model{.primitives = std::move(found.primitives), .tree = std::move(found.extraction.tree)}),
+          .statistics = std::move(found.extraction.statistics)};
+}
+
+/// The whole way from a raw cloud.
+Result extract_raw(const Cloud& cloud, const Request& request, const RunContext& run) {
+  Reconstruction found = reconstruct(cloud.points(), request.options, run);
+  auto used = std::make_shared<Cloud>(std::move(found.cloud), cloud.is_exact());
+  if (request.refine) {
+    Result refined = extract_over(used, found.solids, request, run);
+    if (refined.statistics.fit.objective > found.statistics.fit.objective) {
+      refined.snaps = std::move(found.snaps);
+      return refined;
+    }
+  }
+  return {.cloud = std::move(used),
+          .model = std::make_shared<Model>(Model{.primitives = std::move(found.solids), .tree = std::move(found.tree)}),
+          .statistics = std::move(found.statistics),
+          .snaps = std::move(found.snaps)};
+}
+
+Result extract(const py::object& cloud, const py::object& primitives, const AnyOptions& options,
+               std::optional<std::uint64_t> seed, const py::object& refine, int threads, const py::object& progress) {
+  const auto given = to_cloud(cloud).cast<std::shared_ptr<Cloud>>();
+  const Request request = make_request(options, *given, seed, refine);
+  const RunArguments arguments{.threads = threads, .progress = progress};
+  Result result = [&] {
+    if (primitives.is_none()) {
+      return run_work(arguments, [&](const RunContext& run) { return extract_raw(*given, request, run); });
+    }
+    const PrimitiveSet known = to_primitives(primitives);
+    return run_work(arguments, [&](const RunContext& run) { return extract_over(given, known, request, run); });
+  }();
+  std::vector<std::string>& warnings = result.statistics.warnings;
+  warnings.insert(warnings.begin(), given->warnings().begin(), given->warnings().end());
+  return result;
+}
+
+py::object statistics_of(const Result& result) {
+  return py::module_::import("json").attr("loads")(to_json(result.statistics));
+}
+
+py::array_t<std::uint32_t> unexplained_in(const Result& self, int threads, const py::object& progress) {
+  const SegmentationTolerances tolerances = segmentation_tolerances({}, self.statistics.noise);
+  const std::vector<std::uint32_t> indices =
+      run_work({.threads = threads, .progress = progress}, [&](const RunContext& run) {
+        return unexplained_points(*self.model->tree, self.model->primitives, self.cloud->points(), tolerances, run);
+      });
+  return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(indices.size()), indices.data());
+}
+
+Report report_of(const Result& result, const std::string& title) {
+  return {.title = title,
+          .source = fmt::format("{} points", result.cloud->points().size()),
+          .model = *result.model,
+          .cloud = result.cloud->points(),
+          .statistics = result.statistics,
+          .snaps = result.snaps};
+}
+
+std::string repr_of(const Result& self) {
+  return fmt::format("<cloud2csg.Result: {}, rms distance {:.4g}{}>", summary_of(*self.model),
+                     self.statistics.fit.rms_distance, self.statistics.complete ? "" : ", stopped early");
+}
+
+void bind_result_outputs(py::class_<Result>& result) {
+  result
+      .def(
+          "unexplained_points", &unexplained_in, py::kw_only(), py::arg("threads") = 0,
+          py::arg("progress") = py::none(),
+          "Indices into `cloud` of the points that the tree contradicts: farther from its surface than three times the "
+          "noise, or with another normal. Ascending, shape (k,), uint32.")
+      .def(
+          "write",
+          [](const Result& self, const std::filesystem::path& file, const std::optional<ExportOptions>& options,
+             int threads, const py::object& progress) {
+            return write_any(file, report_of(self, file.stem().string()), options,
+                             {.threads = threads, .progress = progress});
+          },
+          py::arg("file"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
+          py::arg("progress") = py::none(),
+          "As Model.write(); a report (.html) also shows the cloud and the statistics.")
+      .def(
+          "report",
+          [](const Result& self, const std::string& title, const std::optional<ReportOptions>& options, int threads,
+             const py::object& progress) {
+            const Report report = report_of(self, title);
+            return run_work({.threads = threads, .progress = progress}, [&](const RunContext& run) {
+              return report_page(report, options.value_or(ReportOptions{}), run);
+            });
+          },
+          py::kw_only(), py::arg("title") = "", py::arg("options") = py::none(), py::arg("threads") = 0,
+          py::arg("progress") = py::none(), "As Model.report(), with the cloud and the statistics.")
+      .def(
+          "_repr_html_", [](const Result& self) { return html_of(report_of(self, {}), repr_of(self)); },
+          "The viewer, for notebooks; a line of text where this build has none.");
+}
+
+}  // namespace
+
+void bind_extract(py::module_& module) {
+  py::class_<Result> result(module, "Result", "What extract() found.");
+  result.def_readonly("model", &Result::model, "The solids and the tree over them: Model.")
+      .def_readonly("cloud", &Result::cloud, "The points that were used, with normals: PointCloud.")
+      .def_property_readonly("statistics", &statistics_of,
+                             "dict: what the command line writes with --stats; times in seconds.")
+      .def_property_readonly(
+          "warnings", [](const Result& self) { return self.statistics.warnings; },
+          "Sentences: what is doubtful, and where.")
+      .def_property_readonly(
+          "complete", [](const Result& self) { return self.statistics.complete; },
+          "False when a time limit ended the search.")
+      .def("__repr__", &repr_of);
+  bind_result_outputs(result);
+  module.def(
+      "extract", &extract, py::arg("cloud"), py::arg("primitives") = py::none(), py::arg("options") = py::none(),
+      py::kw_only(), py::arg("seed") = py::none(), py::arg("refine") = false, py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      "The CSG tree of a point cloud: Result.\n\n"
+      "cloud: PointCloud, or positions of shape (n, 3).\n"
+      "primitives: the solids to combine, a Model or an iterable of Primitive; the cloud needs normals then. None: "
+      "they "
+      "are found in the cloud, which may be a raw scan.\n"
+      "options: ExtractOptions or ReconstructOptions.\n"
+      "seed: instead of all seeds in the options. The same seed gives the same tree, for any number of threads.\n"
+      "refine: True or RefineOptions: primitives are moved and sized to where the points are, and the tree extracted "
+      "again.\n"
+      "threads: 0 = all cores.\n"
+      "progress: callable(stage: str, done: int, total: int), called from this thread; total is 0 when it is not "
+      "known. An exception in it stops the work and is passed on.\n\n"
+      "The interpreter's lock is released meanwhile, and Ctrl-C (KeyboardInterrupt) stops the work soon. Raises Error "
+      "when the cloud has too few points or no inside, no surface is found, or no point is near any primitive.");
+}
+
+}  // namespace cloud2csg::python

@@ -1,0 +1,39 @@
+#include "bindings.hpp"
+#include "cloud2csg/export.hpp"
+#include "cloud2csg/report.hpp"
+#include "option_class.hpp"
+
+namespace cloud2csg::python {
+
+void bind_output_options(py::module_& module) {
+  OptionClass<OpenScadOptions>(module, "OpenScadOptions", "How an OpenSCAD program is written.")
+      .field("facets", &OpenScadOptions::facets, "How many facets a circle has ($fn).")
+      .field("mesh_resolution", &OpenScadOptions::mesh_resolution,
+             "Of displaced and expression solids, which become polyhedra: cells along the longest side.")
+      .field("comment", &OpenScadOptions::comment, "Lines for the head of the file, without '//'.")
+      .finish();
+  OptionClass<BrepOptions>(module, "BrepOptions", "How exact solids are written (.step, .brep).")
+      .field("name", &BrepOptions::name, "Of the part in the file; '': the name of the file without its ending.")
+      .field("with_primitives", &BrepOptions::with_primitives,
+             ".step: beside the solid, its primitives, each as a component with its name.")
+      .field("facet_resolution", &BrepOptions::facet_resolution,
+             "Solids without exact surfaces are written with facets: so many cells along their longest side.")
+      .field("volume_tolerance", &BrepOptions::volume_tolerance,
+             "The part of its volume by which a node may be wrong before its operation counts as failed.")
+      .finish();
+  OptionClass<ExportOptions>(module, "ExportOptions", "How a model is written: see Model.write().")
+      .nested("openscad", &ExportOptions::openscad, "Of .scad.")
+      .nested("meshing", &ExportOptions::meshing, "Of .stl, .off and .obj.")
+      .nested("brep", &ExportOptions::brep, "Of .step, .stp and .brep.")
+      .finish();
+  OptionClass<ReportOptions>(module, "ReportOptions", "How large the page of a report is: see Model.report().")
+      .field("most_points", &ReportOptions::most_points, "Points to show; of more, so many are taken.")
+      .field("resolution", &ReportOptions::resolution, "Cells along the longest side of the whole solid's mesh.")
+      .field("part_resolution", &ReportOptions::part_resolution, "... and of those of its parts.")
+      .field("most_triangles", &ReportOptions::most_triangles, "Of the whole solid.")
+      .field("most_triangles_in_all", &ReportOptions::most_triangles_in_all, "Of all meshes together.")
+      .field("most_meshes", &ReportOptions::most_meshes, "Parts of the tree that have a mesh of their own.")
+      .finish();
+}
+
+}  // namespace cloud2csg::python

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "cloud.hpp"
+#include "cloud2csg/reconstruct.hpp"
+
+namespace cloud2csg::python {
+
+/// Options with what the cloud tells of itself, and with `seed` instead of all of their own.
+[[nodiscard]] ReconstructOptions raw_options(const ReconstructOptions& options, const Cloud& cloud,
+                                             std::optional<std::uint64_t> seed);
+
+}  // namespace cloud2csg::python

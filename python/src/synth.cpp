@@ -1,0 +1,78 @@
+#include <pybind11/stl.h>
+
+#include <optional>
+
+#include "bindings.hpp"
+#include "cloud.hpp"
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/input.hpp"
+#include "cloud2csg/sample.hpp"
+#include "cloud2csg/scan.hpp"
+#include "model.hpp"
+#include "option_class.hpp"
+
+namespace cloud2csg::python {
+namespace {
+
+PointCloud sample_of_mesh(const TriangleMesh& mesh, const SampleOptions& options, const RunContext& run) {
+  if (options.density > 0 || options.normal_noise_deg > 0) {
+    throw Error({.file = {},
+                 .where = options.density > 0 ? "density" : "normal_noise_deg",
+                 .expected = "works on models only, this is a mesh",
+                 .remedy = "give count and noise"});
+  }
+  PointCloud cloud = sample_mesh(mesh, {.mesh_points = options.count, .seed = options.seed}, run);
+  return options.noise == 0 ? cloud : with_noise(std::move(cloud), options.noise, options.seed);
+}
+
+[[noreturn]] void refuse(const char* function) {
+  throw py::type_error(std::string(function) + ": expected a Model or a TriangleMesh");
+}
+
+Cloud sample(const py::object& shape, const std::optional<SampleOptions>& options, int threads,
+             const py::object& progress, const py::kwargs& fields) {
+  const SampleOptions sampling = with_fields(options, fields);
+  const RunArguments arguments{.threads = threads, .progress = progress};
+  if (py::isinstance<TriangleMesh>(shape)) {
+    const auto& mesh = shape.cast<const TriangleMesh&>();
+    return Cloud(run_work(arguments, [&](const RunContext& run) { return sample_of_mesh(mesh, sampling, run); }));
+  }
+  if (!py::isinstance<Model>(shape)) refuse("sample");
+  const auto& model = shape.cast<const Model&>();
+  const CsgTree& tree = tree_of(model);
+  return Cloud(run_work(arguments,
+                        [&](const RunContext& run) { return sample_surface(tree, model.primitives, sampling, run); }));
+}
+
+Cloud scan(const py::object& shape, const std::optional<ScanOptions>& options, int threads, const py::object& progress,
+           const py::kwargs& fields) {
+  const ScanOptions scanning = with_fields(options, fields);
+  const RunArguments arguments{.threads = threads, .progress = progress};
+  if (py::isinstance<TriangleMesh>(shape)) {
+    const auto& mesh = shape.cast<const TriangleMesh&>();
+    return Cloud(run_work(arguments, [&](const RunContext& run) { return scan_mesh(mesh, scanning, run); }));
+  }
+  if (!py::isinstance<Model>(shape)) refuse("scan");
+  const auto& model = shape.cast<const Model&>();
+  const CsgTree& tree = tree_of(model);
+  return Cloud(
+      run_work(arguments, [&](const RunContext& run) { return scan_model(tree, model.primitives, scanning, run); }));
+}
+
+}  // namespace
+
+void bind_synth(py::module_& module) {
+  module.def("sample", &sample, py::arg("shape"), py::arg("options") = py::none(), py::kw_only(),
+             py::arg("threads") = 0, py::arg("progress") = py::none(),
+             "Points on the surface of a Model or TriangleMesh, uniform by area, with outward normals: PointCloud.\n\n"
+             "Positions are moved by the noise after the normal was taken. Further keywords are fields of "
+             "SampleOptions: sample(model, count=50_000, noise=0.01). progress: callable(stage, done, total).\n\n"
+             "Raises Error when the solid is empty or unbounded.");
+  module.def("scan", &scan, py::arg("shape"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
+             py::arg("progress") = py::none(),
+             "The PointCloud that a range scanner would make of a Model or TriangleMesh, with sensor positions.\n\n"
+             "Further keywords are fields of ScanOptions. progress: callable(stage, done, total). Raises Error when "
+             "there is nothing to see.");
+}
+
+}  // namespace cloud2csg::python

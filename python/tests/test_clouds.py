@@ -1,0 +1,138 @@
+"""Arrays in and out."""
+import copy
+import gc
+import pickle
+
+import numpy as np
+import pytest
+
+import cloud2csg
+
+POINTS = np.random.default_rng(1).normal(size=(50, 3))
+NORMALS = POINTS / np.linalg.norm(POINTS, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("values", [
+    POINTS, np.asfortranarray(POINTS), np.repeat(POINTS, 2, axis=0)[::2], POINTS.astype(">f8"), POINTS.tolist(),
+    np.frombuffer(b"x" + POINTS.tobytes(), dtype=np.uint8)[1:].view("f8").reshape(-1, 3)])
+def test_any_layout_gives_the_same_points(values):
+    cloud = cloud2csg.PointCloud(values)
+    np.testing.assert_array_equal(cloud.positions, POINTS)
+    assert cloud.positions.dtype == np.float64 and cloud.positions.flags.c_contiguous
+    assert len(cloud) == 50 and cloud.normals is None and cloud.normal_columns is None
+
+
+def test_single_precision_is_converted():
+    cloud = cloud2csg.PointCloud(POINTS.astype(np.float32))
+    np.testing.assert_array_equal(cloud.positions, POINTS.astype(np.float32).astype(np.float64))
+
+
+def test_columns_are_the_memory_of_the_cloud():
+    cloud = cloud2csg.PointCloud(POINTS, NORMALS)
+    x, y, z = cloud.position_columns
+    assert x.base is cloud and np.shares_memory(x, cloud.position_columns[0])
+    np.testing.assert_array_equal(np.column_stack([x, y, z]), POINTS)
+    with pytest.raises(ValueError, match="read-only"):
+        x[0] = 1
+    nx = cloud.normal_columns[0]
+    del cloud, x, y, z
+    gc.collect()
+    np.testing.assert_allclose(nx, NORMALS[:, 0], rtol=1e-15)
+
+
+def test_rows_are_made_once():
+    cloud = cloud2csg.PointCloud(POINTS)
+    assert cloud.positions is cloud.positions
+    with pytest.raises(ValueError, match="read-only"):
+        cloud.positions[0] = 0
+
+
+def test_a_cloud_does_not_follow_the_array_it_was_made_of():
+    values = POINTS.copy()
+    cloud = cloud2csg.PointCloud(values)
+    values[:] = 0
+    np.testing.assert_array_equal(cloud.positions, POINTS)
+
+
+def test_normals_get_unit_length():
+    cloud = cloud2csg.PointCloud(POINTS, 3 * NORMALS)
+    np.testing.assert_allclose(cloud.normals, NORMALS, rtol=1e-15)
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ({"positions": [[0, 1]]}, r"positions: expected an array of shape \(n, 3\), found one of shape \(1, 2\)"),
+    ({"positions": [0.0, 1.0, 2.0]}, r"shape \(n, 3\), found one of shape \(3,\)"),
+    ({"positions": [[0, 1, "x"]]}, "positions: expected numbers"),
+    ({"positions": [[0, 0, 0], [0, np.nan, 0]]}, r"expected finite numbers, found \(0, nan, 0\) in row 1"),
+    ({"positions": [[0, 0, np.inf]]}, "in row 0"),
+    ({"positions": POINTS, "normals": NORMALS[:-1]}, "normals: expected as many rows as positions, 50, found 49"),
+    ({"positions": POINTS, "normals": 0 * NORMALS}, "normals: expected directions, found length 0 in row 0"),
+    ({"positions": POINTS, "sensor_positions": [[np.nan] * 3]}, "sensor_positions: expected finite"),
+])
+def test_wrong_arrays_are_named(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        cloud2csg.PointCloud(**arguments)
+
+
+@pytest.mark.parametrize("ending", [".ply", ".pcd", ".xyzn"])
+def test_files_keep_every_bit(tmp_path, ending):
+    cloud = cloud2csg.PointCloud(POINTS, NORMALS)
+    file = tmp_path / f"cloud{ending}"
+    cloud.write(file)
+    read = cloud2csg.read_cloud(file)
+    np.testing.assert_array_equal(read.positions, POINTS)
+    np.testing.assert_array_equal(read.normals, cloud.normals)
+    assert read.warnings == [] and not read.is_exact
+
+
+def test_sensor_positions_are_kept(tmp_path):
+    cloud = cloud2csg.PointCloud(POINTS, sensor_positions=POINTS + 5)
+    cloud.write(str(tmp_path / "scan.ply"), cloud2csg.CloudWriteOptions(binary=False))
+    np.testing.assert_array_equal(cloud2csg.read_cloud(tmp_path / "scan.ply").sensor_positions, POINTS + 5)
+
+
+def test_missing_file_is_an_error_with_parts(tmp_path):
+    file = tmp_path / "none.ply"
+    with pytest.raises(cloud2csg.Error) as raised:
+        cloud2csg.read_cloud(file)
+    assert raised.value.file == str(file) and str(file) in str(raised.value)
+    assert isinstance(raised.value, Exception) and raised.value.expected
+
+
+def test_invalid_points_are_left_out_with_a_warning(tmp_path):
+    file = tmp_path / "holes.xyz"
+    file.write_text("0 0 0\nnan nan nan\n1 0 0\n")
+    cloud = cloud2csg.read_cloud(file)
+    assert len(cloud) == 2 and len(cloud.warnings) == 1
+
+
+def test_selected_points_keep_their_normals():
+    cloud = cloud2csg.PointCloud(POINTS, NORMALS)
+    part = cloud.select([3, 1])
+    np.testing.assert_array_equal(part.positions, POINTS[[3, 1]])
+    np.testing.assert_array_equal(part.normals, cloud.normals[[3, 1]])
+    with pytest.raises(IndexError):
+        cloud.select([50])
+
+
+def test_pickle_keeps_a_cloud():
+    cloud = cloud2csg.PointCloud(POINTS, NORMALS, POINTS + 1, is_exact=True)
+    again = pickle.loads(pickle.dumps(cloud))
+    np.testing.assert_array_equal(again.positions, POINTS)
+    np.testing.assert_array_equal(again.normals, cloud.normals)
+    np.testing.assert_array_equal(again.sensor_positions, POINTS + 1)
+    assert again.is_exact and copy.copy(cloud).is_exact
+
+
+def test_meshes(tmp_path, plate):
+    mesh = plate.mesh(resolution=48)
+    assert mesh.is_watertight and mesh.triangles.dtype == np.uint32 and mesh.triangles.shape[1] == 3
+    assert np.shares_memory(mesh.triangles, mesh.triangles)
+    again = cloud2csg.TriangleMesh(mesh.vertices, mesh.triangles)
+    assert again.volume == mesh.volume
+    mesh.write(tmp_path / "plate.stl")
+    assert cloud2csg.read_mesh(tmp_path / "plate.stl").volume == pytest.approx(mesh.volume, rel=1e-5)
+    drawn = cloud2csg.read_cloud(tmp_path / "plate.stl", mesh_points=2000)
+    assert drawn.is_exact and len(drawn) == 2000
+    with pytest.raises(ValueError, match="indices of vertices, found 9"):
+        cloud2csg.TriangleMesh(POINTS[:3], [[0, 1, 9]])
