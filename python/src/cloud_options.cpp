@@ -58,6 +58,8 @@ void bind_scanning(py::module_& module) {
                            "A range scanner put around a part: see scan(). Lengths are shares of the diagonal of the "
                            "part's bounds where nothing else is said.")
       .field("views", &ScanOptions::views, "Sensors, spread evenly over a sphere around the part.")
+      .field("on_table", &ScanOptions::on_table,
+             "The part lies on a table, its z axis upright: sensors are above its middle only.")
       .field("distance", &ScanOptions::distance, "From the middle to each sensor, in bounding radii; more than 1.")
       .field("field_of_view_deg", &ScanOptions::field_of_view_deg,
              "Width and height of what a view sees, up to 170 degrees; 0: just the bounding sphere.")

@@ -153,6 +153,8 @@ void bind_finding(py::module_& module) {
   OptionClass<ReconstructOptions>(module, "ReconstructOptions", "From a raw cloud to a tree: see extract().")
       .nested("preparation", &ReconstructOptions::preparation, "The cloud is cleaned and oriented.")
       .nested("detection", &ReconstructOptions::detection, "Surfaces are detected.")
+      .field("close_unseen_side", &ReconstructOptions::close_unseen_side,
+             "Close a side that is missing as a whole, as that on which the part stood, by a plane.")
       .nested("solids", &ReconstructOptions::solids, "Solids are chosen.")
       .nested("extraction", &ReconstructOptions::extraction, "A tree over them is extracted.")
       .finish();
