@@ -27,8 +27,10 @@ std::string instruction_set() {
 Finding cad_files() {
   const BrepSupport support = brep_support();
   const std::string part = "CAD files";
-  if (!support.is_built_in) return {State::absent, part, support.fault + ": no .step, .brep", support.remedy};
-  if (!support.fault.empty()) return {State::broken, part, "no .step, .brep: " + support.fault, support.remedy};
+  if (!support.fault.empty()) {
+    const bool is_broken = support.is_built_in && !support.lacks_opencascade;
+    return {is_broken ? State::broken : State::absent, part, "no .step, .brep: " + support.fault, support.remedy};
+  }
   return {State::fine, part, ".step, .brep by OpenCASCADE: " + support.module.string()};
 }
 

@@ -56,6 +56,7 @@ struct BrepReport {
 /// What has_brep() depends on, for reports on an installation.
 struct BrepSupport {
   bool is_built_in = false;           ///< the library was built with OpenCASCADE
+  bool lacks_opencascade = false;     ///< its module is there, OpenCASCADE's own libraries are not
   std::filesystem::path module = {};  ///< the file that was loaded; empty when none could be
   std::string fault = {};             ///< why not
   std::string remedy = {};

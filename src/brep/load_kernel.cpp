@@ -5,7 +5,7 @@
 #ifdef CLOUD2CSG_KERNEL_MODULE
 #include <dlfcn.h>
 
-#include <string_view>
+#include <system_error>
 #endif
 
 namespace cloud2csg::brep {
@@ -14,15 +14,11 @@ namespace {
 #ifdef CLOUD2CSG_KERNEL_MODULE
 constexpr const char* k_reinstall = "install cloud2csg anew, or name the module's folder in LD_LIBRARY_PATH";
 
-/// `reason` begins with the name of the file that was not found: the module itself, or one that it needs.
-std::string remedy_of(std::string_view reason) {
-  if (reason.starts_with("libTK")) return "install OpenCASCADE (on Debian libocct-data-exchange-7.6)";
-  return k_reinstall;
-}
-
 std::filesystem::path file_of(const void* symbol) {
   Dl_info info{};
-  return ::dladdr(symbol, &info) != 0 ? std::filesystem::weakly_canonical(info.dli_fname) : std::filesystem::path();
+  std::error_code ignored;
+  if (::dladdr(symbol, &info) == 0) return {};
+  return std::filesystem::weakly_canonical(info.dli_fname, ignored);
 }
 #endif
 
@@ -32,8 +28,11 @@ Kernel find_kernel() {
   if (module == nullptr) {
     const char* const error = ::dlerror();  // NOLINT(concurrency-mt-unsafe): of this thread
     const std::string reason = error != nullptr ? error : "";
+    // It begins with the name of the file that was not found: the module itself, or one that it needs.
+    const bool lacks_opencascade = reason.starts_with("libTK");
     return {.missing = fmt::format("its module for OpenCASCADE cannot be loaded ({})", reason),
-            .remedy = remedy_of(reason)};
+            .remedy = lacks_opencascade ? "install OpenCASCADE (on Debian libocct-data-exchange-7.6)" : k_reinstall,
+            .lacks_opencascade = lacks_opencascade};
   }
   // The one way to get a function out of a module.
   const auto version = reinterpret_cast<KernelVersion>(::dlsym(module, k_kernel_version_symbol));

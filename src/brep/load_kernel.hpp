@@ -12,6 +12,7 @@ struct Kernel {
   KernelRun run = nullptr;          ///< absent when there is none
   std::string missing = {};         ///< then, why
   std::string remedy = {};          ///< and what to do about it
+  bool lacks_opencascade = false;   ///< the module is there, libraries that it needs are not
   std::filesystem::path file = {};  ///< where it was found
 };
 

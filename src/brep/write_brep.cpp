@@ -151,7 +151,11 @@ bool is_brep_built_in() {
 
 BrepSupport brep_support() {
   const brep::Kernel& kernel = brep::load_kernel();
-  return {.is_built_in = is_brep_built_in(), .module = kernel.file, .fault = kernel.missing, .remedy = kernel.remedy};
+  return {.is_built_in = is_brep_built_in(),
+          .lacks_opencascade = kernel.lacks_opencascade,
+          .module = kernel.file,
+          .fault = kernel.missing,
+          .remedy = kernel.remedy};
 }
 
 void require_brep(const std::filesystem::path& file) {
