@@ -4,7 +4,7 @@ PREFIX ?= /usr/local
 # make instructions RECORD=1 writes what it counts to bench/instructions.csv.
 RECORD ?=
 
-.PHONY: help demo test bench instructions format lint install clean dependencies configure
+.PHONY: help demo test bench instructions format lint install deb clean dependencies configure
 .DEFAULT_GOAL := help
 
 help: ## What there is to make
@@ -36,6 +36,10 @@ lint: configure ## clang-format and clang-tidy; any finding is an error
 install: configure ## Install program, library and headers under PREFIX
 	@cmake --build --preset release --target all
 	@cmake --install build/release --prefix $(PREFIX)
+
+deb: configure ## Packages for Debian: the program, and the library
+	@cmake --build --preset release --target all
+	@cpack --config build/release/CPackConfig.cmake -B build/packages
 
 clean: ## Remove what was built
 	@rm -rf build out

@@ -1,2 +1,5 @@
 include(${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake)
+if(DEFINED cloud2csg_FOUND AND NOT cloud2csg_FOUND)
+  return()
+endif()
 include(${CMAKE_CURRENT_LIST_DIR}/cloud2csg-targets.cmake)

@@ -2,20 +2,18 @@
 #
 # One library target a folder of src/: a stage that includes a header of a stage it does not name
 # here does not link. Public headers live in include/cloud2csg/, private ones beside their sources.
+# All stages together are installed as one library (cmake/package.cmake).
 function(cloud2csg_stage)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "DEPENDS;LINK")
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${arg_NAME}/*.cpp)
   set(target cloud2csg_${arg_NAME})
   add_library(${target} STATIC ${sources})
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
-  target_include_directories(
-    ${target}
-    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-           $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   # Third-party headers count as system headers, so that our warnings are about our code.
-  target_link_libraries(${target} PUBLIC $<BUILD_INTERFACE:cloud2csg_compiler> Eigen3::Eigen)
-  target_compile_features(${target} PUBLIC cxx_std_20)
-  install(TARGETS ${target} EXPORT cloud2csg-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  target_link_libraries(${target} PUBLIC cloud2csg_compiler Eigen3::Eigen)
+  set_property(GLOBAL APPEND PROPERTY cloud2csg_stages ${target})
+  set_property(GLOBAL APPEND PROPERTY cloud2csg_stage_libraries ${arg_LINK})
   foreach(stage IN LISTS arg_DEPENDS)
     target_link_libraries(${target} PUBLIC cloud2csg_${stage})
   endforeach()

@@ -9,6 +9,7 @@
 #include "bench_command.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/experiment.hpp"
+#include "installation.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -23,17 +24,11 @@ struct PaperCommand {
   void run(std::stop_token stop) const;
 };
 
-/// Where the shipped models are: beside an installed program, or in the build folder that the program is in.
-std::filesystem::path shipped_models() {
-  std::error_code failure;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failure);
-  for (const char* place : {CLOUD2CSG_MODELS_FROM_PROGRAM, "share/cloud2csg/models"}) {
-    std::filesystem::path folder = (program.parent_path() / place).lexically_normal();
-    if (std::filesystem::is_directory(folder, failure)) return folder;
-  }
+std::filesystem::path default_models() {
+  if (auto folder = shipped_models()) return *folder;
   throw Error({.file = {},
                .where = {},
-               .expected = fmt::format("the shipped models are not beside the program ({})", program.string()),
+               .expected = "the shipped models are not beside the program",
                .remedy = "name their folder by --models"});
 }
 
@@ -56,7 +51,7 @@ std::vector<std::string> model_names(const std::filesystem::path& folder) {
 
 void PaperCommand::run(std::stop_token stop) const {
   Session session(running, std::move(stop));
-  const std::filesystem::path folder_of_models = models ? std::filesystem::path(*models) : shipped_models();
+  const std::filesystem::path folder_of_models = models ? std::filesystem::path(*models) : default_models();
   PaperOptions options = experiment;
   options.models = only.empty() ? model_names(folder_of_models) : only;
   options.threads = threads_of(running);

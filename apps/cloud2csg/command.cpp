@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "config_file.hpp"
 #include "values.hpp"
 
 namespace cloud2csg::app {
@@ -15,6 +16,7 @@ void add_run_options(CLI::App& options, RunOptions& values) {
       ->group("Running")
       ->capture_default_str();
   options.add_flag("-q,--quiet", values.quiet, "No progress and no notes on standard error")->group("Running");
+  add_config_options(options);
 }
 
 Session::Session(const RunOptions& options, std::stop_token stop)

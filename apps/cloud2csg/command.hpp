@@ -31,8 +31,11 @@ struct Command {
 [[nodiscard]] Command add_view(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
 [[nodiscard]] Command add_bench(CLI::App& program);
+[[nodiscard]] Command add_doctor(CLI::App& program);
+[[nodiscard]] Command add_completion(CLI::App& program);
+[[nodiscard]] Command add_manual(CLI::App& program);
 
-/// Options that every subcommand with work to do has.
+/// Options that every subcommand with work to do has; with them go --config and --print-config (config_file.hpp).
 struct RunOptions {
   int threads = 0;  ///< 0 = all cores
   bool quiet = false;

@@ -9,6 +9,8 @@
 
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
+#include "config_file.hpp"
+#include "installation.hpp"
 #include "interrupt.hpp"
 #include "usage.hpp"
 
@@ -27,13 +29,15 @@ int complain(int status, std::string_view message) {
 void describe(CLI::App& program) {
   program.description("Turns a point cloud of a solid object into an editable CSG tree.");
   program.name("cloud2csg");
-  program.set_version_flag("--version", "cloud2csg " CLOUD2CSG_VERSION, "Print the version and exit");
+  program.set_version_flag("--version", version_text(), "Print the version, and what is built in, and exit");
   program.set_help_flag("-h,--help", "Print this help and exit");
   program.get_formatter()->column_width(34);
-  program.footer(
-      "'cloud2csg COMMAND --help' explains a command.\n"
-      "Results go to files and standard output, progress and messages to standard error.\n"
-      "Exit status: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted twice.");
+  program.footer(example("  cloud2csg extract scan.ply -o part.scad -o report.html\n"
+                         "  cloud2csg extract scan.ply --config part.toml -o part.step\n"
+                         "  cloud2csg convert part.json -o part.stl") +
+                 "\n\n'cloud2csg COMMAND --help' explains a command.\n"
+                 "Results go to files and standard output, progress and messages to standard error.\n"
+                 "Exit status: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted twice.");
 }
 
 int run_command(const Command& command) {
@@ -46,11 +50,15 @@ int run_command(const Command& command) {
 int run(int argc, char** argv) {
   CLI::App program;
   describe(program);
-  const std::vector<Command> commands{add_extract(program), add_detect(program),  add_sample(program),
-                                      add_scan(program),    add_compare(program), add_convert(program),
-                                      add_view(program),    add_info(program),    add_bench(program)};
+  const std::vector<Command> commands{add_extract(program), add_detect(program),     add_sample(program),
+                                      add_scan(program),    add_compare(program),    add_convert(program),
+                                      add_view(program),    add_info(program),       add_bench(program),
+                                      add_doctor(program),  add_completion(program), add_manual(program)};
   try {
     program.parse(argc, argv);
+  } catch (const PrintedConfig& asked) {
+    fmt::print("{}", asked.what());
+    return k_done;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
     return complain(k_wrong_usage, usage_message(program, error));

@@ -38,7 +38,8 @@ std::string unknown_argument(const CLI::App& app, std::string word) {
   return fmt::format("{} '{}'{}", kind, word, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
 
-/// CLI11's message in clearer words, where it has none.
+}  // namespace
+
 std::string reworded(const CLI::ParseError& error) {
   std::string text = error.what();
   const std::string option = text.substr(0, text.find(": "));
@@ -52,8 +53,6 @@ std::string reworded(const CLI::ParseError& error) {
   if (error.get_name() == "ExcludesError") return fmt::format("{}: give one of the two", text);
   return text;
 }
-
-}  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   // Optimal string alignment; rows of the table are prefixes of a.

@@ -10,6 +10,9 @@ namespace cloud2csg::app {
 /// One line that says what is wrong with the command line, with the nearest right name for a wrong one.
 [[nodiscard]] std::string usage_message(const CLI::App& program, const CLI::ParseError& error);
 
+/// CLI11's message in clearer words, where it has none.
+[[nodiscard]] std::string reworded(const CLI::ParseError& error);
+
 /// How many letters must be inserted, deleted, replaced or swapped with their neighbour to turn one word into the
 /// other.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);

@@ -6,12 +6,27 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <utility>
 
 namespace cloud2csg::app {
 namespace {
+
+// Names of validators, by which they are known again.
+constexpr const char* k_choices = "one of ";
+constexpr const char* k_file = "file";
+
+/// CLI11 does not tell how many an option has, and throws after the last.
+std::vector<std::string> validator_names(CLI::Option& option) {
+  std::vector<std::string> names;
+  try {
+    for (int i = 0;; ++i) names.push_back(option.get_validator(i)->get_name());
+  } catch (const CLI::OptionNotFound&) {
+    return names;
+  }
+}
 
 /// The text's number, when that is all there is in it and it fits.
 template <typename Number>
@@ -80,13 +95,28 @@ CLI::Validator share() {
 
 CLI::Validator one_of(std::vector<std::string> names) {
   const std::string expected = fmt::format("one of {}", fmt::join(names, ", "));
-  return validator(expected, [names = std::move(names)](const std::string& text) {
-    return std::find(names.begin(), names.end(), text) != names.end();
-  });
+  const std::string name = fmt::format("{}{}", k_choices, fmt::join(names, " "));
+  return validator(expected,
+                   [names = std::move(names)](const std::string& text) {
+                     return std::find(names.begin(), names.end(), text) != names.end();
+                   })
+      .name(name);
 }
 
 CLI::Validator file_name() {
-  return validator("the name of a file", [](const std::string& text) { return !text.empty(); });
+  return validator("the name of a file", [](const std::string& text) { return !text.empty(); }).name(k_file);
+}
+
+std::vector<std::string> choices_of(CLI::Option& option) {
+  for (const std::string& name : validator_names(option)) {
+    if (name.starts_with(k_choices)) return CLI::detail::split(name.substr(std::strlen(k_choices)), ' ');
+  }
+  return {};
+}
+
+bool names_a_file(CLI::Option& option) {
+  const std::vector<std::string> names = validator_names(option);
+  return std::find(names.begin(), names.end(), k_file) != names.end();
 }
 
 }  // namespace cloud2csg::app

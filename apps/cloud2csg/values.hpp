@@ -23,4 +23,9 @@ namespace cloud2csg::app {
 /// Any text but an empty one.
 [[nodiscard]] CLI::Validator file_name();
 
+/// All values that an option takes, when one_of() checks it.
+[[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
+/// Whether its value is checked by file_name().
+[[nodiscard]] bool names_a_file(CLI::Option& option);
+
 }  // namespace cloud2csg::app

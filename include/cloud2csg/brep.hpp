@@ -53,6 +53,19 @@ struct BrepReport {
 /// Whether files can be written: the library was built with OpenCASCADE, and its module is found.
 [[nodiscard]] bool has_brep();
 
+/// What has_brep() depends on, for reports on an installation.
+struct BrepSupport {
+  bool is_built_in = false;           ///< the library was built with OpenCASCADE
+  bool lacks_opencascade = false;     ///< its module is there, OpenCASCADE's own libraries are not
+  std::filesystem::path module = {};  ///< the file that was loaded; empty when none could be
+  std::string fault = {};             ///< why not
+  std::string remedy = {};
+};
+/// Loads the module, but where there is none to load.
+[[nodiscard]] BrepSupport brep_support();
+/// Without loading it.
+[[nodiscard]] bool is_brep_built_in();
+
 /// For a program that wants to know before it starts what would keep `file` from being written.
 /// @throws Error saying what is missing, and how to get it
 void require_brep(const std::filesystem::path& file);

@@ -12,6 +12,9 @@ struct Progress {
   std::string_view stage;  ///< as in the statistics: "read", "overlap", "classes", "search"...
   std::size_t done = 0;
   std::size_t total = 0;
+  /// What is counted, in the plural: "points", "primitives"... Empty where the counts are steps that mean nothing to a
+  /// user. A stage with a unit has done all of `total` when the next one starts.
+  std::string_view unit = {};
 };
 
 /// How to run, never what to compute: the result does not depend on anything in here, except that a
@@ -24,7 +27,7 @@ struct RunContext {
 
   /// @throws Cancelled when the stop token was triggered.
   void throw_if_stopped() const;
-  void report(std::string_view stage, std::size_t done, std::size_t total) const;
+  void report(std::string_view stage, std::size_t done, std::size_t total, std::string_view unit = {}) const;
 };
 
 }  // namespace cloud2csg

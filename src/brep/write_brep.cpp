@@ -145,6 +145,19 @@ bool has_brep() {
   return brep::load_kernel().run != nullptr;
 }
 
+bool is_brep_built_in() {
+  return brep::is_kernel_built_in();
+}
+
+BrepSupport brep_support() {
+  const brep::Kernel& kernel = brep::load_kernel();
+  return {.is_built_in = is_brep_built_in(),
+          .lacks_opencascade = kernel.lacks_opencascade,
+          .module = kernel.file,
+          .fault = kernel.missing,
+          .remedy = kernel.remedy};
+}
+
 void require_brep(const std::filesystem::path& file) {
   (void)kernel_for(file);
 }

@@ -236,7 +236,8 @@ std::vector<Crossings> count_in(Counted counted, const PointCloud& cloud, std::s
     CrossingCounter<Real> counter(input);
     for (std::size_t chunk = chunks * k / parts; chunk < chunks * (k + 1) / parts; ++chunk) {
       run.throw_if_stopped();
-      if (k == 0) run.report("segment", chunk, chunks / parts);
+      // The first share speaks for all: they are of one size and advance together.
+      if (k == 0) run.report("segment", cloud.size() * chunk / (chunks / parts), cloud.size(), "points");
       counter.process(chunk);
     }
     shares[k] = std::move(counter.crossings());

@@ -156,11 +156,13 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
   ComplexBuilder builder;
   builder.add_cell({});
   builder.add(of_points, Source::points);
+  // What follows is the same stage over fewer points, of which it is not the count.
+  const RunContext quiet{.stop = run.stop, .on_progress = {}, .threads = run.threads};
   const SurfaceSamples samples = sample_surfaces(primitives, reaching.reach, box, options.samples, run);
   const auto add_samples = [&](const PointCloud& points, Source source) {
     if (points.size() == 0) return;
     const auto order_of_samples = spatial_order(points.positions, bounds_of(points.positions), run);
-    builder.add(count_crossings(points, order_of_samples, reaching, options.tolerances, run), source);
+    builder.add(count_crossings(points, order_of_samples, reaching, options.tolerances, quiet), source);
   };
   if (cloud.has_sensor_positions()) {
     const std::vector<bool> seen = are_seen(samples.points, cloud, order, run);
@@ -170,7 +172,7 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
     add_samples(samples.points, Source::samples);
   }
   if (const SightLines lines = find_sight_lines(cloud, order, reaching, options, run); lines.count > 0) {
-    builder.add_seen_through(count_lines(lines, reaching, options.tolerances, run), lines.points_each);
+    builder.add_seen_through(count_lines(lines, reaching, options.tolerances, quiet), lines.points_each);
   }
   std::vector<CellIndex> unbounded;
   for (const Cell& cell : cells_at_infinity(primitives)) unbounded.push_back(builder.add_cell(cell));

@@ -17,7 +17,7 @@ constexpr std::size_t k_points_per_report = std::size_t{1} << 18;
 void report_point(const RunContext& run, std::size_t done, std::size_t total) {
   if (done % k_points_per_report != 0) return;
   run.throw_if_stopped();
-  run.report("read", done, total);
+  run.report("read", done, total, "points");
 }
 
 void check_position(const FileContent& content, FilePosition where, InvalidPoints invalid,
@@ -115,7 +115,7 @@ void CloudAssembly::add(const CloudPoint& point, FilePosition where) {
 
 PointCloud CloudAssembly::finish() && {
   if (cloud_.size() == 0) fail_empty(content_);
-  run_.report("read", cloud_.size(), cloud_.size());
+  run_.report("read", cloud_.size(), cloud_.size(), "points");
   return std::move(cloud_);
 }
 
@@ -141,7 +141,7 @@ PointCloud cloud_of_columns(const FileContent& content, const CloudColumns& colu
     if (columns.normal) cloud.normals.set(i, unit_normal(content, where, invalid, cloud.normals[i]));
     if (columns.sensor) check_sensor(content, where, cloud.sensor_positions[i]);
   }
-  run.report("read", count, count);
+  run.report("read", count, count, "points");
   return cloud;
 }
 

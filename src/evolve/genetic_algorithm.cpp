@@ -44,7 +44,7 @@ class GeneticAlgorithm {
         complete = false;
         break;
       }
-      run_.report("search", generation, 0);
+      run_.report("search", generation, 0, "generations");
       breed(++generation);
       ++idle;
       if (population_[order_.front()].score > best.score) {

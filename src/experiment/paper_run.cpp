@@ -105,11 +105,11 @@ void run_paper(std::span<const Model> models, PaperResults& results, const std::
     if (has_run(results, name)) continue;
     const std::string stage =
         fmt::format("{} {} {}/{}", name.model, to_string(name.sampling), i / runs_per_cloud + 1, 2 * models.size());
-    run.report(stage, i % runs_per_cloud, runs_per_cloud);
+    run.report(stage, i % runs_per_cloud, runs_per_cloud, "runs");
     if (!cloud_runs) cloud_runs.emplace(models[i / (2 * runs_per_cloud)], options, name.sampling, run);
     results.runs.push_back(cloud_runs->make(name));
     on_finished();
-    run.report(stage, i % runs_per_cloud + 1, runs_per_cloud);
+    run.report(stage, i % runs_per_cloud + 1, runs_per_cloud, "runs");
   }
 }
 

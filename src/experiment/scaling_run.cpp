@@ -129,12 +129,12 @@ ScalingResults measure_scaling(const ScalingOptions& options, const std::filesys
     const auto of_family = static_cast<std::size_t>(
         std::count_if(plan.begin(), plan.end(), [&](const auto& other) { return other.first.family == one.family; }));
     if (has_run(results, one, seed)) continue;
-    run.report(to_string(one.family), i - first_of_family, of_family);
+    run.report(to_string(one.family), i - first_of_family, of_family, "runs");
     if (!is_warm) warm_up(options, run);
     is_warm = true;
     results.runs.push_back(run_scaling_case(one, seed, options, run));
     write_text_file(file, to_json(results));
-    run.report(to_string(one.family), i + 1 - first_of_family, of_family);
+    run.report(to_string(one.family), i + 1 - first_of_family, of_family, "runs");
   }
   return results;
 }

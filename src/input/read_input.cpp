@@ -83,7 +83,7 @@ PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, co
       cloud.normals.set(i, sampler.normal(draw.triangle));
     }
   });
-  run.report("read", cloud.size(), cloud.size());
+  run.report("read", cloud.size(), cloud.size(), "points");
   return cloud;
 }
 

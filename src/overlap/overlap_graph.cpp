@@ -96,7 +96,7 @@ OverlapGraph build_overlap_graph(const PrimitiveSet& primitives, const OverlapOp
   graph.neighbours.resize(primitives.size());
   std::size_t pairs = 0;
   for (PrimitiveIndex i = 0; i < bodies.size(); ++i) {
-    run.report("overlap", i, bodies.size());
+    run.report("overlap", i, bodies.size(), "primitives");
     for (const PrimitiveIndex j : broad_phase.partners(i)) {
       if (pairs++ % k_pairs_between_stops == 0) run.throw_if_stopped();
       if (!bodies_overlap(bodies[i], bodies[j], options.tolerance, run)) continue;
@@ -105,7 +105,7 @@ OverlapGraph build_overlap_graph(const PrimitiveSet& primitives, const OverlapOp
     }
   }
   for (auto& list : graph.neighbours) std::sort(list.begin(), list.end());
-  run.report("overlap", bodies.size(), bodies.size());
+  run.report("overlap", bodies.size(), bodies.size(), "primitives");
   return graph;
 }
 

@@ -164,12 +164,12 @@ class Extractor {
     evolutions_.resize(count);
     std::atomic<std::size_t> done = 0;
     std::mutex reporting;
-    run_.report("search", 0, count);
+    run_.report("search", 0, count, "partitions");
     const auto solve = [&](std::size_t k) {
       evolutions_[k] =
           evolve_tree(prepared_.pass.tables[k], options_.search, partition_item(prepared_.partitions[k]), search_run());
       const std::lock_guard lock(reporting);
-      run_.report("search", ++done, count);
+      run_.report("search", ++done, count, "partitions");
     };
     const bool over_partitions = options_.parallel == Parallel::partitions || options_.parallel == Parallel::both;
     for_each_index_in_arena(count, with_threads(over_partitions ? run_.threads : 1), solve);
@@ -197,7 +197,7 @@ class Extractor {
     std::vector<CsgTree> trees;
     for (std::size_t c = 0; c < prepared_.components.size(); ++c) {
       trees.push_back(merge_one(c));
-      run_.report("merge", c + 1, prepared_.components.size());
+      run_.report("merge", c + 1, prepared_.components.size(), "components");
     }
     statistics_.seconds.merge += watch.lap();
     return unite_all(trees);

@@ -114,7 +114,7 @@ Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primiti
       points.push_back(static_cast<std::uint32_t>(i));
       assigned[i] = true;
     }
-    run.report("segment", result.points_of.size(), primitives.size());
+    run.report("segment", result.points_of.size(), primitives.size(), "primitives");
   }
   result.unassigned = static_cast<std::size_t>(std::ranges::count(assigned, false));
   return result;

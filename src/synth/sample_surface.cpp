@@ -73,7 +73,7 @@ PointCloud draw_points(const SurfaceSampler& sampler, const SampleOptions& optio
       append(cloud.normals, batch.normals);
     }
     batches_done += round;
-    run.report("sample", std::min(cloud.size(), wanted), wanted);
+    run.report("sample", std::min(cloud.size(), wanted), wanted, "points");
   }
   cloud.positions.resize(wanted);
   cloud.normals.resize(wanted);

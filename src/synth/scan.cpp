@@ -87,12 +87,12 @@ class Scanner {
     const std::size_t blocks = (raster.size() + k_block_rays - 1) / k_block_rays;
     PointCloud cloud;
     for (std::size_t view = 0; view < views_.size(); ++view) {
-      run.report("scan", view, views_.size());
+      run.report("scan", view, views_.size(), "views");
       std::vector<PointCloud> parts(blocks);
       for_each_index(blocks, run, [&](std::size_t block) { parts[block] = trace(view, raster, block * k_block_rays); });
       for (const PointCloud& part : parts) append(cloud, part);
     }
-    run.report("scan", views_.size(), views_.size());
+    run.report("scan", views_.size(), views_.size(), "views");
     return cloud;
   }
 

@@ -164,7 +164,7 @@ class Evaluator {
 
   void report_one() {
     const std::lock_guard lock(reporting_);
-    host_.run().report("solid", ++done_, total_);
+    host_.run().report("solid", ++done_, total_, "operations");
   }
 
   const KernelJob& job_;

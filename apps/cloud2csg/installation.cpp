@@ -1,0 +1,101 @@
+#include "installation.hpp"
+
+#include <fmt/format.h>
+#include <hwy/targets.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cstdlib>
+#include <sstream>
+#include <system_error>
+
+#include "cloud2csg/brep.hpp"
+#include "cloud2csg/experiment.hpp"
+#include "cloud2csg/report.hpp"
+
+namespace cloud2csg::app {
+namespace {
+
+using State = Finding::State;
+
+/// The widest of those that were compiled and that the processor has: the lowest bit, as Highway orders them.
+std::string instruction_set() {
+  const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  return usable == 0 ? "none" : hwy::TargetName(usable & -usable);
+}
+
+Finding cad_files() {
+  const BrepSupport support = brep_support();
+  const std::string part = "CAD files";
+  if (!support.fault.empty()) {
+    const bool is_broken = support.is_built_in && !support.lacks_opencascade;
+    return {is_broken ? State::broken : State::absent, part, "no .step, .brep: " + support.fault, support.remedy};
+  }
+  return {State::fine, part, ".step, .brep by OpenCASCADE: " + support.module.string()};
+}
+
+Finding reports() {
+  if (has_report_page()) return {State::fine, "reports", ".html and 'view' are built in"};
+  return {State::absent, "reports", "built without: no .html, no 'view'",
+          "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"};
+}
+
+/// A program of others that ours works with.
+Finding helper(const std::string& part, const std::string& name, const std::string& without,
+               const std::string& package) {
+  const char* const search_path = std::getenv("PATH");
+  const auto found = find_program(name, search_path != nullptr ? search_path : "");
+  if (found) return {State::fine, part, found->string()};
+  return {State::absent, part, fmt::format("'{}' is not found: {}", name, without), "install " + package};
+}
+
+Finding models() {
+  const auto folder = shipped_models();
+  if (folder) return {State::fine, "models", folder->string()};
+  return {State::broken, "models", "the shipped models are not beside the program: 'bench paper' needs --models",
+          "install cloud2csg anew"};
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> find_program(const std::string& name, const std::string& search_path) {
+  std::istringstream folders(search_path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path file = std::filesystem::path(folder.empty() ? "." : folder) / name;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0) return file;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::filesystem::path> shipped_models() {
+  std::error_code ignored;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  for (const char* place : {CLOUD2CSG_MODELS_FROM_PROGRAM, "share/cloud2csg/models"}) {
+    std::filesystem::path folder = (program.parent_path() / place).lexically_normal();
+    if (std::filesystem::is_directory(folder, ignored)) return folder;
+  }
+  return std::nullopt;
+}
+
+std::string version_text() {
+  const auto mark = [](bool is_there) { return is_there ? '+' : '-'; };
+  return fmt::format("cloud2csg {}\nfeatures: {}step {}brep {}html {}view", CLOUD2CSG_VERSION, mark(is_brep_built_in()),
+                     mark(is_brep_built_in()), mark(has_report_page()), mark(has_report_page()));
+}
+
+std::vector<Finding> examine_installation() {
+  const Environment here = current_environment();
+  return {{State::fine, "cloud2csg", fmt::format("{}, built by {}", here.version, here.compiler)},
+          {State::fine, "processor",
+           fmt::format("{}; {} thread{}; instruction set {}", here.cpu, here.cores, here.cores == 1 ? "" : "s",
+                       instruction_set())},
+          cad_files(),
+          reports(),
+          models(),
+          helper("OpenSCAD", "openscad", "written .scad files cannot be opened here", "openscad"),
+          helper("gnuplot", "gnuplot", "'bench' makes tables, and no figures", "gnuplot-nox"),
+          helper("browser", "xdg-open", "'view' prints the address only", "xdg-utils")};
+}
+
+}  // namespace cloud2csg::app

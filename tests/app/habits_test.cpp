@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cstdlib>
+
+#include "app/program.hpp"
+#include "installation.hpp"
+
+namespace cloud2csg::test {
+namespace {
+
+class Habits : public ProgramTest {
+ protected:
+  /// What a shell says to a script that may use $1, $2...
+  [[nodiscard]] std::string said_by(const std::string& shell, const std::string& script) {
+    const std::string to = path("said");
+    const std::string command = shell + " " + file("script", script) + " >" + to + " 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0) << read_file(to);
+    return read_file(to);
+  }
+  static bool is_there(const std::string& program) {
+    const char* const search_path = std::getenv("PATH");
+    return search_path != nullptr && app::find_program(program, search_path).has_value();
+  }
+  [[nodiscard]] std::string completion(const std::string& shell) {
+    return file("completion." + shell, run({"completion", shell}).out);
+  }
+  /// What bash offers for the last of these words, sorted, one a line.
+  [[nodiscard]] std::string offered(const std::string& words) {
+    return said_by("bash", "cd " + folder().string() + "\nsource " + completion("bash") + "\nCOMP_WORDS=(" + words +
+                               ")\nCOMP_CWORD=$(( ${#COMP_WORDS[@]} - 1 ))\n_cloud2csg\n"
+                               "printf '%s\\n' \"${COMPREPLY[@]}\" | sort\n");
+  }
+};
+
+TEST_F(Habits, VersionTellsFeatures) {
+  const std::string text = run({"--version"}).out;
+  for (const char* feature : {"step", "brep", "html", "view"}) {
+    EXPECT_TRUE(text.find(std::string("+") + feature) != std::string::npos ||
+                text.find(std::string("-") + feature) != std::string::npos)
+        << text;
+  }
+}
+
+TEST_F(Habits, DoctorLooksAtEachPart) {
+  const Outcome outcome = run({"doctor"});
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  for (const char* part :
+       {"cloud2csg", "processor", "CAD files", "reports", "models", "OpenSCAD", "gnuplot", "browser"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
+  EXPECT_NE(outcome.out.find("instruction set "), std::string::npos);
+  const bool has_step = run({"--version"}).out.find("+step") != std::string::npos;
+  EXPECT_EQ(outcome.out.find("ok      CAD files") != std::string::npos, has_step) << outcome.out;
+}
+
+TEST_F(Habits, DoctorFindsProgramsByThePath) {
+  const Outcome none = run({"doctor"}, "PATH=" + folder().string() + "; export PATH");
+  EXPECT_EQ(none.status, 0);
+  EXPECT_NE(none.out.find("absent  OpenSCAD   'openscad' is not found"), std::string::npos) << none.out;
+  // Not one that cannot be run.
+  (void)file("openscad", "");
+  const std::string path_setup = "PATH=/nowhere:" + folder().string() + "; export PATH";
+  EXPECT_NE(run({"doctor"}, path_setup).out.find("absent  OpenSCAD"), std::string::npos);
+  std::filesystem::permissions(path("openscad"), std::filesystem::perms::owner_all);
+  EXPECT_NE(run({"doctor"}, path_setup).out.find("ok      OpenSCAD   " + path("openscad")), std::string::npos);
+}
+
+TEST_F(Habits, DoctorFailsForABrokenPart) {
+  if (run({"--version"}).out.find("+step") == std::string::npos) GTEST_SKIP() << "built without OpenCASCADE";
+  // A copy of the program that takes an empty file for its module.
+  (void)file("libcloud2csg_opencascade.so", "");
+  const Outcome outcome = run({"doctor"}, "LD_LIBRARY_PATH=" + folder().string() + "; export LD_LIBRARY_PATH");
+  if (outcome.status == 0) GTEST_SKIP() << "the run path comes first here";
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("BROKEN  CAD files"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("install cloud2csg anew"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Habits, BashCompletesCommandsOptionsAndValues) {
+  EXPECT_EQ(offered("cloud2csg ex"), "extract\n");
+  EXPECT_EQ(offered("cloud2csg bench ''"), "compare\npaper\nscaling\n");
+  EXPECT_EQ(offered("cloud2csg extract x.ply --se"), "--seed\n--seeds\n");
+  EXPECT_EQ(offered("cloud2csg extract --strategy ''"), "auto\nbaseline\ncells\npartition\n");
+  EXPECT_EQ(offered("cloud2csg extract --strategy = ce"), "cells\n");
+  EXPECT_EQ(offered("cloud2csg completion ''"), "bash\nfish\nzsh\n");
+  // The options of the command that is meant, not of another.
+  EXPECT_EQ(offered("cloud2csg info --str"), "\n");
+}
+
+TEST_F(Habits, BashCompletesFilesByTheirEndings) {
+  for (const char* name : {"part.ply", "part.json", "part.scad", "part.PCD", "part.pdf", "two words.stl"})
+    (void)file(name, "");
+  std::filesystem::create_directory(path("parts"));
+  EXPECT_EQ(offered("cloud2csg extract part"), "part.PCD\npart.ply\nparts\n");
+  EXPECT_EQ(offered("cloud2csg extract two"), "two words.stl\n");
+  EXPECT_EQ(offered("cloud2csg extract part.ply --primitives pa"), "part.json\nparts\n");
+  EXPECT_EQ(offered("cloud2csg convert part.json -o part."), "part.json\npart.scad\n");
+}
+
+TEST_F(Habits, ZshAndFishReadTheirCompletions) {
+  for (const std::string shell : {"zsh", "fish"}) {
+    const std::string script = completion(shell);
+    EXPECT_NE(read_file(script).find("print-config"), std::string::npos);
+    if (!is_there(shell)) continue;
+    EXPECT_EQ(said_by(shell + " -n", read_file(script)), "");
+  }
+}
+
+TEST_F(Habits, FishCompletes) {
+  if (!is_there("fish")) GTEST_SKIP() << "no fish here";
+  (void)file("part.ply", "");
+  (void)file("part.pdf", "");
+  const std::string begin = "cd " + folder().string() + "; source " + completion("fish") + "\n";
+  const auto offers = [&](const std::string& line) {
+    return said_by("fish --no-config", begin + "complete -C '" + line + "' | string split -f1 \\t | sort\n");
+  };
+  EXPECT_EQ(offers("cloud2csg ex"), "extract\n");
+  EXPECT_EQ(offers("cloud2csg extract --strategy "), "auto\nbaseline\ncells\npartition\n");
+  EXPECT_EQ(offers("cloud2csg extract par"), "part.ply\n");
+  EXPECT_EQ(offers("cloud2csg bench paper --see"), "--seed\n");
+}
+
+TEST_F(Habits, ManualPagesAreWellFormed) {
+  const std::filesystem::path pages = folder() / "pages";
+  std::filesystem::create_directory(pages);
+  ASSERT_EQ(run({"manual", pages.string()}).status, 0);
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(pages)) {
+    ++count;
+    const std::string page = read_file(entry.path());
+    EXPECT_NE(page.find(".SH NAME"), std::string::npos) << entry.path();
+    if (is_there("groff")) {
+      EXPECT_EQ(said_by("sh", "groff -man -ww -z " + entry.path().string() + "\n"), "") << entry.path();
+    }
+  }
+  EXPECT_GE(count, 12U);
+  const std::string extract = read_file(pages / "cloud2csg-extract.1");
+  EXPECT_NE(extract.find("\\fB\\-\\-leaf\\-cost\\fR \\fISHARE\\fR"), std::string::npos);
+  EXPECT_NE(extract.find(".SS Genetic algorithm"), std::string::npos);
+  EXPECT_EQ(extract.find("manual"), std::string::npos);  // hidden
+}
+
+}  // namespace
+}  // namespace cloud2csg::test
