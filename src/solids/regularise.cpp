@@ -65,7 +65,7 @@ class Regulariser {
   /// By weight, those first in which the value is fixed.
   [[nodiscard]] std::vector<std::uint32_t> order(bool FixedValues::*value) const {
     std::vector<std::uint32_t> result = by_weight_;
-    std::ranges::stable_partition(result, [&](std::uint32_t i) { return fixed_[i].*value; });
+    std::stable_partition(result.begin(), result.end(), [&](std::uint32_t i) { return fixed_[i].*value; });
     return result;
   }
 
@@ -92,7 +92,7 @@ class Regulariser {
       same->surfaces.push_back(i);
     }
     std::ranges::stable_sort(found, std::greater{}, &DirectionCluster::weight);
-    std::ranges::stable_partition(found, &DirectionCluster::is_fixed);
+    std::stable_partition(found.begin(), found.end(), [](const DirectionCluster& cluster) { return cluster.is_fixed; });
     return found;
   }
 
