@@ -11,6 +11,7 @@
 #include "base/output_set.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
+#include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "command.hpp"
 #include "outputs.hpp"
@@ -20,16 +21,19 @@
 namespace cloud2csg::app {
 namespace {
 
-constexpr std::array<std::string_view, 1> k_endings{".json"};
+constexpr std::array<std::string_view, 2> k_endings{".json", ".ply"};
 
 struct DetectCommand {
   std::string cloud;
+  std::string primitives;  // that are known; empty: none
+  bool detect_rest = false;
   std::vector<std::string> outputs;
   RawArguments raw;
   std::uint64_t seed = 1;
   RunOptions running;
 
   void run(std::stop_token stop) const;
+  void check_files() const;
 };
 
 std::string vector_text(const Eigen::Vector3d& v) {
@@ -63,17 +67,35 @@ std::string surface_table(const std::vector<DetectedSurface>& surfaces) {
   return table;
 }
 
-void DetectCommand::run(std::stop_token stop) const {
+/// By point, the colour of the primitive that it lies on.
+std::vector<Colour> colours_of(const FoundPrimitives& found) {
+  std::vector<Colour> colours(found.prepared.cloud.size(), k_no_primitive_colour);
+  for (std::size_t k = 0; k < found.points.size(); ++k) {
+    for (const std::uint32_t i : found.points[k].points) colours[i] = primitive_colour(k);
+  }
+  return colours;
+}
+
+void DetectCommand::check_files() const {
   for (const std::string& file : outputs) check_output(file, k_endings);
   std::vector<std::string> files = outputs;
   files.push_back(cloud);
+  if (!primitives.empty()) files.push_back(primitives);
   check_distinct(files);
+}
+
+void DetectCommand::run(std::stop_token stop) const {
+  check_files();
   Session session(running, std::move(stop));
 
+  PrimitiveSet known;
+  if (!primitives.empty()) known = read_model(primitives).primitives;
   const ExtractOptions options{.seed = seed};
   const Input input = read_cloud_or_mesh(cloud, raw.input(options), session.run());
-  const ReconstructOptions from_raw = raw.options(options, input);
-  const FoundPrimitives found = naming(cloud, [&] { return find_primitives(input.cloud, from_raw, session.run()); });
+  ReconstructOptions from_raw = raw.options(options, input);
+  from_raw.known = known;
+  const FoundPrimitives found = naming(primitives.empty() ? cloud : cloud + " with " + primitives,
+                                       [&] { return find_primitives(input.cloud, from_raw, session.run()); });
 
   const std::string table = surface_table(found.detection.surfaces);
   const Model model{.primitives = found.choice.solids,
@@ -82,23 +104,40 @@ void DetectCommand::run(std::stop_token stop) const {
                                                CLOUD2CSG_VERSION, cloud, table)};
   OutputSet written;
   for (const std::string& file : outputs) {
-    written.add(file, [&](const std::filesystem::path& path) { write_model(path, model); });
+    written.add(file, [&](const std::filesystem::path& path) {
+      if (lower_ending(file) == ".json") {
+        write_model(path, model);
+      } else {
+        write_point_cloud(path, found.prepared.cloud, {.colours = colours_of(found)});
+      }
+    });
   }
   written.commit();
   fmt::print("{}", table);
   for (const std::string& warning : input.warnings) session.display().note("warning: " + warning);
   for (const std::string& warning : found.warnings) session.display().note("warning: " + warning);
-  session.display().note(fmt::format("{} surfaces, {} of {} points on none; {} solids; noise {:.3g}, tolerance {:.3g}",
-                                     found.detection.surfaces.size(), found.detection.unexplained,
-                                     found.prepared.cloud.size(), found.choice.solids.size(),
-                                     found.prepared.scale.noise, found.detection.distance_tolerance));
+  session.display().note(
+      fmt::format("{} surfaces, {} of {} points on none; {} values snapped; {} solids; noise {:.3g}, "
+                  "tolerance {:.3g}",
+                  found.detection.surfaces.size(), found.detection.unexplained, found.prepared.cloud.size(),
+                  found.choice.snaps.size(), found.choice.solids.size(), found.prepared.scale.noise,
+                  found.detection.distance_tolerance));
 }
 
 void add_options(CLI::App& app, DetectCommand& command) {
   add_file(app, "cloud", command.cloud,
            "Point cloud: .ply .pcd .xyz .xyzn .txt .pts, or mesh: .stl .off .obj .ply .3mf .glb")
       ->type_name("CLOUD|MESH");
-  add_outputs(app, command.outputs, join_endings(k_endings));
+  CLI::Option* primitives = app.add_option("--primitives", command.primitives,
+                                           "Model file with primitives that are known: they are kept as they are, and "
+                                           "only what they leave unexplained is looked for")
+                                ->check(file_name())
+                                ->type_name("MODEL.json")
+                                ->group("Input");
+  app.add_flag("--detect-rest", command.detect_rest, "As in extract; here it is so whenever --primitives is given")
+      ->needs(primitives)
+      ->group("Input");
+  add_outputs(app, command.outputs, "the solids (.json), or the points in the colours of their solids (.ply)");
   app.add_option("--seed", command.seed, "Same seed, same primitives, whatever the threads")
       ->transform(whole_number_from(0))
       ->type_name("S")
@@ -113,10 +152,12 @@ void add_options(CLI::App& app, DetectCommand& command) {
 Command add_detect(CLI::App& program) {
   CLI::App* app = program.add_subcommand("detect", "Finds primitives in a point cloud, a scan or a mesh");
   app->footer(
-      "Prints the surfaces that the points lie on; the output has the solids that these bound, without a tree.\n\n" +
-      example("  cloud2csg detect scan.ply -o primitives.json"));
+      "Prints the surfaces that the points lie on; the output has the solids that these bound, without a tree, and how "
+      "many points lie on each. Points on none are grey in a .ply.\n\n" +
+      example("  cloud2csg detect scan.ply -o primitives.json -o points.ply"));
   auto command = std::make_shared<DetectCommand>();
   add_options(*app, *command);
+  app->final_callback([command] { check_arguments(command->raw); });
   return {.options = app, .run = [command](std::stop_token stop) { command->run(std::move(stop)); }};
 }
 

@@ -40,6 +40,7 @@ struct Extracted {
 struct ExtractCommand {
   std::string cloud;
   std::string primitives;  // empty: to be found in the cloud
+  bool detect_rest = false;
   std::vector<std::string> outputs;
   std::optional<std::string> statistics;
   std::optional<std::string> unexplained;
@@ -50,7 +51,7 @@ struct ExtractCommand {
   std::vector<ReportParameter> parameters;  // options, for reports
 
   void run(const std::stop_token& stop) const;
-  /// `given` is empty when the primitives are to be found.
+  /// `given` is empty when all primitives are to be found.
   [[nodiscard]] Extracted extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
   [[nodiscard]] Extracted extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
   /// What is going to be written, after a look at whether it can be.
@@ -68,8 +69,8 @@ void check_normals(const PointCloud& cloud, const std::string& file) {
       {.file = file,
        .where = {},
        .expected = "the points have no normals, which extract needs to combine given primitives",
-       .remedy =
-           "estimate outward normals and save them with the points, or leave out --primitives to find them anew"});
+       .remedy = "estimate outward normals and save them with the points, add --detect-rest, or leave out --primitives "
+                 "to find them anew"});
 }
 
 /// The points that the tree contradicts.
@@ -132,12 +133,14 @@ Extracted ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& so
 }
 
 Extracted ExtractCommand::extract(Input input, const PrimitiveSet& given, const RunContext& run) const {
-  if (!primitives.empty()) {
+  const std::string files = primitives.empty() ? cloud : cloud + " with " + primitives;
+  if (!primitives.empty() && !detect_rest) {
     check_normals(input.cloud, cloud);
-    return naming(cloud + " with " + primitives, [&] { return extract_over(std::move(input.cloud), given, run); });
+    return naming(files, [&] { return extract_over(std::move(input.cloud), given, run); });
   }
-  const ReconstructOptions from_raw = raw.options(arguments.options(), input);
-  Reconstruction found = naming(cloud, [&] { return reconstruct(input.cloud, from_raw, run); });
+  ReconstructOptions from_raw = raw.options(arguments.options(), input);
+  from_raw.known = given;
+  Reconstruction found = naming(files, [&] { return reconstruct(input.cloud, from_raw, run); });
   if (refine) {
     Extracted refined = extract_over(found.cloud, found.solids, run);
     refined.snaps = found.snaps;
@@ -209,11 +212,17 @@ void add_options(CLI::App& app, ExtractCommand& command) {
   add_file(app, "cloud", command.cloud,
            "Point cloud: .ply .pcd .xyz .xyzn .txt .pts, or mesh: .stl .off .obj .ply .3mf .glb")
       ->type_name("CLOUD|MESH");
-  app.add_option("--primitives", command.primitives,
-                 "Model file with the primitives to combine; if not given, they are found in the cloud")
-      ->check(file_name())
-      ->type_name("MODEL.json")
-      ->group("Input");
+  CLI::Option* primitives =
+      app.add_option("--primitives", command.primitives,
+                     "Model file with the primitives to combine; if not given, they are found in the cloud")
+          ->check(file_name())
+          ->type_name("MODEL.json")
+          ->group("Input");
+  CLI::Option* detect_rest =
+      app.add_flag("--detect-rest", command.detect_rest,
+                   "Keep the primitives that are given as they are, and find in the cloud what they leave unexplained")
+          ->needs(primitives)
+          ->group("Input");
   add_outputs(app, command.outputs, join_endings(model_endings()));
   app.add_option("--stats", command.statistics, "Statistics: times, search, merge, fit")
       ->check(file_name())
@@ -227,6 +236,7 @@ void add_options(CLI::App& app, ExtractCommand& command) {
   app.add_flag("--refine", command.refine,
                "Move, turn and size the primitives to where the points are, make regular what nearly is, and extract "
                "again")
+      ->excludes(detect_rest)
       ->group("Fit");
   add_raw_arguments(app, command.raw, "Finding primitives");
   add_extract_arguments(app, command.arguments);
@@ -241,11 +251,13 @@ Command add_extract(CLI::App& program) {
       "A .json output keeps all primitives, with --refine as they are then, else as they were given or found; the tree "
       "leaves out those that no point supports.\n\n" +
       example("  cloud2csg extract scan.ply -o bracket.scad\n"
-              "  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json"));
+              "  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json\n"
+              "  cloud2csg extract scan.ply --primitives known.json --detect-rest --radii 2.5,3 -o bracket.scad"));
   auto command = std::make_shared<ExtractCommand>();
   add_options(*app, *command);
   app->final_callback([app, command] {
     check_arguments(*app, command->arguments);
+    check_arguments(command->raw);
     command->parameters = parameters_of(*app);
   });
   return {.options = app, .run = [command](const std::stop_token& stop) { command->run(stop); }};

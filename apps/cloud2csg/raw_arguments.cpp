@@ -1,10 +1,44 @@
 #include "raw_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
+#include <vector>
 
 #include "values.hpp"
 
 namespace cloud2csg::app {
+namespace {
+
+/// What somebody knows of the part.
+void add_knowledge_arguments(CLI::App& app, RawArguments& arguments, const std::string& group) {
+  app.add_option("--radii", arguments.radii,
+                 "Radii that spheres, cylinders and tori have, as in 2.5,3,6: each takes the nearest of them, unless "
+                 "its points contradict")
+      ->delimiter(',')
+      ->check(number_positive())
+      ->allow_extra_args(false)
+      ->type_name("R,R...")
+      ->group(group);
+  app.add_option("--axes", arguments.axes,
+                 "Directions that planes, cylinders, cones and tori have, as in x,y,z or x,1,1,0: each takes one that "
+                 "is within 5 degrees, unless its points contradict")
+      ->check(directions())
+      ->allow_extra_args(false)
+      ->type_name("A,A...")
+      ->group(group);
+  app.add_option("--min-size", arguments.min_size,
+                 "Surfaces with a smaller radius, or whose points reach less far, are left out (default: none)")
+      ->check(number_positive())
+      ->type_name("D")
+      ->group(group);
+  app.add_option("--max-size", arguments.max_size, "... and those with a larger one, or that reach farther")
+      ->check(number_positive())
+      ->type_name("D")
+      ->group(group);
+}
+
+}  // namespace
 
 ReconstructOptions RawArguments::options(const ExtractOptions& extraction, const Input& input) const {
   ReconstructOptions options{.extraction = extraction};
@@ -20,12 +54,25 @@ ReconstructOptions RawArguments::options(const ExtractOptions& extraction, const
   options.detection.seed = extraction.seed;
   options.solids.leaf_cost = leaf_cost;
   options.solids.places.seed = extraction.seed;
+  options.detection.least_size = min_size;
+  options.detection.most_size = max_size;
   options.solids.regularity.snap = !does_not_snap;
+  options.solids.regularity.radii = radii;
+  for (const std::string& list : axes) {
+    const std::vector<Eigen::Vector3d> given = parse_directions(list).value();
+    options.solids.regularity.axes.insert(options.solids.regularity.axes.end(), given.begin(), given.end());
+  }
   return options;
 }
 
 InputOptions RawArguments::input(const ExtractOptions& extraction) const {
   return {.mesh_points = mesh_points, .seed = extraction.seed};
+}
+
+void check_arguments(const RawArguments& arguments) {
+  if (!arguments.min_size || !arguments.max_size || *arguments.min_size <= *arguments.max_size) return;
+  throw CLI::ValidationError("--min-size", fmt::format("expected no more than --max-size, found {} and {}",
+                                                       *arguments.min_size, *arguments.max_size));
 }
 
 void add_raw_arguments(CLI::App& app, RawArguments& arguments, const std::string& group) {
@@ -52,8 +99,10 @@ void add_raw_arguments(CLI::App& app, RawArguments& arguments, const std::string
       ->group(group)
       ->capture_default_str();
   app.add_flag("--no-snap", arguments.does_not_snap,
-               "Keep directions, offsets and radii as they were measured: nothing is made parallel or equal")
+               "Keep directions, offsets and radii as they were measured: nothing is made parallel or equal, but for "
+               "what --radii and --axes say")
       ->group(group);
+  add_knowledge_arguments(app, arguments, group);
   app.add_flag("--estimate-normals", arguments.estimates_normals, "Do not use the normals that the cloud has")
       ->group(group);
   app.add_flag("--keep-outliers", arguments.keeps_outliers, "Do not look for outliers: the cloud is clean")

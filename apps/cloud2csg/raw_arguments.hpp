@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/reconstruct.hpp"
@@ -19,6 +21,9 @@ struct RawArguments {
   bool keeps_outliers = false;
   bool leaves_open = false;
   bool does_not_snap = false;
+  std::vector<double> radii;
+  std::vector<std::string> axes;  ///< lists of directions
+  std::optional<double> min_size, max_size;
   std::size_t point_budget = CleanOptions{}.point_budget;
   std::size_t mesh_points = InputOptions{}.mesh_points;
 
@@ -29,5 +34,9 @@ struct RawArguments {
 
 /// Adds them to a subcommand's help, in a group of this name.
 void add_raw_arguments(CLI::App& app, RawArguments& arguments, const std::string& group);
+
+/// Finds values that are each right for their option but not together.
+/// @throws CLI::ValidationError naming the option
+void check_arguments(const RawArguments& arguments);
 
 }  // namespace cloud2csg::app

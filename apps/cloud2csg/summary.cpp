@@ -41,14 +41,20 @@ std::string refine_line(const RefineStatistics& s) {
 /// How the primitives were found.
 std::vector<std::string> finding_lines(const FindingStatistics& s, const StageSeconds& seconds) {
   const auto [planes, spheres, cylinders, cones, tori] = s.surfaces;
-  return {fmt::format("scale        diagonal {:.4g}, spacing {:.3g}, noise {:.3g}: tolerance {:.3g}{}", s.diagonal,
-                      s.spacing, s.noise, s.tolerance, s.normals_estimated ? "; normals estimated" : ""),
-          fmt::format("surfaces     {} planes, {} spheres, {} cylinders, {} cones, {} tori; {} points on none", planes,
-                      spheres, cylinders, cones, tori, s.unexplained_points),
-          fmt::format("regular      {} values snapped, by at most {:.2g} and {:.2g} deg", s.snaps, s.largest_shift,
-                      s.largest_turn_deg),
-          fmt::format("found in     {:.2f} s: clean and normals {:.2f}, detect {:.2f}, solids {:.2f}",
-                      seconds.clean + seconds.detect + seconds.solids, seconds.clean, seconds.detect, seconds.solids)};
+  std::vector<std::string> lines{
+      fmt::format("scale        diagonal {:.4g}, spacing {:.3g}, noise {:.3g}: tolerance {:.3g}{}", s.diagonal,
+                  s.spacing, s.noise, s.tolerance, s.normals_estimated ? "; normals estimated" : ""),
+      fmt::format("surfaces     {} planes, {} spheres, {} cylinders, {} cones, {} tori; {} points on none", planes,
+                  spheres, cylinders, cones, tori, s.unexplained_points),
+      fmt::format("regular      {} values snapped, by at most {:.2g} and {:.2g} deg", s.snaps, s.largest_shift,
+                  s.largest_turn_deg),
+      fmt::format("found in     {:.2f} s: clean and normals {:.2f}, detect {:.2f}, solids {:.2f}",
+                  seconds.clean + seconds.detect + seconds.solids, seconds.clean, seconds.detect, seconds.solids)};
+  if (s.known > 0) {
+    lines.insert(lines.begin() + 1, fmt::format("known        {} primitive{}, {} points on them", s.known,
+                                                s.known == 1 ? "" : "s", s.known_points));
+  }
+  return lines;
 }
 
 /// The stages that took at least a thousandth of the extraction, in milliseconds.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -101,6 +102,34 @@ CLI::Validator one_of(std::vector<std::string> names) {
                      return std::find(names.begin(), names.end(), text) != names.end();
                    })
       .name(name);
+}
+
+CLI::Validator directions() {
+  return validator("directions x, y, z or three numbers each, as in x,y,1,1,0",
+                   [](const std::string& text) { return parse_directions(text).has_value(); });
+}
+
+std::optional<std::vector<Eigen::Vector3d>> parse_directions(const std::string& text) {
+  const std::vector<std::string> words = CLI::detail::split(text, ',');
+  const std::array<std::string, 3> axes{"x", "y", "z"};
+  std::vector<Eigen::Vector3d> found;
+  for (std::size_t k = 0; k < words.size();) {
+    const auto axis = std::ranges::find(axes, words[k]) - axes.begin();
+    if (axis < 3) {
+      found.emplace_back(Eigen::Vector3d::Unit(axis));
+      ++k;
+      continue;
+    }
+    Eigen::Vector3d vector;
+    for (Eigen::Index c = 0; c < 3; ++c, ++k) {
+      const std::optional<double> value = k < words.size() ? parsed<double>(words[k]) : std::nullopt;
+      if (!value || !std::isfinite(*value)) return std::nullopt;
+      vector[c] = *value;
+    }
+    if (!(vector.norm() > 0) || !std::isfinite(vector.norm())) return std::nullopt;
+    found.push_back(vector.normalized());
+  }
+  return found.empty() ? std::nullopt : std::optional(found);
 }
 
 CLI::Validator file_name() {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,8 @@ namespace cloud2csg::app {
 /// A number from 0 to 1.
 [[nodiscard]] CLI::Validator share();
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> names);
+/// A list of directions: see parse_directions().
+[[nodiscard]] CLI::Validator directions();
 /// Any text but an empty one.
 [[nodiscard]] CLI::Validator file_name();
 
@@ -27,5 +31,9 @@ namespace cloud2csg::app {
 [[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
 /// Whether its value is checked by file_name().
 [[nodiscard]] bool names_a_file(CLI::Option& option);
+
+/// The directions of a list with commas: x, y, z, or three numbers each that are not all 0, as in "x,y,1,1,0". Absent
+/// for any other text.
+[[nodiscard]] std::optional<std::vector<Eigen::Vector3d>> parse_directions(const std::string& text);
 
 }  // namespace cloud2csg::app

@@ -134,7 +134,8 @@ struct FindingStatistics {
   double noise = 0, tolerance = 0;   ///< of the points; how far they may be from their surface
   /// Planes, spheres, cylinders, cones, tori.
   std::array<std::size_t, 5> surfaces = {};
-  std::size_t unexplained_points = 0;              ///< on no surface
+  std::size_t known = 0, known_points = 0;         ///< primitives that were known, and the points on them
+  std::size_t unexplained_points = 0;              ///< on no surface, and no known primitive
   std::size_t snaps = 0;                           ///< what was made regular
   double largest_turn_deg = 0, largest_shift = 0;  ///< ... and by how much
   double disagreement = 0;                         ///< see SolidChoice

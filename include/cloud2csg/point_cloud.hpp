@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 
+#include "cloud2csg/colour.hpp"
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/run_context.hpp"
 
@@ -54,6 +55,8 @@ struct RawCloud {
 struct CloudWriteOptions {
   bool binary = true;            ///< .ply and .pcd; the others are text always
   bool double_precision = true;  ///< keeps every bit, in text too; false: float, a file of half the size
+  /// One a point, or none: red, green and blue in .ply; the others leave them out.
+  std::span<const Colour> colours = {};
 };
 
 /// Writes by the file's ending, as read_point_cloud reads; .pts has no place for normals and leaves them out, .xyzn

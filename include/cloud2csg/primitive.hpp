@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -67,11 +68,19 @@ struct Displacement {
   double frequency;
 };
 
+/// What a cloud says of a primitive: of the points that lie on its surface and are nearer to no other's.
+struct Evidence {
+  std::size_t points = 0;
+  double rms = 0;  ///< of their distances from the surface, in the cloud's units
+};
+
 struct Primitive {
   std::string id;
   Shape shape;
   Pose pose = {};
   std::optional<Displacement> displacement = {};
+  /// Where it was measured. It says how a primitive was found, not what it is: nothing depends on it.
+  std::optional<Evidence> evidence = {};
 };
 
 using PrimitiveSet = std::vector<Primitive>;
@@ -81,7 +90,7 @@ using PrimitiveSet = std::vector<Primitive>;
 [[nodiscard]] std::string_view type_name(const Shape& shape);
 
 /// @throws Error (where = "radius", "size"... ) when a parameter is not finite, not positive, a polytope is
-/// empty or unbounded, an expression does not parse.
+/// empty or unbounded, an expression does not parse, the rms of the evidence is not finite or negative.
 void validate(const Primitive& primitive);
 
 /// Whether it is neither an Expression nor displaced. Then its field has a gradient of length one wherever it has one,

@@ -12,10 +12,13 @@
 namespace cloud2csg {
 
 struct ReconstructOptions {
+  /// What somebody knows: these primitives are kept as they are, of any type, with their ids, and only what the points
+  /// show beyond them is detected. Ids are all different.
+  PrimitiveSet known = {};
   PrepareOptions preparation = {};
   DetectOptions detection = {};
   /// Close a side that is missing as a whole, as that on which the part stood, by a plane: else nothing tells how far
-  /// the solid reaches there.
+  /// the solid reaches there. Not where primitives are known.
   bool close_unseen_side = true;
   SolidOptions solids = {};
   ExtractOptions extraction = {};
@@ -23,22 +26,26 @@ struct ReconstructOptions {
 
 struct FoundPrimitives {
   PreparedCloud prepared;        ///< the cloud that everything else speaks of
-  Detection detection;           ///< the surfaces that it lies on
+  Detection detection;           ///< the surfaces that it lies on, beyond what lies on known primitives
   std::size_t added_points = 0;  ///< on a side that was not seen: the last ones of the cloud
-  SolidChoice choice;            ///< a few solids that these bound, and a tree over them
+  SolidChoice choice;            ///< those known, a few solids that surfaces bound, with evidence, and a tree over them
+  std::vector<SurfacePoints> points;  ///< of the prepared cloud, that lie on each of these solids
   double prepare_seconds = 0, detect_seconds = 0, choose_seconds = 0;
   std::vector<std::string> warnings;  ///< sentences for the user: what is doubtful, and where
 };
 
 /// Cleans and orients the cloud, detects its surfaces and chooses solids that these bound: prepare_cloud(),
-/// detect_surfaces(), choose_solids(). The same seed gives the same for any number of threads.
-/// @throws Error when the cloud has too few points, no surface was found in it, or it has no inside; Cancelled.
+/// detect_surfaces(), choose_solids(). Points that lie on known primitives are not offered to the detection; known
+/// primitives that the points do not bear out are in no tree, and a warning names them. The same seed gives the same
+/// for any number of threads.
+/// @throws Error when the cloud has too few points, no surface was found in it, it has no inside, or a known primitive
+/// is invalid or has the id of another; Cancelled.
 [[nodiscard]] FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},
                                               const RunContext& run = {});
 
 struct Reconstruction {
   PointCloud cloud;     ///< the points that were used, with normals
-  PrimitiveSet solids;  ///< as chosen
+  PrimitiveSet solids;  ///< those known, then as chosen, with evidence
   CsgTree tree;         ///< over them
   ExtractStatistics statistics;
   std::vector<Snap> snaps = {};  ///< what was made regular

@@ -46,4 +46,18 @@ struct Segmentation {
 [[nodiscard]] Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primitives,
                                           const SegmentationTolerances& tolerances, const RunContext& run = {});
 
+/// The points that lie on a primitive's surface and are nearer to no other's.
+struct SurfacePoints {
+  std::vector<std::uint32_t> points;  ///< indices, ascending
+  double rms = 0;                     ///< of their distances from the surface; 0 where there are none
+};
+
+/// Deals the points out to the primitives, one entry each: a point is near enough to a primitive as in a segmentation,
+/// but belongs to the nearest only, of equally near ones to the first. Where a field is no distance (expressions,
+/// displaced solids), the distance is its value over its slope. O(points x primitives).
+/// Precondition: the cloud has normals. @throws Cancelled
+[[nodiscard]] std::vector<SurfacePoints> deal_points(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                                     const SegmentationTolerances& tolerances,
+                                                     const RunContext& run = {});
+
 }  // namespace cloud2csg

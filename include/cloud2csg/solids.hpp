@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/detect.hpp"
 #include "cloud2csg/point_cloud.hpp"
+#include "cloud2csg/segmentation.hpp"
 
 /// From detected surfaces to few solids and a small tree over them.
 namespace cloud2csg {
@@ -43,16 +45,28 @@ struct PlaceOptions {
 [[nodiscard]] double disagreement(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places);
 
 struct RegularityOptions {
-  bool snap = true;  ///< false: surfaces are taken as they are
+  /// False: surfaces are not made like each other. What is given below holds all the same.
+  bool snap = true;
   /// Directions nearer than this to each other, or to an orthogonal one, are made so.
   double angle_tolerance_deg = 1.0;
   /// Offsets, centres and radii nearer than this are made equal, in the cloud's units. Absent: twice the noise, at
   /// least 1e-3 of the cloud's diagonal.
   std::optional<double> distance_tolerance = {};
+  /// Radii that spheres, cylinders and tori are known to have. Each takes the nearest of them, and the place that suits
+  /// its points best with it, where that is by no more than `given_tolerance` farther from these; else it stays as it
+  /// is.
+  std::vector<double> radii = {};
+  /// Directions that planes, cylinders, cones and tori are known to have, either way round, of any length. Each takes
+  /// the nearest within `axis_tolerance_deg`, as long as its points bear that out as for radii; up to
+  /// `angle_tolerance_deg` they are not asked.
+  std::vector<Eigen::Vector3d> axes = {};
+  double axis_tolerance_deg = 5.0;
+  /// In the cloud's units. Absent: the distance tolerance in force; in find_primitives() that of the detection.
+  std::optional<double> given_tolerance = {};
 };
 
-enum class RegularityKind : std::uint8_t { direction, offset, axis, radius };
-/// "direction", "offset", "axis", "radius".
+enum class RegularityKind : std::uint8_t { direction, offset, axis, radius, given_direction, given_radius };
+/// "direction", "offset", "axis", "radius", "given direction", "given radius".
 [[nodiscard]] std::string_view to_string(RegularityKind kind);
 
 /// What was snapped.
@@ -67,11 +81,17 @@ struct RegularSurfaces {
   std::vector<Snap> snaps = {};
 };
 
+/// What of a surface is known: it is not changed, and others are made like it.
+struct FixedValues {
+  bool direction = false, position = false, radius = false;
+};
+
 /// Makes directions that nearly are so equal or orthogonal, planes that nearly are so coplanar, axes coaxial, radii
 /// equal. A value that several share is the mean by their points, so what has more is moved less. Turned surfaces keep
-/// their position, which should be near their points. O(surfaces^2).
+/// their position, which should be near their points. `fixed` has one a surface, or none. O(surfaces^2).
 [[nodiscard]] RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
-                                         double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg);
+                                         double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
+                                         std::span<const FixedValues> fixed = {});
 
 struct SolidOptions {
   /// What a leaf more must gain, in the weight of places: see LabelledPlaces. One permille: a hole of that share of the
@@ -87,12 +107,20 @@ struct SolidOptions {
 /// @throws Error naming the field when an option is out of range.
 void validate(const SolidOptions& options);
 
+/// A solid that is known, and the points that lie on its surface. They should not be those of detected surfaces.
+struct KnownSolid {
+  Primitive solid;
+  SurfacePoints own = {};
+};
+
 struct SolidChoice {
-  PrimitiveSet solids = {};  ///< ids by type and number: "box_0", "cylinder_1"...
-  CsgTree tree = {};         ///< over the solids, simplified
-  double disagreement = 0;   ///< of the tree with the places
+  /// Those that are known first, as they are; then others, with ids by type and number: "box_0", "cylinder_1"...
+  PrimitiveSet solids = {};
+  CsgTree tree = {};        ///< over the solids, simplified
+  double disagreement = 0;  ///< of the tree with the places
   LabelledPlaces places = {};
   std::vector<Snap> snaps = {};
+  std::vector<std::string> warnings = {};  ///< sentences for the user: given values that the points do not bear out
 };
 
 /// Few solids that surfaces bound, and a tree over them: a decision list of terms (boxes, cylinders, cones, spheres,
@@ -104,5 +132,12 @@ struct SolidChoice {
 /// stopped before the search.
 [[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                         const SolidOptions& options = {}, const RunContext& run = {});
+
+/// The same beside solids that are known. These are terms as they are, of any type, and preferred to others that are as
+/// good; their faces are among those that solids may end at, and detected surfaces are made like them, not they like
+/// these. No surfaces are needed where a known solid has points.
+[[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
+                                        std::span<const KnownSolid> known, const SolidOptions& options,
+                                        const RunContext& run);
 
 }  // namespace cloud2csg

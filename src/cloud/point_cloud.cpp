@@ -88,6 +88,7 @@ PointCloud select_points(const PointCloud& cloud, std::span<const std::uint32_t>
 void write_point_cloud(const std::filesystem::path& file, const PointCloud& cloud, const CloudWriteOptions& options) {
   assert(!cloud.has_normals() || cloud.normals.size() == cloud.positions.size());
   assert(!cloud.has_sensor_positions() || cloud.sensor_positions.size() == cloud.positions.size());
+  assert(options.colours.empty() || options.colours.size() == cloud.positions.size());
   const CloudFormat& format = format_of(file);
   if (format.needs_normals && !cloud.has_normals()) {
     throw Error({.file = file.string(),

@@ -50,6 +50,15 @@ void append_record(std::string& block, std::span<const double> numbers, bool bin
   }
 }
 
+void append_colour(std::string& block, const Colour& colour, bool binary) {
+  if (binary) {
+    for (const std::uint8_t value : {colour.red, colour.green, colour.blue}) append_binary(block, value);
+    return;
+  }
+  block.back() = ' ';  // instead of the end of the line
+  block += fmt::format("{} {} {}\n", colour.red, colour.green, colour.blue);
+}
+
 }  // namespace
 
 void write_records(AtomicFile& out, const PointCloud& cloud, const RecordFormat& format) {
@@ -65,6 +74,7 @@ void write_records(AtomicFile& out, const PointCloud& cloud, const RecordFormat&
     } else {
       append_record<float>(block, used, format.binary);
     }
+    if (!format.colours.empty()) append_colour(block, format.colours[i], format.binary);
     if (block.size() >= k_block_bytes) {
       out.write(block);
       block.clear();

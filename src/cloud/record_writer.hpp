@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <span>
 
 #include "base/atomic_file.hpp"
 #include "cloud2csg/point_cloud.hpp"
@@ -13,6 +13,7 @@ struct RecordFormat {
   bool double_precision;  ///< else float
   bool normals;           ///< after the coordinates
   bool sensor_positions;  ///< after these
+  std::span<const Colour> colours = {};  ///< one a point, after these, as three bytes
 };
 
 /// Writes all points in large blocks. @throws Error when a number is not finite or out of a float's range.

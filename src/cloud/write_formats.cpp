@@ -34,12 +34,14 @@ void write_ply(AtomicFile& out, const PointCloud& cloud, const CloudWriteOptions
   std::string header = fmt::format("ply\nformat {} 1.0\nelement vertex {}\n",
                                    options.binary ? "binary_little_endian" : "ascii", cloud.size());
   for (const std::string_view name : names) header += fmt::format("property {} {}\n", type, name);
+  if (!options.colours.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   out.write(header + "end_header\n");
   write_records(out, cloud,
                 {.binary = options.binary,
                  .double_precision = options.double_precision,
                  .normals = cloud.has_normals(),
-                 .sensor_positions = cloud.has_sensor_positions()});
+                 .sensor_positions = cloud.has_sensor_positions(),
+                 .colours = options.colours});
 }
 
 void write_pcd(AtomicFile& out, const PointCloud& cloud, const CloudWriteOptions& options) {

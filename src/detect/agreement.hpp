@@ -19,8 +19,9 @@ struct Agreement {
 
 /// When a point lies on a surface.
 struct AgreementLimits {
-  double distance;  ///< at most, on either side
-  double cosine;    ///< at least
+  double distance;         ///< at most, on either side
+  double cosine;           ///< at least
+  double most_radius = 3;  ///< of surfaces in a cloud of diagonal one: what is larger is flat
 
   /// How well they hold: from 1 for a point on the surface with the surface's normal down to 0 at either limit.
   [[nodiscard]] double support(const Agreement& agreement) const {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -6,6 +8,8 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "cloud2csg/detect.hpp"
+#include "cloud2csg/error.hpp"
+#include "detect/connected.hpp"
 #include "detect/grow.hpp"
 #include "detect/propose.hpp"
 #include "detect/settle.hpp"
@@ -104,7 +108,58 @@ DetectedSurface detected(const GrownSurface& grown, const WorkCloud& work) {
   return result;
 }
 
+/// In a cloud of diagonal one: as an option says, or else what is flat.
+double most_radius_of(const DetectOptions& options, double diagonal) {
+  const double flat = AgreementLimits{.distance = 0, .cosine = 0}.most_radius;
+  return options.most_size ? std::min(flat, *options.most_size / diagonal) : flat;
+}
+
+/// Whether a surface is neither smaller nor larger than surfaces are to be. Those that are are found first, so that no
+/// others make up for them: no strips of planes for a small bore.
+bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const DetectOptions& options, double link) {
+  if (!options.least_size && !options.most_size) return true;
+  const SurfaceType type = grown.surface.type;
+  const bool has_radius = type == SurfaceType::sphere || type == SurfaceType::cylinder || type == SurfaceType::torus;
+  const double extent = work.extent_of(connected_groups(work.points, grown.points, link).front());
+  double least = extent;
+  double most = extent;
+  if (has_radius) {
+    least = std::min(least, type == SurfaceType::torus ? grown.surface.minor_radius : grown.surface.radius);
+    most = std::max(most, grown.surface.radius);
+  }
+  return least * work.diagonal >= options.least_size.value_or(0) &&
+         (!options.most_size || most * work.diagonal <= *options.most_size);
+}
+
+void require_positive(const char* field, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw Error({.file = {},
+               .where = field,
+               .expected = fmt::format("expected a finite number above 0, got {}", value),
+               .remedy = {}});
+}
+
 }  // namespace
+
+void validate(const DetectOptions& options) {
+  require_positive("angle_tolerance_deg", options.angle_tolerance_deg);
+  if (options.distance_tolerance) require_positive("distance_tolerance", *options.distance_tolerance);
+  if (options.least_size) require_positive("least_size", *options.least_size);
+  if (options.most_size) require_positive("most_size", *options.most_size);
+  if (options.least_size && options.most_size && *options.least_size > *options.most_size) {
+    throw Error({.file = {},
+                 .where = "least_size",
+                 .expected = fmt::format("expected no more than most_size, got {} and {}", *options.least_size,
+                                         *options.most_size),
+                 .remedy = {}});
+  }
+}
+
+std::size_t detection_least_points(const DetectOptions& options, std::size_t points) {
+  constexpr std::size_t k_least_points = 30;
+  constexpr std::size_t k_least_share = 2000;
+  return options.least_points.value_or(std::max(k_least_points, points / k_least_share));
+}
 
 double detection_tolerance(const DetectOptions& options, const Scale& scale) {
   constexpr double k_noise_factor = 3;
@@ -114,19 +169,19 @@ double detection_tolerance(const DetectOptions& options, const Scale& scale) {
 
 Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const DetectOptions& options,
                           const RunContext& run) {
+  validate(options);
   const WorkCloud work = make_work_cloud(cloud);
   const double tolerance = detection_tolerance(options, scale);
   constexpr double k_link_in_spacings = 4;
-  constexpr std::size_t k_least_points = 30;
-  constexpr std::size_t k_least_share = 2000;
-  const SearchLimits limits{
-      .agreement = {.distance = tolerance / work.diagonal,
-                    .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180)},
-      .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
-      .least_points = options.least_points.value_or(std::max(k_least_points, cloud.size() / k_least_share))};
+  const SearchLimits limits{.agreement = {.distance = tolerance / work.diagonal,
+                                          .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180),
+                                          .most_radius = most_radius_of(options, work.diagonal)},
+                            .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
+                            .least_points = detection_least_points(options, cloud.size())};
 
   Detection result{.surfaces = {}, .unexplained = cloud.size(), .distance_tolerance = tolerance};
   for (const GrownSurface& grown : settle_surfaces(find_all(work, limits, options.seed, run), work, limits, run)) {
+    if (!has_allowed_size(grown, work, options, limits.link)) continue;
     result.surfaces.push_back(detected(grown, work));
     result.unexplained -= grown.points.size();
   }

@@ -36,7 +36,8 @@ std::optional<Surface> if_plausible(std::optional<Surface> surface, const Agreem
 std::optional<Surface> confirmed(const std::optional<Surface>& surface, Neighbourhood points,
                                  const AgreementLimits& limits) {
   if (!surface || !is_plausible(*surface, limits)) return std::nullopt;
-  const AgreementLimits wide{.distance = 2 * limits.distance, .cosine = limits.cosine};
+  AgreementLimits wide = limits;
+  wide.distance *= 2;
   const std::vector<OrientedPoint> agreeing = agreeing_points(*surface, points, wide);
   if (2 * agreeing.size() < points.size()) return std::nullopt;
   const std::optional<Surface> fitted = fit_plausible(*surface, agreeing, limits);
@@ -48,19 +49,20 @@ std::optional<Surface> confirmed(const std::optional<Surface>& surface, Neighbou
 
 bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
   if (!surface.position.allFinite() || !surface.axis.allFinite()) return false;
+  constexpr double k_most_apex = 3;          // from the middle of the cloud
   const double least = 2 * limits.distance;  // of a radius that shows
-  constexpr double k_most = 3;               // of a radius in a cloud of diagonal one: what is larger is flat
   switch (surface.type) {
     case SurfaceType::plane:
       return true;
     case SurfaceType::sphere:
     case SurfaceType::cylinder:
-      return surface.radius > least && surface.radius < k_most;
+      return surface.radius > least && surface.radius < limits.most_radius;
     case SurfaceType::cone:
       // Sharper ones are cylinders and blunter ones planes, as far as points can tell.
-      return surface.half_angle > 0.035 && surface.half_angle < 1.5 && surface.position.norm() < k_most;
+      return surface.half_angle > 0.035 && surface.half_angle < 1.5 && surface.position.norm() < k_most_apex;
     case SurfaceType::torus:
-      return surface.minor_radius > least && surface.radius > surface.minor_radius && surface.radius < k_most;
+      return surface.minor_radius > least && surface.radius > surface.minor_radius &&
+             surface.radius < limits.most_radius;
   }
   return false;
 }

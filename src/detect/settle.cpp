@@ -25,7 +25,8 @@ std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b,
   const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_sample);
   const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_sample);
   // Each need not lie on the other, which is only sure where its points are; on one fitted to both they must.
-  const AgreementLimits wide{.distance = 3 * limits.distance, .cosine = limits.cosine};
+  AgreementLimits wide = limits;
+  wide.distance *= 3;
   if (!explains(a.surface, of_b, wide, 0.5) && !explains(b.surface, of_a, wide, 0.5)) return std::nullopt;
   std::vector<OrientedPoint> of_both = of_a;
   of_both.insert(of_both.end(), of_b.begin(), of_b.end());

@@ -34,6 +34,12 @@ std::pair<std::uint32_t, std::uint32_t> WorkCloud::cell_of(std::uint32_t i, int 
   return {static_cast<std::uint32_t>(first - code.begin()), static_cast<std::uint32_t>(last - code.begin())};
 }
 
+double WorkCloud::extent_of(const std::vector<std::uint32_t>& indices) const {
+  AlignedBox box;
+  for (const std::uint32_t i : indices) box.extend(points[i].position);
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
 std::vector<OrientedPoint> WorkCloud::some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const {
   const std::size_t count = std::min(most, indices.size());
   std::vector<OrientedPoint> some;

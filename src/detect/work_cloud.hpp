@@ -25,6 +25,8 @@ struct WorkCloud {
   /// The points [first, last) that share a cell of the octree with point i, its edge 2^-level of the cloud's longest.
   /// O(log n). Precondition: 0 <= level <= k_levels.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> cell_of(std::uint32_t i, int level) const;
+  /// The diagonal of the box around these points. O(n)
+  [[nodiscard]] double extent_of(const std::vector<std::uint32_t>& indices) const;
   /// At most so many of these points, evenly along the list.
   [[nodiscard]] std::vector<OrientedPoint> some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const;
 };

@@ -140,9 +140,14 @@ class ModelReader {
     Primitive primitive{.id = value["id"].get<std::string>(),
                         .shape = shape_of(value, type, where),
                         .pose = pose_of(value, where),
-                        .displacement = {}};
+                        .displacement = {},
+                        .evidence = {}};
     if (value.contains("displacement")) {
       primitive.displacement = Displacement{.frequency = value["displacement"]["frequency"].get<double>()};
+    }
+    if (const auto found = value.find("evidence"); found != value.end()) {
+      primitive.evidence =
+          Evidence{.points = (*found)["points"].get<std::size_t>(), .rms = (*found)["rms"].get<double>()};
     }
     try {
       validate(primitive);

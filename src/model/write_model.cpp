@@ -72,6 +72,10 @@ std::string line_of(const Primitive& primitive) {
   if (primitive.displacement) {
     line += fmt::format(R"(, "displacement": {{"frequency": {}}})", primitive.displacement->frequency);
   }
+  if (primitive.evidence) {
+    line += fmt::format(R"(, "evidence": {{"points": {}, "rms": {}}})", primitive.evidence->points,
+                        primitive.evidence->rms);
+  }
   return line + "}";
 }
 

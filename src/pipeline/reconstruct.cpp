@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/stopwatch.hpp"
 #include "base/without_stop.hpp"
 #include "cloud2csg/error.hpp"
 #include "pipeline/bare_surface.hpp"
+#include "pipeline/detect_rest.hpp"
 #include "pipeline/fit.hpp"
 #include "pipeline/time_limit.hpp"
 #include "solids/unseen_side.hpp"
@@ -27,8 +29,32 @@ double share(std::size_t part, std::size_t all) {
   return static_cast<double>(part) / static_cast<double>(all);
 }
 
-void check_detection(const Detection& detection, const PointCloud& cloud, std::vector<std::string>& warnings) {
-  if (detection.surfaces.empty()) {
+void check_known(const PrimitiveSet& known) {
+  std::set<std::string> ids;
+  for (const Primitive& primitive : known) {
+    const std::string where = fmt::format("known primitive '{}'", primitive.id);
+    if (!ids.insert(primitive.id).second) {
+      throw Error({.file = {}, .where = where, .expected = "another has the same id", .remedy = {}});
+    }
+    try {
+      validate(primitive);
+    } catch (const Error& error) {
+      Error::Parts parts = error.parts();
+      parts.where = where + ": " + parts.where;
+      throw Error(std::move(parts));
+    }
+  }
+}
+
+std::size_t count_of(const std::vector<SurfacePoints>& primitives) {
+  std::size_t count = 0;
+  for (const SurfacePoints& own : primitives) count += own.points.size();
+  return count;
+}
+
+void check_detection(const RestDetection& found, const PointCloud& cloud, std::vector<std::string>& warnings) {
+  const Detection& detection = found.detection;
+  if (detection.surfaces.empty() && count_of(found.known) == 0) {
     throw Error({.file = {},
                  .where = {},
                  .expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
@@ -45,8 +71,10 @@ void check_detection(const Detection& detection, const PointCloud& cloud, std::v
   }
 }
 
-FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t raw_points) {
+FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t known, std::size_t raw_points) {
   const Scale& scale = found.prepared.scale;
+  const std::vector<SurfacePoints> of_known(found.points.begin(),
+                                            found.points.begin() + static_cast<std::ptrdiff_t>(known));
   FindingStatistics statistics{.raw_points = raw_points,
                                .added_points = found.added_points,
                                .normals_estimated = found.prepared.normals_estimated,
@@ -54,13 +82,16 @@ FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t raw_po
                                .spacing = scale.spacing,
                                .noise = scale.noise,
                                .tolerance = found.detection.distance_tolerance,
+                               .known = known,
+                               .known_points = count_of(of_known),
                                .unexplained_points = found.detection.unexplained,
                                .snaps = found.choice.snaps.size()};
   for (const DetectedSurface& s : found.detection.surfaces) {
     ++statistics.surfaces[static_cast<std::size_t>(s.surface.type)];
   }
   for (const Snap& snap : found.choice.snaps) {
-    double& largest = snap.kind == RegularityKind::direction ? statistics.largest_turn_deg : statistics.largest_shift;
+    const bool is_turn = snap.kind == RegularityKind::direction || snap.kind == RegularityKind::given_direction;
+    double& largest = is_turn ? statistics.largest_turn_deg : statistics.largest_shift;
     largest = std::max(largest, snap.change);
   }
   return statistics;
@@ -93,22 +124,6 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
         measure_fit(result.tree, choice.solids, prepared.cloud, objective, statistics.noise, without_stop(run));
   }
   return result;
-}
-
-/// find_primitives() within the time limit of the extraction: the choice of solids has a tree to give at any time.
-FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
-  const TimeLimit limit(run.stop, options.extraction.time_limit_seconds);
-  RunContext limited = run;
-  limited.stop = limit.token();
-  try {
-    return find_primitives(cloud, options, limited);
-  } catch (const Cancelled&) {
-    if (run.stop.stop_requested()) throw;
-    throw Error({.file = {},
-                 .where = "--time-limit",
-                 .expected = "the time was over before primitives were found",
-                 .remedy = "allow more, or give a --point-budget below the number of points"});
-  }
 }
 
 void check_surface(const CsgTree& tree, const FoundPrimitives& found, const RunContext& run,
@@ -146,31 +161,88 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
       side->normal.x(), side->normal.y(), side->normal.z(), 100 * side->share));
 }
 
-}  // namespace
+/// Warns of known primitives that a tree does without, unless they are named already.
+void check_known_are_used(const CsgTree& tree, const FoundPrimitives& found, const PrimitiveSet& known,
+                          std::vector<std::string>& warnings) {
+  const std::vector<PrimitiveIndex> used = primitives_of(tree);
+  for (PrimitiveIndex p = 0; p < known.size(); ++p) {
+    const std::string name = fmt::format("'{}'", known[p].id);
+    const auto names_it = [&name](const std::string& text) { return text.find(name) != std::string::npos; };
+    if (std::ranges::find(used, p) != used.end() || std::ranges::any_of(warnings, names_it)) continue;
+    warnings.push_back(fmt::format("the points do not bear out the known primitive {}: {} of {} lie on it", name,
+                                   found.points[p].points.size(), found.prepared.cloud.size()));
+  }
+}
 
-FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
+/// Tells of each solid which points lie on it.
+void add_evidence(FoundPrimitives& found, const DetectOptions& options, const RunContext& run) {
+  PrimitiveSet& solids = found.choice.solids;
+  found.points = deal_points(found.prepared.cloud, solids, tolerances_of(options, found.prepared.scale), run);
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    solids[k].evidence = Evidence{.points = found.points[k].points.size(), .rms = found.points[k].rms};
+  }
+}
+
+/// find_primitives() without a word on known primitives.
+FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
+  validate(options.detection);
   validate(options.solids);
+  check_known(options.known);
   Stopwatch watch;
   FoundPrimitives found;
   found.prepared = prepare_cloud(cloud, options.preparation, run);
   found.prepare_seconds = watch.lap();
   found.warnings = found.prepared.warnings;
 
-  found.detection = detect_surfaces(found.prepared.cloud, found.prepared.scale, options.detection, run);
-  check_detection(found.detection, found.prepared.cloud, found.warnings);
-  if (options.close_unseen_side) close_unseen_side(found, run);
+  RestDetection rest = detect_rest(found.prepared.cloud, found.prepared.scale, options.known, options.detection, run);
+  check_detection(rest, found.prepared.cloud, found.warnings);
+  found.detection = std::move(rest.detection);
+  // What is known has ends of its own.
+  if (options.close_unseen_side && options.known.empty()) close_unseen_side(found, run);
   found.detect_seconds = watch.lap();
 
   run.report("solids", 0, 1);
-  found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, options.solids, run);
+  std::vector<KnownSolid> known;
+  for (std::size_t k = 0; k < options.known.size(); ++k) {
+    known.push_back({.solid = options.known[k], .own = std::move(rest.known[k])});
+  }
+  SolidOptions solids = options.solids;
+  if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
+  found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
   run.report("solids", 1, 1);
-  found.choose_seconds = watch.lap();
   if (found.choice.solids.empty()) {
     throw Error({.file = {},
                  .where = {},
                  .expected = "the surfaces that were found bound no solid",
                  .remedy = "give a cloud of a closed object, or of most of its surface"});
   }
+  found.warnings.insert(found.warnings.end(), found.choice.warnings.begin(), found.choice.warnings.end());
+  add_evidence(found, options.detection, run);
+  found.choose_seconds = watch.lap();
+  return found;
+}
+
+/// find_primitives() within the time limit of the extraction: the choice of solids has a tree to give at any time.
+FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
+  const TimeLimit limit(run.stop, options.extraction.time_limit_seconds);
+  RunContext limited = run;
+  limited.stop = limit.token();
+  try {
+    return find_all(cloud, options, limited);
+  } catch (const Cancelled&) {
+    if (run.stop.stop_requested()) throw;
+    throw Error({.file = {},
+                 .where = "--time-limit",
+                 .expected = "the time was over before primitives were found",
+                 .remedy = "allow more, or give a --point-budget below the number of points"});
+  }
+}
+
+}  // namespace
+
+FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
+  FoundPrimitives found = find_all(cloud, options, run);
+  check_known_are_used(found.choice.tree, found, options.known, found.warnings);
   return found;
 }
 
@@ -183,7 +255,7 @@ Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& op
   if (limit) limit = std::max(0.0, *limit - watch.seconds());
   Extraction extraction = extract_over(found.choice, found.prepared, rest, run);
   ExtractStatistics& statistics = extraction.statistics;
-  statistics.finding = statistics_of(found, cloud.size());
+  statistics.finding = statistics_of(found, options.known.size(), cloud.size());
   statistics.finding->disagreement = disagreement(extraction.tree, found.choice.solids, found.choice.places);
   if (statistics.finding->disagreement > k_much_disagreement) {
     found.warnings.push_back(
@@ -193,6 +265,7 @@ Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& op
   }
   check_surface(extraction.tree, found, without_stop(run), found.warnings);
   statistics.warnings.insert(statistics.warnings.begin(), found.warnings.begin(), found.warnings.end());
+  check_known_are_used(extraction.tree, found, options.known, statistics.warnings);
   statistics.seconds.clean = found.prepare_seconds;
   statistics.seconds.detect = found.detect_seconds;
   statistics.seconds.solids = found.choose_seconds;

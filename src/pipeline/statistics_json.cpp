@@ -115,6 +115,8 @@ Json finding_json(const FindingStatistics& s) {
           {"cones", cones},
           {"tori", tori},
           {"unexplained_points", s.unexplained_points},
+          {"known", s.known},
+          {"known_points", s.known_points},
           {"snaps", s.snaps},
           {"largest_turn_deg", s.largest_turn_deg},
           {"largest_shift", s.largest_shift},

@@ -89,6 +89,9 @@ void validate(const Primitive& primitive) {
       primitive.shape);
   validate_pose(primitive.pose);
   if (primitive.displacement) require_positive("displacement/frequency", primitive.displacement->frequency);
+  if (primitive.evidence && !(primitive.evidence->rms >= 0 && std::isfinite(primitive.evidence->rms))) {
+    refuse("evidence/rms", "a finite number of 0 or more");
+  }
 }
 
 }  // namespace cloud2csg

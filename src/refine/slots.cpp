@@ -147,6 +147,7 @@ std::optional<Primitive> with_slots(const Primitive& original, const LocalFrame&
   const Eigen::Vector3d before = frame.orientation.conjugate() * (original.pose.position - frame.origin);
   Reader reader(values, before);
   Primitive result = original;
+  result.evidence.reset();  // it speaks of where the primitive was
   result.shape = shape_from(original.shape, reader);
   if (!has_no_orientation(original)) result.pose.orientation = frame.orientation;
   if (!keeps_its_place) result.pose.position = frame.origin + frame.orientation * reader.place();

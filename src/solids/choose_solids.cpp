@@ -7,7 +7,9 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/solids.hpp"
+#include "solids/given_values.hpp"
 #include "solids/list_search.hpp"
+#include "solids/surfaces_of_known.hpp"
 #include "solids/write_solids.hpp"
 
 namespace cloud2csg {
@@ -24,17 +26,51 @@ void require_positive(const std::string& field, double value) {
                .remedy = {}});
 }
 
-/// The noise that was given, or else the root mean square of the surfaces' residuals.
-double noise_of(std::span<const DetectedSurface> surfaces, const SolidOptions& options) {
+/// The noise that was given, or else the root mean square of the residuals.
+double noise_of(std::span<const DetectedSurface> surfaces, std::span<const KnownSolid> known,
+                const SolidOptions& options) {
   if (options.places.noise) return *options.places.noise;
   double squares = 0;
   double points = 0;
-  for (const DetectedSurface& detected : surfaces) {
-    const auto count = static_cast<double>(detected.points.size());
-    squares += count * detected.rms * detected.rms;
-    points += count;
-  }
+  const auto add = [&](std::size_t count, double rms) {
+    squares += static_cast<double>(count) * rms * rms;
+    points += static_cast<double>(count);
+  };
+  for (const DetectedSurface& detected : surfaces) add(detected.points.size(), detected.rms);
+  for (const KnownSolid& solid : known) add(solid.own.points.size(), solid.own.rms);
   return points > 0 ? std::sqrt(squares / points) : 0.0;
+}
+
+/// The tolerance in force.
+double tolerance_of(const PointCloud& cloud, const SolidOptions& options, double noise) {
+  return options.regularity.distance_tolerance.value_or(
+      std::max(k_tolerance_sigmas * noise, k_least_tolerance * bounds_of(cloud.positions).diagonal().norm()));
+}
+
+/// Gives the found surfaces the values that are given and, beside those of known solids, makes all regular.
+GivenSurfaces made_regular(const PointCloud& cloud, std::span<const DetectedSurface> found,
+                           std::span<const DetectedSurface> of_known, const RegularityOptions& options,
+                           double tolerance) {
+  GivenSurfaces result = take_given_values(cloud, found, options, options.given_tolerance.value_or(tolerance));
+  if (!options.snap) return result;
+  std::vector<DetectedSurface> all = result.surfaces;
+  all.insert(all.end(), of_known.begin(), of_known.end());
+  std::vector<FixedValues> fixed = result.fixed;
+  fixed.resize(all.size(), {.direction = true, .position = true, .radius = true});
+  RegularSurfaces regular = regularise(all, tolerance, options.angle_tolerance_deg, fixed);
+  regular.surfaces.resize(found.size());
+  result.surfaces = std::move(regular.surfaces);
+  result.snaps.insert(result.snaps.end(), regular.snaps.begin(), regular.snaps.end());
+  return result;
+}
+
+void validate(const RegularityOptions& options) {
+  require_positive("angle_tolerance_deg", options.angle_tolerance_deg);
+  require_positive("axis_tolerance_deg", options.axis_tolerance_deg);
+  if (options.distance_tolerance) require_positive("distance_tolerance", *options.distance_tolerance);
+  if (options.given_tolerance) require_positive("given_tolerance", *options.given_tolerance);
+  for (const double radius : options.radii) require_positive("radii", radius);
+  for (const Eigen::Vector3d& axis : options.axes) require_positive("axes", axis.norm());
 }
 
 }  // namespace
@@ -43,36 +79,39 @@ void validate(const SolidOptions& options) {
   require_positive("leaf_cost", options.leaf_cost);
   require_positive("plane_cost", options.plane_cost);
   require_positive("most_rules", static_cast<double>(options.most_rules));
-  require_positive("angle_tolerance_deg", options.regularity.angle_tolerance_deg);
-  if (options.regularity.distance_tolerance) {
-    require_positive("distance_tolerance", *options.regularity.distance_tolerance);
-  }
+  validate(options.regularity);
 }
 
 SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                           const SolidOptions& options, const RunContext& run) {
+  return choose_solids(cloud, surfaces, {}, options, run);
+}
+
+SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
+                          std::span<const KnownSolid> known, const SolidOptions& options, const RunContext& run) {
   validate(options);
-  if (surfaces.empty()) {
+  const bool is_any_seen =
+      std::ranges::any_of(known, [](const KnownSolid& solid) { return !solid.own.points.empty(); });
+  if (surfaces.empty() && !is_any_seen) {
     throw Error({.file = {}, .where = "surfaces", .expected = "expected a surface or more, got none", .remedy = {}});
   }
   PlaceOptions place_options = options.places;
-  place_options.noise = noise_of(surfaces, options);
+  place_options.noise = noise_of(surfaces, known, options);
   SolidChoice choice;
   choice.places = label_places(cloud, place_options, run);
-  const double tolerance = options.regularity.distance_tolerance.value_or(std::max(
-      k_tolerance_sigmas * *place_options.noise, k_least_tolerance * bounds_of(cloud.positions).diagonal().norm()));
-  RegularSurfaces regular{.surfaces = {surfaces.begin(), surfaces.end()}, .snaps = {}};
-  if (options.regularity.snap) {
-    regular = regularise(surfaces, tolerance, options.regularity.angle_tolerance_deg);
-  }
+  const double tolerance = tolerance_of(cloud, options, *place_options.noise);
+  KnownTerms terms{.solids = {}, .surfaces = surfaces_of_known(cloud, known)};
+  for (const KnownSolid& one : known) terms.solids.push_back(one.solid);
+  GivenSurfaces regular = made_regular(cloud, surfaces, terms.surfaces, options.regularity, tolerance);
   run.throw_if_stopped();
-  const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance);
+  const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance, terms);
   const TermCosts costs{.leaf = options.leaf_cost, .plane = options.plane_cost};
   WrittenSolids written = write_solids(space, search_list(space, costs, options.most_rules, run));
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);
   choice.disagreement = disagreement(choice.tree, choice.solids, choice.places);
   choice.snaps = std::move(regular.snaps);
+  choice.warnings = std::move(regular.warnings);
   return choice;
 }
 

@@ -31,17 +31,22 @@ double weight_of(const DetectedSurface& detected) {
 struct DirectionCluster {
   Eigen::Vector3d direction;
   double weight;
+  bool is_fixed;
   std::vector<std::uint32_t> surfaces;
 };
 
-/// Snaps surface by surface; those of more points come first and are what others are snapped to.
+/// Snaps surface by surface; those that are fixed, and then those of more points, come first and are what others are
+/// snapped to.
 class Regulariser {
  public:
-  Regulariser(std::span<const DetectedSurface> surfaces, double distance_tolerance, double angle_tolerance_deg)
+  Regulariser(std::span<const DetectedSurface> surfaces, double distance_tolerance, double angle_tolerance_deg,
+              std::span<const FixedValues> fixed)
       : result_{.surfaces = {surfaces.begin(), surfaces.end()}, .snaps = {}},
+        fixed_(fixed.begin(), fixed.end()),
         distance_tolerance_(distance_tolerance),
         sine_tolerance_(std::sin(angle_tolerance_deg * std::numbers::pi / 180)),
         by_weight_(surfaces.size()) {
+    fixed_.resize(surfaces.size());
     std::iota(by_weight_.begin(), by_weight_.end(), 0U);
     std::ranges::stable_sort(by_weight_, std::greater{}, [&](std::uint32_t i) { return weight_of(surfaces[i]); });
   }
@@ -57,13 +62,20 @@ class Regulariser {
  private:
   [[nodiscard]] Surface& surface(std::uint32_t i) { return result_.surfaces[i].surface; }
 
+  /// By weight, those first in which the value is fixed.
+  [[nodiscard]] std::vector<std::uint32_t> order(bool FixedValues::*value) const {
+    std::vector<std::uint32_t> result = by_weight_;
+    std::stable_partition(result.begin(), result.end(), [&](std::uint32_t i) { return fixed_[i].*value; });
+    return result;
+  }
+
   void note(RegularityKind kind, std::uint32_t i, double change) {
     if (change > 0) result_.snaps.push_back({.kind = kind, .surface = i, .change = change});
   }
 
   std::vector<DirectionCluster> clusters() {
     std::vector<DirectionCluster> found;
-    for (const std::uint32_t i : by_weight_) {
+    for (const std::uint32_t i : order(&FixedValues::direction)) {
       if (!has_direction(surface(i).type)) continue;
       const Eigen::Vector3d axis = surface(i).axis;
       const double weight = weight_of(result_.surfaces[i]);
@@ -71,24 +83,27 @@ class Regulariser {
         return cluster.direction.cross(axis).norm() <= sine_tolerance_;
       });
       if (same == found.end()) {
-        found.push_back({.direction = axis, .weight = weight, .surfaces = {i}});
+        found.push_back({.direction = axis, .weight = weight, .is_fixed = fixed_[i].direction, .surfaces = {i}});
         continue;
       }
       const double sign = same->direction.dot(axis) < 0 ? -1 : 1;
-      same->direction = (same->weight * same->direction + weight * sign * axis).normalized();
+      if (!same->is_fixed) same->direction = (same->weight * same->direction + weight * sign * axis).normalized();
       same->weight += weight;
       same->surfaces.push_back(i);
     }
     std::ranges::stable_sort(found, std::greater{}, &DirectionCluster::weight);
+    std::stable_partition(found.begin(), found.end(), [](const DirectionCluster& cluster) { return cluster.is_fixed; });
     return found;
   }
 
   void snap_directions() {
     std::vector<Eigen::Vector3d> settled;
     for (const DirectionCluster& cluster : clusters()) {
-      const Eigen::Vector3d direction = made_orthogonal(cluster.direction, settled);
+      const Eigen::Vector3d direction =
+          cluster.is_fixed ? cluster.direction : made_orthogonal(cluster.direction, settled);
       settled.push_back(direction);
       for (const std::uint32_t i : cluster.surfaces) {
+        if (fixed_[i].direction) continue;
         const Eigen::Vector3d axis = surface(i).axis.dot(direction) < 0 ? Eigen::Vector3d(-direction) : direction;
         const double sine = std::min(surface(i).axis.cross(axis).norm(), 1.0);
         note(RegularityKind::direction, i, std::asin(sine) * 180 / std::numbers::pi);
@@ -111,11 +126,13 @@ class Regulariser {
     return result.normalized();
   }
 
-  /// Surfaces that are like the one of most points of their group; groups of one are left out.
+  /// Surfaces that are like the first of their group: one in which the value is fixed, or else that of most points.
+  /// Groups of one are left out.
   template <typename IsLike>
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> groups(bool (*is_of)(SurfaceType), const IsLike& is_like) {
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> groups(bool (*is_of)(SurfaceType), bool FixedValues::*value,
+                                                               const IsLike& is_like) {
     std::vector<std::vector<std::uint32_t>> found;
-    for (const std::uint32_t i : by_weight_) {
+    for (const std::uint32_t i : order(value)) {
       if (!is_of(surface(i).type)) continue;
       const auto same = std::ranges::find_if(found, [&](const auto& group) { return is_like(group[0], i); });
       if (same != found.end()) {
@@ -128,8 +145,10 @@ class Regulariser {
     return found;
   }
 
+  /// What the group is to share: the mean by points, or what is fixed in the first.
   template <typename Value>
-  [[nodiscard]] auto mean(const std::vector<std::uint32_t>& group, const Value& value) {
+  [[nodiscard]] auto common(const std::vector<std::uint32_t>& group, bool FixedValues::*fixed, const Value& value) {
+    if (fixed_[group[0]].*fixed) return decltype(value(group[0]))(value(group[0]));
     double weights = weight_of(result_.surfaces[group[0]]);
     auto sum = decltype(value(group[0]))(weights * value(group[0]));
     for (std::size_t k = 1; k < group.size(); ++k) {
@@ -146,12 +165,13 @@ class Regulariser {
       const double apart = surface(a).axis.dot(surface(b).position - surface(a).position);
       return are_parallel(a, b) && std::abs(apart) <= distance_tolerance_;
     };
-    for (const std::vector<std::uint32_t>& group : groups(is_plane, are_coplanar)) {
+    for (const std::vector<std::uint32_t>& group : groups(is_plane, &FixedValues::position, are_coplanar)) {
       const Surface anchor = surface(group[0]);
       const auto height = [&](std::uint32_t i) { return anchor.axis.dot(surface(i).position - anchor.position); };
-      const double common = mean(group, height);
+      const double shared = common(group, &FixedValues::position, height);
       for (const std::uint32_t i : group) {
-        const double change = common - height(i);
+        if (fixed_[i].position) continue;
+        const double change = shared - height(i);
         note(RegularityKind::offset, i, std::abs(change));
         surface(i).position += change * anchor.axis;
       }
@@ -168,12 +188,13 @@ class Regulariser {
     const auto are_coaxial = [this](std::uint32_t a, std::uint32_t b) {
       return are_parallel(a, b) && across(surface(a), surface(b)).norm() <= distance_tolerance_;
     };
-    for (const std::vector<std::uint32_t>& group : groups(has_axis, are_coaxial)) {
+    for (const std::vector<std::uint32_t>& group : groups(has_axis, &FixedValues::position, are_coaxial)) {
       const Surface anchor = surface(group[0]);
       const auto shift = [&](std::uint32_t i) { return across(anchor, surface(i)); };
-      const Eigen::Vector3d common = mean(group, shift);
+      const Eigen::Vector3d shared = common(group, &FixedValues::position, shift);
       for (const std::uint32_t i : group) {
-        const Eigen::Vector3d change = common - shift(i);
+        if (fixed_[i].position) continue;
+        const Eigen::Vector3d change = shared - shift(i);
         note(RegularityKind::axis, i, change.norm());
         surface(i).position += change;
       }
@@ -185,11 +206,12 @@ class Regulariser {
       return surface(a).type == surface(b).type &&
              std::abs(surface(a).radius - surface(b).radius) <= distance_tolerance_;
     };
-    for (const std::vector<std::uint32_t>& group : groups(has_radius, are_equal)) {
-      const double common = mean(group, [this](std::uint32_t i) { return surface(i).radius; });
+    for (const std::vector<std::uint32_t>& group : groups(has_radius, &FixedValues::radius, are_equal)) {
+      const double shared = common(group, &FixedValues::radius, [this](std::uint32_t i) { return surface(i).radius; });
       for (const std::uint32_t i : group) {
-        note(RegularityKind::radius, i, std::abs(common - surface(i).radius));
-        surface(i).radius = common;
+        if (fixed_[i].radius) continue;
+        note(RegularityKind::radius, i, std::abs(shared - surface(i).radius));
+        surface(i).radius = shared;
       }
     }
   }
@@ -199,6 +221,7 @@ class Regulariser {
   }
 
   RegularSurfaces result_;
+  std::vector<FixedValues> fixed_;
   double distance_tolerance_;
   double sine_tolerance_;
   std::vector<std::uint32_t> by_weight_;
@@ -207,13 +230,14 @@ class Regulariser {
 }  // namespace
 
 std::string_view to_string(RegularityKind kind) {
-  constexpr std::array<std::string_view, 4> k_names{"direction", "offset", "axis", "radius"};
+  constexpr std::array<std::string_view, 6> k_names{"direction", "offset",          "axis",
+                                                    "radius",    "given direction", "given radius"};
   return k_names[static_cast<std::size_t>(kind)];
 }
 
 RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
-                           double angle_tolerance_deg) {
-  return Regulariser(surfaces, distance_tolerance, angle_tolerance_deg).run();
+                           double angle_tolerance_deg, std::span<const FixedValues> fixed) {
+  return Regulariser(surfaces, distance_tolerance, angle_tolerance_deg, fixed).run();
 }
 
 }  // namespace cloud2csg

@@ -23,28 +23,41 @@ double positive_sum_of_losses(const RevolvedFamily& revolved, std::span<const do
   return sum;
 }
 
-/// A curved surface's inside, or outside, and what it has in common with the best box.
+double price_of(const RevolvedFamily& revolved, const TermCosts& costs) {
+  return revolved.known ? costs.known * costs.leaf : costs.leaf;
+}
+
+/// A curved surface's inside, or outside, and what it has in common with the best box or known solid.
 PricedTerm best_with_box(const TermSpace& space, std::uint32_t family, bool is_inverted, std::span<const double> gains,
                          const TermCosts& costs, double least) {
   const RevolvedFamily& revolved = space.revolved[family];
   const std::uint8_t side = is_inverted ? 0 : 1;
+  const double price = price_of(revolved, costs);
   PricedTerm best{.term = {}, .net = least};
-  // No box alone is better than `least`: leaving out what is inside must gain more than a leaf.
-  if (is_inverted && positive_sum_of_losses(revolved, gains) <= costs.leaf) return best;
+  // No box alone is better than `least`: leaving out what is inside must gain more than that costs.
+  if (is_inverted && positive_sum_of_losses(revolved, gains) <= price) return best;
   const TermPart curved{.kind = PartKind::revolved,
                         .family = family,
                         .ranges = {BinRange{0, revolved.bins.count() - 1}},
                         .planes = {},
-                        .is_inverted = is_inverted};
+                        .is_inverted = is_inverted,
+                        .is_known = revolved.known.has_value()};
   std::vector<double> within(gains.size());
   for (std::size_t i = 0; i < gains.size(); ++i) within[i] = revolved.is_inside[i] == side ? gains[i] : 0.0;
-  const double most = positive_sum(within) - 2 * costs.leaf;
+  const double most = positive_sum(within) - costs.leaf - price;
   for (std::uint32_t boxes = 0; boxes < space.boxes.size() && most > best.net; ++boxes) {
-    const PricedTerm box = best_box(space, boxes, within, costs, best.net + costs.leaf);
+    const PricedTerm box = best_box(space, boxes, within, costs, best.net + price);
     if (box.term.parts.empty()) continue;
-    best.net = box.net - costs.leaf;
+    best.net = box.net - price;
     best.term.parts = {box.term.parts[0], curved};
     if (!is_inverted) std::swap(best.term.parts[0], best.term.parts[1]);
+  }
+  // Known solids come first among the curved surfaces, and stand for boxes, too.
+  for (std::uint32_t k = 0; k < space.known.size(); ++k) {
+    if (k == family) continue;
+    const PricedTerm known = best_revolved(space, k, within, costs, best.net + price);
+    if (known.term.parts.empty()) continue;
+    best = {.term = {.parts = {known.term.parts[0], curved}}, .net = known.net - price};
   }
   return best;
 }
@@ -130,7 +143,8 @@ double cost_of(const Term& term, const TermCosts& costs) {
   double leaves = 0;
   for (const TermPart& part : term.parts) {
     const std::size_t planes = part.planes.size();
-    leaves += 1 + (planes > k_free_planes ? costs.plane * static_cast<double>(planes - k_free_planes) : 0.0);
+    leaves += (part.is_known ? costs.known : 1.0) +
+              (planes > k_free_planes ? costs.plane * static_cast<double>(planes - k_free_planes) : 0.0);
   }
   return leaves * costs.leaf;
 }
@@ -159,10 +173,15 @@ PricedTerm best_revolved(const TermSpace& space, std::uint32_t family, std::span
   std::vector<double> sums(revolved.bins.count(), 0.0);
   for (std::size_t k = 0; k < revolved.inside.size(); ++k) sums[revolved.bin_of_inside[k]] += gains[revolved.inside[k]];
   const BestInterval best = max_sum_interval(sums);
-  if (!(best.sum - costs.leaf > least)) return {.term = {}, .net = least};
-  const TermPart part{
-      .kind = PartKind::revolved, .family = family, .ranges = {best.range}, .planes = {}, .is_inverted = false};
-  return {.term = {.parts = {part}}, .net = best.sum - costs.leaf};
+  const double price = price_of(revolved, costs);
+  if (!(best.sum - price > least)) return {.term = {}, .net = least};
+  const TermPart part{.kind = PartKind::revolved,
+                      .family = family,
+                      .ranges = {best.range},
+                      .planes = {},
+                      .is_inverted = false,
+                      .is_known = revolved.known.has_value()};
+  return {.term = {.parts = {part}}, .net = best.sum - price};
 }
 
 PricedTerm best_polytope(const TermSpace& space, std::span<const double> gains, const TermCosts& costs, double least) {
@@ -189,7 +208,8 @@ PricedTerm best_term(const TermSpace& space, std::span<const double> gains, cons
   const auto take = [&best](PricedTerm&& found) {
     if (!found.term.parts.empty() && found.net > best.net) best = std::move(found);
   };
-  if (most - costs.leaf <= least) return best;
+  const double least_price = (space.known.empty() ? 1.0 : std::min(costs.known, 1.0)) * costs.leaf;
+  if (most - least_price <= least) return best;
   for (std::uint32_t r = 0; r < space.revolved.size(); ++r) take(best_revolved(space, r, gains, costs, best.net));
   for (std::uint32_t b = 0; b < space.boxes.size(); ++b) take(best_box(space, b, gains, costs, best.net));
   if (kinds == TermKinds::simple) return best;

@@ -10,6 +10,7 @@ namespace cloud2csg {
 struct TermCosts {
   double leaf = 0.001;
   double plane = 0.2;  ///< of a polytope's beyond the sixth, in leaves
+  double known = 0.5;  ///< of a solid that is known, in leaves: of two terms that are as good it is preferred
 };
 
 enum class TermKinds : std::uint8_t {
@@ -26,8 +27,9 @@ struct PricedTerm {
 [[nodiscard]] double cost_of(const Term& term, const TermCosts& costs);
 
 /// The term that gains most: over the boxes of all frames, the curved surfaces and their intervals, what a curved
-/// surface's inside or outside has in common with a box, exactly; over polytopes by greedy cuts around the places that
-/// gain most. `gains` has one a place: what is gained by having it in the term. Only terms whose net is above `least`.
+/// surface's inside or outside has in common with a box or a known solid, exactly; over polytopes by greedy cuts around
+/// the places that gain most. `gains` has one a place: what is gained by having it in the term. Only terms whose net is
+/// above `least`.
 [[nodiscard]] PricedTerm best_term(const TermSpace& space, std::span<const double> gains, const TermCosts& costs,
                                    double least = 0, TermKinds kinds = TermKinds::all);
 

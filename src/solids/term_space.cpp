@@ -45,6 +45,17 @@ void bin_places(BoxFamily& boxes, const Points& positions) {
   }
 }
 
+void bin_places(RevolvedFamily& revolved, const Primitive& known, const Points& positions) {
+  const std::vector<double> distances = signed_distance(known, positions);
+  revolved.is_inside.assign(positions.size(), 0);
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    if (!(distances[i] < 0)) continue;
+    revolved.is_inside[i] = 1;
+    revolved.inside.push_back(i);
+    revolved.bin_of_inside.push_back(0);
+  }
+}
+
 void bin_places(RevolvedFamily& revolved, const Points& positions) {
   const Surface& surface = revolved.surface;
   revolved.is_inside.resize(positions.size());
@@ -66,7 +77,15 @@ void bin_places(PlaneFamily& plane, const Points& positions) {
 
 void bin_places(TermSpace& space, const Points& positions) {
   for (BoxFamily& boxes : space.boxes) bin_places(boxes, positions);
-  for (RevolvedFamily& revolved : space.revolved) bin_places(revolved, positions);
+  for (RevolvedFamily& revolved : space.revolved) {
+    revolved.inside.clear();
+    revolved.bin_of_inside.clear();
+    if (revolved.known) {
+      bin_places(revolved, space.known[*revolved.known], positions);
+    } else {
+      bin_places(revolved, positions);
+    }
+  }
   for (PlaneFamily& plane : space.planes) bin_places(plane, positions);
 }
 
@@ -93,48 +112,39 @@ std::vector<std::uint32_t> kinds_of_places(const TermSpace& space, std::size_t c
   return kind_of;
 }
 
-}  // namespace
-
-std::uint16_t Bins::bin_of(double value) const {
-  const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);
-  return static_cast<std::uint16_t>(above - (edges.begin() + 1));
-}
-
-TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                          const LabelledPlaces& places, double distance_tolerance) {
-  const AlignedBox box = bounds_of(cloud.positions);
-  const double diagonal = box.diagonal().norm();
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(k_margin * diagonal);
-  const Eigen::Vector3d slack = Eigen::Vector3d::Constant(k_part_margin * diagonal);
-  TermSpace space;
-  space.part_bounds = AlignedBox(box.min() - slack, box.max() + slack);
-  space.bounds = AlignedBox(box.min() - margin, box.max() + margin);
-  const EdgeRules rules{.bounds = space.bounds,
-                        .plane_tolerance = distance_tolerance,
-                        .derived_tolerance = std::max(2 * distance_tolerance, k_derived_share * diagonal)};
+std::vector<BoxFamily> box_families(std::span<const DetectedSurface> surfaces, const EdgeRules& rules) {
+  std::vector<BoxFamily> families;
   for (const Eigen::Matrix3d& axes : orthogonal_frames(surfaces)) {
-    BoxFamily& boxes = space.boxes.emplace_back();
+    BoxFamily& boxes = families.emplace_back();
     boxes.axes = axes;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       boxes.bins[axis] = edges_along(axes.col(static_cast<Eigen::Index>(axis)), surfaces, rules);
     }
   }
-  for (const DetectedSurface& detected : surfaces) {
-    if (detected.surface.type == SurfaceType::plane) continue;
-    const bool has_ends = detected.surface.type == SurfaceType::cylinder || detected.surface.type == SurfaceType::cone;
-    space.revolved.push_back({.surface = detected.surface,
-                              .bins = has_ends ? edges_along_axis(detected, cloud.positions, surfaces, rules)
-                                               : Bins{.edges = {-diagonal, diagonal}},
-                              .inside = {},
-                              .bin_of_inside = {},
-                              .is_inside = {}});
-  }
-  space.planes = distinct_planes(surfaces, distance_tolerance, box.center());
-  for (const PlaneFamily& plane : space.planes) {
-    space.has_oblique_planes = space.has_oblique_planes || !is_of_frame(plane, space.boxes[0]);
-  }
-  if (!space.has_oblique_planes) space.planes.clear();
+  return families;
+}
 
+std::vector<RevolvedFamily> known_families(std::size_t count, double diagonal) {
+  std::vector<RevolvedFamily> families(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    families[k].known = static_cast<PrimitiveIndex>(k);
+    families[k].bins.edges = {-diagonal, diagonal};
+  }
+  return families;
+}
+
+RevolvedFamily revolved_family(const DetectedSurface& detected, const Points& positions,
+                               std::span<const DetectedSurface> surfaces, const EdgeRules& rules, double diagonal) {
+  RevolvedFamily family;
+  family.surface = detected.surface;
+  const bool has_ends = detected.surface.type == SurfaceType::cylinder || detected.surface.type == SurfaceType::cone;
+  family.bins =
+      has_ends ? edges_along_axis(detected, positions, surfaces, rules) : Bins{.edges = {-diagonal, diagonal}};
+  return family;
+}
+
+/// Bins the places, of those that nothing tells apart one.
+void join_places(TermSpace& space, const LabelledPlaces& places) {
   bin_places(space, places.positions);
   const std::vector<std::uint32_t> kinds = kinds_of_places(space, places.positions.size());
   Points first_of_kind;
@@ -145,11 +155,43 @@ TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurfa
     }
     space.pulls[kinds[i]] += places.weights[i];
   }
-  for (RevolvedFamily& revolved : space.revolved) {
-    revolved.inside.clear();
-    revolved.bin_of_inside.clear();
-  }
   bin_places(space, first_of_kind);
+}
+
+}  // namespace
+
+std::uint16_t Bins::bin_of(double value) const {
+  const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);
+  return static_cast<std::uint16_t>(above - (edges.begin() + 1));
+}
+
+TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
+                          const LabelledPlaces& places, double distance_tolerance, const KnownTerms& known) {
+  const AlignedBox box = bounds_of(cloud.positions);
+  const double diagonal = box.diagonal().norm();
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(k_margin * diagonal);
+  const Eigen::Vector3d slack = Eigen::Vector3d::Constant(k_part_margin * diagonal);
+  TermSpace space;
+  space.known = known.solids;
+  space.part_bounds = AlignedBox(box.min() - slack, box.max() + slack);
+  space.bounds = AlignedBox(box.min() - margin, box.max() + margin);
+  const EdgeRules rules{.bounds = space.bounds,
+                        .plane_tolerance = distance_tolerance,
+                        .derived_tolerance = std::max(2 * distance_tolerance, k_derived_share * diagonal)};
+  std::vector<DetectedSurface> all = known.surfaces;
+  all.insert(all.end(), surfaces.begin(), surfaces.end());
+  space.boxes = box_families(all, rules);
+  space.revolved = known_families(known.solids.size(), diagonal);
+  for (const DetectedSurface& detected : surfaces) {
+    if (detected.surface.type == SurfaceType::plane) continue;
+    space.revolved.push_back(revolved_family(detected, cloud.positions, all, rules, diagonal));
+  }
+  space.planes = distinct_planes(all, distance_tolerance, box.center());
+  for (const PlaneFamily& plane : space.planes) {
+    space.has_oblique_planes = space.has_oblique_planes || !is_of_frame(plane, space.boxes[0]);
+  }
+  if (!space.has_oblique_planes) space.planes.clear();
+  join_places(space, places);
   return space;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,9 +28,11 @@ struct BoxFamily {
   std::array<std::vector<std::uint16_t>, 3> bin_of_place = {};
 };
 
-/// A curved surface, and where a cylinder or cone may be cut along its axis; the others have one bin.
+/// A curved surface, and where a cylinder or cone may be cut along its axis; the others have one bin. Or a solid that
+/// is known, of any shape, which is as it is and has one bin, too.
 struct RevolvedFamily {
   Surface surface = {};
+  std::optional<PrimitiveIndex> known = {};  ///< of the space's known solids; then the surface has no meaning
   Bins bins = {};
   std::vector<std::uint32_t> inside = {};         ///< places, ascending
   std::vector<std::uint16_t> bin_of_inside = {};  ///< one for each of these
@@ -45,6 +48,7 @@ struct PlaneFamily {
 
 /// Places that all surfaces tell nothing apart are one, with the sum of their weights.
 struct TermSpace {
+  PrimitiveSet known = {};         ///< solids that are there to be used
   std::vector<double> pulls = {};  ///< by place: what there is to gain by having it in the solid
   std::vector<BoxFamily> boxes = {};
   std::vector<RevolvedFamily> revolved = {};
@@ -56,9 +60,16 @@ struct TermSpace {
   [[nodiscard]] std::size_t size() const { return pulls.size(); }
 };
 
+/// Solids that are known, and their surfaces: at these others may end.
+struct KnownTerms {
+  PrimitiveSet solids = {};
+  std::vector<DetectedSurface> surfaces = {};
+};
+
 /// O(places x surfaces).
 [[nodiscard]] TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                                        const LabelledPlaces& places, double distance_tolerance);
+                                        const LabelledPlaces& places, double distance_tolerance,
+                                        const KnownTerms& known = {});
 
 enum class PartKind : std::uint8_t { box, revolved, polytope };
 
@@ -69,6 +80,7 @@ struct TermPart {
   std::array<BinRange, 3> ranges = {};     ///< of a box; the first is the range along the axis of a curved surface
   std::vector<std::uint32_t> planes = {};  ///< of a polytope: 2 * plane, plus 1 for what is above it
   bool is_inverted = false;                ///< what is outside of it
+  bool is_known = false;                   ///< a known solid
   friend bool operator==(const TermPart&, const TermPart&) = default;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -201,19 +202,25 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
   return revolved_solid(surface, has_ends ? span(0, surface.position, surface.axis) : Span{0, 1});
 }
 
-/// Adds solids, each once.
+/// Adds solids, each once, to those that are known.
 class SolidWriter {
  public:
+  explicit SolidWriter(PrimitiveSet known) : solids(std::move(known)), known_(solids.size()) {
+    for (const Primitive& solid : solids) ids_.insert(solid.id);
+  }
+
   PrimitiveIndex add(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
+    if (part.is_known) return *space.revolved[part.family].known;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const auto& [known, known_overshoots, known_adds] = parts_[i];
       TermPart plain = part;
       plain.is_inverted = known.is_inverted;
-      if (plain == known && overshoots == known_overshoots && adds == known_adds) return static_cast<PrimitiveIndex>(i);
+      if (plain == known && overshoots == known_overshoots && adds == known_adds) {
+        return static_cast<PrimitiveIndex>(known_ + i);
+      }
     }
     Primitive solid = solid_of(space, part, overshoots, adds);
-    const std::string type(type_name(solid.shape));
-    solid.id = fmt::format("{}_{}", type, numbers_[type]++);
+    solid.id = new_id(std::string(type_name(solid.shape)));
     solids.push_back(std::move(solid));
     parts_.emplace_back(part, overshoots, adds);
     return static_cast<PrimitiveIndex>(solids.size() - 1);
@@ -222,6 +229,17 @@ class SolidWriter {
   PrimitiveSet solids;
 
  private:
+  /// By type and number, and of no known solid.
+  std::string new_id(const std::string& type) {
+    std::string id;
+    do {
+      id = fmt::format("{}_{}", type, numbers_[type]++);
+    } while (ids_.contains(id));
+    return id;
+  }
+
+  std::size_t known_;
+  std::set<std::string> ids_;  // of known solids
   std::vector<std::tuple<TermPart, Overshoots, bool>> parts_;
   std::map<std::string, std::size_t> numbers_;
 };
@@ -233,7 +251,7 @@ WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
   for (std::size_t r = 0; r < list.size(); ++r) {
     for (std::size_t p = 0; p < list[r].term.parts.size(); ++p) ends.draw_in(r, p);
   }
-  SolidWriter writer;
+  SolidWriter writer(space.known);
   std::vector<CsgTree> terms;
   for (std::size_t r = 0; r < list.size(); ++r) {
     std::optional<CsgTree> term;

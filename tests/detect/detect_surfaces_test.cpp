@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 #include <stop_token>
 
@@ -178,6 +179,37 @@ TEST(DetectSurfaces, CanBeStopped) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW((void)detect(cloud_of(test::plate_with_holes(), 0), 0, {}, {.stop = stop.get_token()}), Cancelled);
+}
+
+TEST(DetectSurfaces, PassesOverWhatIsSmallerOrLargerThanAllowed) {
+  const PointCloud cloud = cloud_of(test::plate_with_holes(), 0.005);
+  // Holes of radius 0.3, 0.4 and 0.5 in a plate of 4 x 3 x 0.6.
+  const Detection large_only = detect(cloud, 0.005, {.least_size = 0.35});
+  EXPECT_EQ(count_of(large_only, SurfaceType::plane), 6U);
+  ASSERT_EQ(count_of(large_only, SurfaceType::cylinder), 2U);
+  EXPECT_NEAR(by_radius(large_only, SurfaceType::cylinder)[0].radius, 0.4, 0.01);
+  EXPECT_GT(large_only.unexplained, 0U);
+
+  // Top and bottom reach over 5.
+  const Detection small_only = detect(cloud, 0.005, {.most_size = 4.5});
+  EXPECT_EQ(count_of(small_only, SurfaceType::plane), 4U);
+  EXPECT_EQ(count_of(small_only, SurfaceType::cylinder), 3U);
+  for (const DetectedSurface& found : small_only.surfaces) {
+    EXPECT_TRUE(found.surface.type != SurfaceType::plane || std::abs(found.surface.axis.z()) < 0.1);
+  }
+}
+
+TEST(DetectSurfaces, LimitsOfSizeAreInTheUnitsOfTheCloud) {
+  PointCloud cloud = cloud_of(test::plate_with_holes(), 0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.positions.set(i, 50 * cloud.positions[i]);
+  EXPECT_EQ(count_of(detect(cloud, 0, {.least_size = 17.5}), SurfaceType::cylinder), 2U);
+}
+
+TEST(DetectSurfaces, RefusesLimitsThatLeaveNothing) {
+  const PointCloud cloud = cloud_of(test::plate_with_holes(), 0, 500);
+  EXPECT_THROW((void)detect(cloud, 0, {.least_size = 2, .most_size = 1}), Error);
+  EXPECT_THROW((void)detect(cloud, 0, {.least_size = 0}), Error);
+  EXPECT_THROW((void)detect(cloud, 0, {.most_size = std::numeric_limits<double>::infinity()}), Error);
 }
 
 }  // namespace

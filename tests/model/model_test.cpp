@@ -48,7 +48,8 @@ TEST(ReadModel, ReadsEveryType) {
     {"id": "polytope", "type": "polytope",
      "planes": [[-1, 0, 0, 1], [0, -1, 0, 1], [0, 0, -1, 1], [0.6, 0.8, 0, 1], [0, 0, 1, 2]]},
     {"id": "expression", "type": "expression", "distance": "x^2 + y^2 + z^2 - 1",
-     "bounds": [[-1, -1, -1], [1, 1, 1.5]], "displacement": {"frequency": 3}})"));
+     "bounds": [[-1, -1, -1], [1, 1, 1.5]], "displacement": {"frequency": 3},
+     "evidence": {"points": 1234, "rms": 0.0012}})"));
   ASSERT_EQ(model.primitives.size(), 8U);
   for (const Primitive& primitive : model.primitives) EXPECT_EQ(primitive.id, type_name(primitive.shape));
   EXPECT_EQ(model.primitives[0].pose.position, Eigen::Vector3d(1, 2, 3));
@@ -60,6 +61,9 @@ TEST(ReadModel, ReadsEveryType) {
   EXPECT_EQ(std::get<Polytope>(model.primitives[6].shape).planes[4].offset, 2);
   EXPECT_EQ(std::get<Expression>(model.primitives[7].shape).bounds.max().z(), 1.5);
   EXPECT_EQ(model.primitives[7].displacement.value().frequency, 3);
+  EXPECT_FALSE(model.primitives[6].evidence.has_value());
+  EXPECT_EQ(model.primitives[7].evidence.value().points, 1234U);
+  EXPECT_EQ(model.primitives[7].evidence.value().rms, 0.0012);
   EXPECT_FALSE(model.tree.has_value());
 }
 
@@ -171,6 +175,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "a pose has the fields position, quaternion"},
         Refused{"LongQuaternion", sphere(R"("radius": 1, "pose": {"quaternion": [1, 1, 0, 0]})"),
                 "/primitives/0/pose/quaternion", "expected unit length, found a length of 1.41421356"},
+        Refused{"NegativePoints", sphere(R"("radius": 1, "evidence": {"points": -1, "rms": 0})"),
+                "/primitives/0/evidence/points", "a whole number >= 0"},
+        Refused{"PartOfAPoint", sphere(R"("radius": 1, "evidence": {"points": 1.5, "rms": 0})"),
+                "/primitives/0/evidence/points", "a whole number >= 0"},
+        Refused{"EvidenceWithoutRms", sphere(R"("radius": 1, "evidence": {"points": 1})"), "/primitives/0/evidence/rms",
+                "a number >= 0, found nothing"},
+        Refused{"UnknownInEvidence", sphere(R"("radius": 1, "evidence": {"points": 1, "rms": 0, "mean": 0})"),
+                "/primitives/0/evidence/mean", "fields points, rms"},
         Refused{"EmptyId", with_primitives(R"({"id": "", "type": "half_space"})"), "/primitives/0/id",
                 "at least one character"},
         Refused{"SameIdTwice",
@@ -274,6 +286,9 @@ Primitive any_primitive(std::size_t index) {
   for (char& c : id) c = static_cast<char>(std::max(c & 0x7f, 1));  // text without NUL
   Primitive primitive{.id = id, .shape = test::any_shape(), .pose = test::any_pose(100)};
   if (*rc::gen::arbitrary<bool>()) primitive.displacement = Displacement{.frequency = test::any_double(1, 9)};
+  if (*rc::gen::arbitrary<bool>()) {
+    primitive.evidence = Evidence{.points = *rc::gen::arbitrary<std::uint32_t>(), .rms = test::any_double(0, 9)};
+  }
   return primitive;
 }
 
@@ -320,6 +335,10 @@ RC_GTEST_PROP(WriteModel, ReadsBackToTheLastBit, ()) {
     RC_ASSERT(again.primitives[i].id == model.primitives[i].id);
     RC_ASSERT(again.primitives[i].shape.index() == model.primitives[i].shape.index());
     RC_ASSERT(again.primitives[i].pose.position == model.primitives[i].pose.position);
+    RC_ASSERT(again.primitives[i].evidence.has_value() == model.primitives[i].evidence.has_value());
+    if (!model.primitives[i].evidence) continue;
+    RC_ASSERT(again.primitives[i].evidence->points == model.primitives[i].evidence->points);
+    RC_ASSERT(again.primitives[i].evidence->rms == model.primitives[i].evidence->rms);
   }
 }
 

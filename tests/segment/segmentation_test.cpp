@@ -178,5 +178,60 @@ TEST(SegmentPoints, ReportsEachPrimitive) {
   EXPECT_EQ(done, (std::vector<std::size_t>{1, 2, 3, 4}));
 }
 
+TEST(DealPoints, GivesEachPointToTheNearestOnly) {
+  // Walls that are nearer to each other than the tolerance.
+  const PrimitiveSet primitives{test::placed("inner", Sphere{1.0}, {0, 0, 0}),
+                                test::placed("outer", Sphere{1.02}, {0, 0, 0})};
+  PointCloud cloud;
+  RandomStream random(7);
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d direction = test::random_direction(random);
+    cloud.positions.push_back((i % 3 == 0 ? 1.018 : 1.003) * direction);
+    cloud.normals.push_back(i % 2 == 0 ? direction : Eigen::Vector3d(-direction));
+  }
+  const std::vector<SurfacePoints> dealt = deal_points(cloud, primitives, {.distance = 0.05, .cosine = 0.9});
+  ASSERT_EQ(dealt.size(), 2U);
+  EXPECT_EQ(dealt[0].points.size(), 2000U);
+  EXPECT_EQ(dealt[1].points.size(), 1000U);
+  EXPECT_NEAR(dealt[0].rms, 0.003, 1e-9);
+  EXPECT_NEAR(dealt[1].rms, 0.002, 1e-9);
+  for (const std::uint32_t i : dealt[1].points) EXPECT_EQ(i % 3, 0U);
+}
+
+TEST(DealPoints, MeasuresTheDistanceFromFreeForms) {
+  // Its field is 5 times the distance from a sphere, and so is that of its waves.
+  Primitive form = test::placed("form", Expression{"5 * (sqrt(x^2 + y^2 + z^2) - 1)", {}}, {0, 0, 0});
+  std::get<Expression>(form.shape).bounds = AlignedBox(Eigen::Vector3d(-2, -2, -2), Eigen::Vector3d(2, 2, 2));
+  const PrimitiveSet plain{test::placed("ball", Sphere{1.0}, {0, 0, 0})};
+  const PointCloud cloud = sample_surface(CsgTree::leaf(0), plain, {.count = 5000, .noise = 0.01, .seed = 2});
+  const SurfacePoints own = deal_points(cloud, {form}, {.distance = 0.05, .cosine = 0.9})[0];
+  EXPECT_EQ(own.points.size(), cloud.size());
+  EXPECT_NEAR(own.rms, 0.01, 0.0005);
+}
+
+TEST(DealPoints, LeavesOutWhatIsFarOrTurned) {
+  const PrimitiveSet primitives{test::placed("ball", Sphere{1.0}, {0, 0, 0})};
+  PointCloud cloud;
+  for (const double radius : {1.0, 1.2}) {
+    cloud.positions.push_back({radius, 0, 0});
+    cloud.normals.push_back({1, 0, 0});
+  }
+  cloud.positions.push_back({0, 1, 0});
+  cloud.normals.push_back({1, 0, 0});
+  EXPECT_EQ(deal_points(cloud, primitives, {.distance = 0.1, .cosine = 0.9})[0].points, std::vector<std::uint32_t>{0});
+}
+
+TEST(DealPoints, IsTheSameOnAnyNumberOfThreads) {
+  const PrimitiveSet primitives = boxes_and_spheres();
+  const PointCloud cloud = sample_surface(all_united(primitives), primitives, {.count = 5000, .noise = 0.01});
+  const SegmentationTolerances tolerances{.distance = 0.03, .cosine = 0.9};
+  const auto one = deal_points(cloud, primitives, tolerances, {.threads = 1});
+  const auto two = deal_points(cloud, primitives, tolerances, {.threads = 2});
+  for (std::size_t p = 0; p < primitives.size(); ++p) {
+    EXPECT_EQ(one[p].points, two[p].points);
+    EXPECT_EQ(one[p].rms, two[p].rms);
+  }
+}
+
 }  // namespace
 }  // namespace cloud2csg

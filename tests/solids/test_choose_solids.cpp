@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "cloud2csg/error.hpp"
@@ -180,6 +182,97 @@ TEST(ChooseSolids, IsCancelledBeforeTheSearch) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW((void)choose_solids(part.cloud, part.surfaces, quick(), {.stop = stop.get_token()}), Cancelled);
+}
+
+/// What lies on the known solids is theirs, and no surface.
+SolidChoice choose_beside(const Part& part, const PrimitiveSet& known) {
+  const std::vector<SurfacePoints> own = deal_points(part.cloud, known, {.distance = 0.01, .cosine = 0.8});
+  std::vector<KnownSolid> solids;
+  std::vector<std::uint8_t> is_taken(part.cloud.size(), 0);
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    solids.push_back({.solid = known[k], .own = own[k]});
+    for (const std::uint32_t i : own[k].points) is_taken[i] = 1;
+  }
+  std::vector<DetectedSurface> rest = part.surfaces;
+  for (DetectedSurface& surface : rest) {
+    std::erase_if(surface.points, [&](std::uint32_t i) { return is_taken[i] != 0; });
+  }
+  std::erase_if(rest, [](const DetectedSurface& surface) { return surface.points.size() < 12; });
+  return choose_solids(part.cloud, rest, solids, quick(), {});
+}
+
+TEST(ChooseSolids, KeepsWhatIsKnownAndFindsTheRest) {
+  const Part part = plate_with_holes();
+  const PrimitiveSet known{part.solids[0], part.solids[3]};
+  const SolidChoice choice = choose_beside(part, known);
+  ASSERT_EQ(choice.solids.size(), 4U) << to_text(choice.tree, choice.solids);
+  EXPECT_EQ(choice.solids[0].id, "plate");
+  EXPECT_EQ(choice.solids[1].id, "c");
+  EXPECT_EQ(choice.solids[1].pose.position, known[1].pose.position);
+  EXPECT_EQ(std::get<Cylinder>(choice.solids[1].shape).height, 2);
+  EXPECT_EQ(leaf_count(choice.tree), 4U);
+  EXPECT_EQ(primitives_of(choice.tree).size(), 4U);
+  EXPECT_GE(iou_with(part, choice), 0.99);
+}
+
+TEST(ChooseSolids, NeedsNoSurfaceWhereAllIsKnown) {
+  const Part part = plate_with_holes();
+  const SolidChoice choice = choose_beside(part, part.solids);
+  EXPECT_EQ(choice.solids.size(), 4U);
+  EXPECT_EQ(leaf_count(choice.tree), 4U);
+  EXPECT_LT(choice.disagreement, 0.01);
+}
+
+TEST(ChooseSolids, GivesNewSolidsIdsOfTheirOwn) {
+  const Part part = plate_with_holes();
+  Primitive known = part.solids[1];
+  known.id = "cylinder_0";
+  const SolidChoice choice = choose_beside(part, {known});
+  std::set<std::string> ids;
+  for (const Primitive& solid : choice.solids) EXPECT_TRUE(ids.insert(solid.id).second) << solid.id;
+  EXPECT_EQ(leaf_count(choice.tree), 4U);
+}
+
+TEST(ChooseSolids, DoesWithoutWhatIsNotThere) {
+  const Part part = plate_with_holes();
+  const PrimitiveSet known{test::placed("ghost", Sphere{0.3}, {5, 5, 5}),
+                           test::placed("wrong", Box{{2, 2, 2}}, {1, 1, 1})};
+  const SolidChoice choice = choose_beside(part, known);
+  const std::vector<PrimitiveIndex> used = primitives_of(choice.tree);
+  EXPECT_EQ(std::ranges::count_if(used, [](PrimitiveIndex p) { return p < 2; }), 0);
+  EXPECT_GE(iou_with(part, choice), 0.98);
+}
+
+TEST(ChooseSolids, TakesKnownFreeForms) {
+  Primitive wavy = test::placed("wavy", Box{{2, 2, 1}}, {0, 0, 0});
+  wavy.displacement = Displacement{.frequency = 2.5};
+  const Part part = part_of({wavy, test::placed("hole", Cylinder{0.4, 4}, {0, 0, 0})}, "wavy - hole");
+  const SolidChoice choice = choose_beside(part, {part.solids[0]});
+  EXPECT_EQ(leaf_count(choice.tree), 2U) << to_text(choice.tree, choice.solids);
+  EXPECT_GE(iou_with(part, choice), 0.99);
+}
+
+TEST(ChooseSolids, RefusesGivenValuesThatAreNone) {
+  const Part part = plate_with_holes();
+  SolidOptions options = quick();
+  options.regularity.radii = {1, -1};
+  EXPECT_THROW((void)choose_solids(part.cloud, part.surfaces, options), Error);
+  options = quick();
+  options.regularity.axes = {Eigen::Vector3d::Zero()};
+  EXPECT_THROW((void)choose_solids(part.cloud, part.surfaces, options), Error);
+}
+
+TEST(ChooseSolids, TakesGivenRadiiWithoutSnapping) {
+  const Part part = plate_with_holes();
+  SolidOptions options = quick();
+  options.regularity = {.snap = false, .radii = {0.405, 0.602}, .given_tolerance = 0.02};
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, options);
+  std::set<double> radii;
+  for (const Primitive& solid : choice.solids) {
+    if (const auto* hole = std::get_if<Cylinder>(&solid.shape)) radii.insert(hole->radius);
+  }
+  EXPECT_EQ(radii, (std::set<double>{0.405, 0.602}));
+  for (const Snap& snap : choice.snaps) EXPECT_EQ(snap.kind, RegularityKind::given_radius);
 }
 
 }  // namespace

@@ -72,5 +72,38 @@ TEST(Regularise, SharesOffsetsAxesAndRadiiByTheirPoints) {
   EXPECT_EQ(surface(2).radius, surface(3).radius);
 }
 
+TEST(Regularise, MakesOthersLikeWhatIsFixed) {
+  const Eigen::Vector3d oblique = turned(k_z, k_x, 0.6);
+  // Those that are fixed have the fewest points.
+  const std::vector<DetectedSurface> surfaces{
+      with_points(test::plane_at({0, 0, 1}, k_z), 1000), with_points(test::plane_at({0, 0, 1.004}, oblique), 10),
+      with_points(cylinder_at({0.003, 0, 0}, k_z, 1.005), 1000), with_points(cylinder_at({0, 0, 0}, oblique, 1), 10)};
+  const FixedValues all{.direction = true, .position = true, .radius = true};
+  const std::vector<FixedValues> fixed{{}, all, {}, all};
+  const RegularSurfaces regular = regularise(surfaces, k_tolerance, 1.0, fixed);
+  const auto surface = [&](std::size_t i) { return regular.surfaces[i].surface; };
+  for (const std::size_t i : {1U, 3U}) {
+    EXPECT_EQ(surface(i).axis, surfaces[i].surface.axis);
+    EXPECT_EQ(surface(i).position, surfaces[i].surface.position);
+    EXPECT_EQ(surface(i).radius, surfaces[i].surface.radius);
+  }
+  EXPECT_NEAR(surface(0).axis.dot(oblique), 1, 1e-12);
+  EXPECT_NEAR(oblique.dot(surface(0).position - surface(1).position), 0, 1e-12);
+  EXPECT_NEAR(surface(2).axis.cross(oblique).norm(), 0, 1e-12);
+  EXPECT_NEAR(oblique.cross(surface(2).position).norm(), 0, 1e-12);
+  EXPECT_EQ(surface(2).radius, 1);
+  for (const Snap& snap : regular.snaps) EXPECT_EQ(snap.surface % 2, 0U);
+}
+
+TEST(Regularise, MovesNoTwoFixedSurfacesTogether) {
+  const std::vector<DetectedSurface> surfaces{with_points(test::plane_at({0, 0, 1}, k_z), 100),
+                                              with_points(test::plane_at({0, 0, 1.005}, turned(k_z, k_x, 0.5)), 100)};
+  const std::vector<FixedValues> fixed(2, {.direction = true, .position = true, .radius = true});
+  const RegularSurfaces regular = regularise(surfaces, k_tolerance, 1.0, fixed);
+  EXPECT_TRUE(regular.snaps.empty());
+  EXPECT_EQ(regular.surfaces[1].surface.axis, surfaces[1].surface.axis);
+  EXPECT_EQ(regular.surfaces[1].surface.position, surfaces[1].surface.position);
+}
+
 }  // namespace
 }  // namespace cloud2csg

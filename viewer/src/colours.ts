@@ -23,7 +23,7 @@ function fromOklch(lightness: number, chroma: number, hue: number): Rgb {
   }) as Rgb;
 }
 
-/** Neighbours in the list get hues far apart; lightness changes too, for those who see few hues. */
+/** As primitive_colour() of the library in the light theme. Neighbours in the list get hues far apart; lightness changes too, for those who see few hues. */
 export function primitiveColour(index: number, dark: boolean): Rgb {
   const hue = (28 + index * 137.508) % 360;
   const step = [0, 0.1, -0.07][index % 3];

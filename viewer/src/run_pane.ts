@@ -67,6 +67,8 @@ const k_snapped: Record<string, string> = {
   offset: "planes made coplanar",
   axis: "axes made coaxial",
   radius: "radii made equal",
+  "given direction": "directions made one of those given",
+  "given radius": "radii made one of those given",
 };
 
 function regularities(report: Report): HTMLElement {
@@ -74,7 +76,7 @@ function regularities(report: Report): HTMLElement {
   const kinds = [...new Set(report.text.snaps.map((snap) => snap.kind))];
   for (const kind of kinds) {
     const changes = report.text.snaps.filter((snap) => snap.kind === kind).map((snap) => snap.change);
-    const unit = kind === "direction" ? "°" : "";
+    const unit = kind.endsWith("direction") ? "°" : "";
     items.push(
       h(
         "li",
