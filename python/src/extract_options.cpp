@@ -125,6 +125,9 @@ void bind_finding(py::module_& module) {
              "... and how far its normal may be turned from the surface's.")
       .field("least_points", &DetectOptions::least_points,
              "Surfaces with fewer points are left alone. None: one in 2000 of the cloud's, and at least 30.")
+      .field("least_size", &DetectOptions::least_size,
+             "The least radius of a surface, and diagonal of its points, in the cloud's units. None: no limit.")
+      .field("most_size", &DetectOptions::most_size, "... and the most. None: no limit.")
       .field("seed", &DetectOptions::seed, "The same seed gives the same surfaces, for any number of threads.")
       .finish();
   OptionClass<PlaceOptions>(module, "PlaceOptions", "Places by which solids are judged.")
@@ -136,7 +139,18 @@ void bind_finding(py::module_& module) {
       .field("seed", &PlaceOptions::seed, "Of the places.")
       .finish();
   OptionClass<RegularityOptions>(module, "RegularityOptions", "What of the surfaces is made regular.")
-      .field("snap", &RegularityOptions::snap, "False: surfaces are taken as they are.")
+      .field("snap", &RegularityOptions::snap,
+             "False: surfaces are not made like each other. What is given holds all the same.")
+      .field(
+          "radii", &RegularityOptions::radii,
+          "Radii that spheres, cylinders and tori are known to have: each takes the nearest that its points bear out.")
+      .vectors("axes", &RegularityOptions::axes,
+               "Directions that planes, cylinders, cones and tori are known to have, of any length, either way round.")
+      .field("axis_tolerance_deg", &RegularityOptions::axis_tolerance_deg,
+             "Surfaces nearer than this to a given direction take it.")
+      .field("given_tolerance", &RegularityOptions::given_tolerance,
+             "How much farther the points may be from a surface with given values, in the cloud's units. None: the "
+             "tolerance of the detection.")
       .field("angle_tolerance_deg", &RegularityOptions::angle_tolerance_deg,
              "Directions nearer than this to each other, or to an orthogonal one, are made so.")
       .field("distance_tolerance", &RegularityOptions::distance_tolerance,
@@ -151,6 +165,9 @@ void bind_finding(py::module_& module) {
       .nested("regularity", &SolidOptions::regularity, "What of the surfaces is made regular.")
       .finish();
   OptionClass<ReconstructOptions>(module, "ReconstructOptions", "From a raw cloud to a tree: see extract().")
+      .field(
+          "known", &ReconstructOptions::known,
+          "Primitives that are known, which are kept as they are: only what the points show beyond them is detected.")
       .nested("preparation", &ReconstructOptions::preparation, "The cloud is cleaned and oriented.")
       .nested("detection", &ReconstructOptions::detection, "Surfaces are detected.")
       .field("close_unseen_side", &ReconstructOptions::close_unseen_side,

@@ -4,6 +4,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -13,6 +15,8 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "cloud2csg/primitive.hpp"
 
 namespace cloud2csg::python {
 
@@ -24,6 +28,7 @@ std::string python_type() {
   if constexpr (std::is_floating_point_v<Value>) return "float";
   if constexpr (std::is_same_v<Value, std::string>) return "str";
   if constexpr (std::is_same_v<Value, std::vector<double>>) return "list[float]";
+  if constexpr (std::is_same_v<Value, PrimitiveSet>) return "list[Primitive]";
   return {};
 }
 template <typename Value>
@@ -46,6 +51,25 @@ class OptionClass {
     return add(
         name, type_of<Value>(), [member](const Options& options) { return options.*member; },
         [member](Options& options, const pybind11::handle& value) { options.*member = value.cast<Value>(); }, doc);
+  }
+
+  /// Vectors, which are lists of three numbers each in Python.
+  OptionClass& vectors(const char* name, std::vector<Eigen::Vector3d> Options::*member, const std::string& doc) {
+    using Rows = std::vector<std::array<double, 3>>;
+    return add(
+        name, "list[list[float]]",
+        [member](const Options& options) {
+          Rows rows;
+          rows.reserve((options.*member).size());
+          for (const Eigen::Vector3d& v : options.*member) rows.push_back({v.x(), v.y(), v.z()});
+          return rows;
+        },
+        [member](Options& options, const pybind11::handle& value) {
+          std::vector<Eigen::Vector3d> vectors;
+          for (const auto& [x, y, z] : value.cast<Rows>()) vectors.emplace_back(x, y, z);
+          options.*member = std::move(vectors);
+        },
+        doc);
   }
 
   /// Options within options: the attribute is a reference, so that options.search.seed = 3 works.
