@@ -13,10 +13,10 @@ namespace cloud2csg {
 /// fair hand-held scanner on a part that reflects well.
 struct ScanOptions {
   std::size_t views = 20;  ///< sensors, spread evenly over a sphere around the part (Fibonacci), turned by the seed
-  /// The part lies on a table, its z axis upright: sensors are above its middle only, and nothing is seen of the side on
-  /// which it lies.
+  /// The part lies on a table, its z axis upright: sensors are above its middle only, and nothing is seen of the side
+  /// on which it lies.
   bool on_table = false;
-  double distance = 3.0;   ///< from the middle of the part to each sensor, in bounding radii; more than 1
+  double distance = 3.0;         ///< from the middle of the part to each sensor, in bounding radii; more than 1
   double field_of_view_deg = 0;  ///< width and height of what a view sees, up to 170; 0 = just the bounding sphere
   std::size_t count = 100'000;   ///< points in all; used when angular_step_deg is 0
   double angular_step_deg = 0;   ///< between neighbouring rays of a view; 0 = what gives `count` points

@@ -21,7 +21,7 @@ constexpr double k_same_cosine = 0.999;                   ///< directions nearer
 constexpr double k_most_doubt = 0.8;  ///< layers that are neither there nor not, as a share of those that are missing
 /// Of sensors: cosine between the way to them and the side's normal. Below, they could see nothing of it.
 constexpr double k_sensor_cosine = 0.1;
-constexpr int k_window = 2;  ///< bins on each side of one that its layers are counted in
+constexpr std::size_t k_window = 2;  ///< bins on each side of one that its layers are counted in
 
 /// Points with areas, and what is left of the sum of their normals.
 struct Surroundings {
@@ -75,7 +75,7 @@ class LayerCount {
     Points local(all.cloud.size());
     for (std::size_t i = 0; i < local.size(); ++i) local.set(i, pose_.to_local(all.cloud.positions[i]));
     const AlignedBox box = bounds_of(local);
-    origin_ = box.min().head<2>() - Vector2d::Constant(k_window * step_);
+    origin_ = box.min().head<2>() - Vector2d::Constant(static_cast<double>(k_window) * step_);
     width_ = bins_along(box.sizes().x());
     height_ = bins_along(box.sizes().y());
     sums_.assign((width_ + 1) * (height_ + 1), 0.0);
@@ -142,8 +142,8 @@ class LayerCount {
   [[nodiscard]] double sum(std::size_t x, std::size_t y) const { return sums_[y * (width_ + 1) + x]; }
   /// How many more layers around a bin face up than down.
   [[nodiscard]] double layers(std::size_t x, std::size_t y) const {
-    const std::size_t left = x - std::min<std::size_t>(x, k_window), right = std::min(x + k_window + 1, width_);
-    const std::size_t low = y - std::min<std::size_t>(y, k_window), high = std::min(y + k_window + 1, height_);
+    const std::size_t left = x - std::min(x, k_window), right = std::min(x + k_window + 1, width_);
+    const std::size_t low = y - std::min(y, k_window), high = std::min(y + k_window + 1, height_);
     const double area = step_ * step_ * static_cast<double>((right - left) * (high - low));
     return (sum(right, high) - sum(left, high) - sum(right, low) + sum(left, low)) / area;
   }
