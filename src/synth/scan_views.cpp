@@ -98,7 +98,8 @@ Raster make_raster(const ScanOptions& options, double step) {
 
 Ray ray_of(const View& view, const Raster& raster, std::size_t index) {
   const double column = static_cast<double>(index % raster.side) + view.column_shift;
-  const double row = static_cast<double>(index / raster.side) + view.row_shift;
+  const std::size_t whole_rows = index / raster.side;
+  const double row = static_cast<double>(whole_rows) + view.row_shift;
   const double half_angle = 0.5 * static_cast<double>(raster.side) * raster.step;
   const double azimuth = column * raster.step - half_angle;
   const double elevation = row * raster.step - half_angle;
