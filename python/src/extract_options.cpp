@@ -141,6 +141,11 @@ void bind_finding(py::module_& module) {
   OptionClass<RegularityOptions>(module, "RegularityOptions", "What of the surfaces is made regular.")
       .field("snap", &RegularityOptions::snap,
              "False: surfaces are not made like each other. What is given holds all the same.")
+      .field("angle_tolerance_deg", &RegularityOptions::angle_tolerance_deg,
+             "Directions nearer than this to each other, or to an orthogonal one, are made so.")
+      .field("distance_tolerance", &RegularityOptions::distance_tolerance,
+             "Offsets, centres and radii nearer than this are made equal, in the cloud's units. None: twice the noise, "
+             "at least 1e-3 of the diagonal.")
       .field(
           "radii", &RegularityOptions::radii,
           "Radii that spheres, cylinders and tori are known to have: each takes the nearest that its points bear out.")
@@ -151,11 +156,6 @@ void bind_finding(py::module_& module) {
       .field("given_tolerance", &RegularityOptions::given_tolerance,
              "How much farther the points may be from a surface with given values, in the cloud's units. None: the "
              "tolerance of the detection.")
-      .field("angle_tolerance_deg", &RegularityOptions::angle_tolerance_deg,
-             "Directions nearer than this to each other, or to an orthogonal one, are made so.")
-      .field("distance_tolerance", &RegularityOptions::distance_tolerance,
-             "Offsets, centres and radii nearer than this are made equal, in the cloud's units. None: twice the noise, "
-             "at least 1e-3 of the diagonal.")
       .finish();
   OptionClass<SolidOptions>(module, "SolidOptions", "How solids are chosen that the surfaces bound.")
       .field("leaf_cost", &SolidOptions::leaf_cost, "What a leaf more must gain, as a share of volume and surface.")
