@@ -10,6 +10,7 @@
 
 #include "base/stopwatch.hpp"
 #include "base/without_stop.hpp"
+#include "cloud/append.hpp"
 #include "cloud2csg/error.hpp"
 #include "pipeline/bare_surface.hpp"
 #include "pipeline/detect_rest.hpp"
@@ -137,12 +138,6 @@ void check_surface(const CsgTree& tree, const FoundPrimitives& found, const RunC
                   100 * bare->share, bare->middle.x(), bare->middle.y(), bare->middle.z()));
 }
 
-void append(Points& points, const Points& more) {
-  points.x.insert(points.x.end(), more.x.begin(), more.x.end());
-  points.y.insert(points.y.end(), more.y.begin(), more.y.end());
-  points.z.insert(points.z.end(), more.z.begin(), more.z.end());
-}
-
 /// Adds the side, if one is missing, to the cloud and to the surfaces.
 void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   PointCloud& cloud = found.prepared.cloud;
@@ -152,9 +147,7 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   plane.points.resize(side->points.size());
   std::iota(plane.points.begin(), plane.points.end(), static_cast<std::uint32_t>(cloud.size()));
   found.added_points = side->points.size();
-  append(cloud.positions, side->points.positions);
-  append(cloud.normals, side->points.normals);
-  append(cloud.sensor_positions, side->points.sensor_positions);
+  append(cloud, side->points);
   found.detection.surfaces.push_back(std::move(plane));
   found.warnings.push_back(fmt::format(
       "the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed by a plane",

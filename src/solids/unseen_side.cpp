@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "base/random.hpp"
@@ -93,6 +92,7 @@ class LayerCount {
     }
     foot_ = low_end(std::move(local.z));
     mean_height_ = heights / layers - foot_;
+    judge();
   }
 
   [[nodiscard]] double step() const { return step_; }
@@ -102,16 +102,6 @@ class LayerCount {
   [[nodiscard]] double score() const { return missing_ - doubt_; }
   [[nodiscard]] double doubt() const { return doubt_; }
   [[nodiscard]] double missing() const { return missing_; }
-
-  void judge() {
-    for (std::size_t y = 0; y < height_; ++y) {
-      for (std::size_t x = 0; x < width_; ++x) {
-        const double found = layers(x, y);
-        missing_ += found > 0.5 ? 1 : 0;
-        doubt_ += std::abs(found - (found > 0.5 ? 1 : 0));
-      }
-    }
-  }
 
   /// A place in each bin where a layer is missing, at the height of the lowest points. In the world.
   [[nodiscard]] Points missing_places() const {
@@ -129,6 +119,15 @@ class LayerCount {
   }
 
  private:
+  void judge() {
+    for (std::size_t y = 0; y < height_; ++y) {
+      for (std::size_t x = 0; x < width_; ++x) {
+        const double found = layers(x, y);
+        missing_ += found > 0.5 ? 1 : 0;
+        doubt_ += std::abs(found - (found > 0.5 ? 1 : 0));
+      }
+    }
+  }
   [[nodiscard]] std::size_t bins_along(double extent) const {
     return static_cast<std::size_t>(extent / step_) + 2 * k_window + 1;
   }
@@ -168,7 +167,6 @@ std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud, std::span<co
   for (const Vector3d& up : directions_up(all, surfaces)) {
     run.throw_if_stopped();
     LayerCount count(all, up);
-    count.judge();
     if (count.mean_height() < 3 * scale.spacing + 6 * scale.noise) continue;  // a sheet
     if (!best || count.score() > best->score()) {
       best = std::move(count);

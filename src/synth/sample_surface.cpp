@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "cloud/append.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "synth/surface_sampler.hpp"
@@ -38,12 +39,6 @@ void check_options(const SampleOptions& options) {
   if (options.count == 0 && options.density == 0.0) fail_option("count", "expected at least one point");
 }
 
-void append(Points& points, const Points& more) {
-  points.x.insert(points.x.end(), more.x.begin(), more.x.end());
-  points.y.insert(points.y.end(), more.y.begin(), more.y.end());
-  points.z.insert(points.z.end(), more.z.begin(), more.z.end());
-}
-
 /// How many batches to make next. Which batches these are at the end does not depend on it.
 std::size_t next_round(std::size_t batches_done, std::size_t points, std::size_t wanted) {
   if (points == 0 || wanted == 0) return std::min(batches_done + 1, k_most_blind_batches);
@@ -69,8 +64,7 @@ PointCloud draw_points(const SurfaceSampler& sampler, const SampleOptions& optio
     if (wanted > 0 && cloud.size() >= wanted) break;
     const std::size_t round = next_round(batches_done, cloud.size(), wanted);
     for (const PointCloud& batch : sampler.batches(batches_done, round, run)) {
-      append(cloud.positions, batch.positions);
-      append(cloud.normals, batch.normals);
+      append(cloud, batch);
     }
     batches_done += round;
     run.report("sample", std::min(cloud.size(), wanted), wanted, "points");

@@ -10,6 +10,7 @@
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "cloud/append.hpp"
 #include "cloud2csg/error.hpp"
 #include "synth/ray_caster.hpp"
 #include "synth/scan_defects.hpp"
@@ -55,18 +56,6 @@ void check_options(const ScanOptions& options) {
   check_probability("mixed_pixels", options.mixed_pixels);
   check_size("rotation_deg", options.rotation_deg);
   check_size("translation", options.translation);
-}
-
-void append(Points& points, const Points& more) {
-  points.x.insert(points.x.end(), more.x.begin(), more.x.end());
-  points.y.insert(points.y.end(), more.y.begin(), more.y.end());
-  points.z.insert(points.z.end(), more.z.begin(), more.z.end());
-}
-
-void append(PointCloud& cloud, const PointCloud& more) {
-  append(cloud.positions, more.positions);
-  append(cloud.normals, more.normals);
-  append(cloud.sensor_positions, more.sensor_positions);
 }
 
 [[noreturn]] void refuse_invisible() {
