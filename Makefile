@@ -4,7 +4,7 @@ PREFIX ?= /usr/local
 # make instructions RECORD=1 writes what it counts to bench/instructions.csv.
 RECORD ?=
 
-.PHONY: help demo test bench instructions format lint install deb clean dependencies configure
+.PHONY: help demo test bench instructions format lint analyze install deb clean dependencies configure
 .DEFAULT_GOAL := help
 
 help: ## What there is to make
@@ -32,6 +32,10 @@ format: ## Format all sources in place
 lint: configure ## clang-format and clang-tidy; any finding is an error
 	@scripts/install_dependencies.sh lint
 	@scripts/lint.sh
+
+analyze: configure ## Follow the paths through every source with clang's analyzer: half an hour
+	@scripts/install_dependencies.sh lint
+	@git ls-files 'src/*.cpp' 'apps/*.cpp' 'bench/*.cpp' 'python/*.cpp' | xargs scripts/tidy.py --each build/release
 
 install: configure ## Install program, library and headers under PREFIX
 	@cmake --build --preset release --target all

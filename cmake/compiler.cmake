@@ -23,3 +23,5 @@ if(CLOUD2CSG_SANITIZERS)
   # as with g++; the real instruction sets stay.
   target_compile_definitions(cloud2csg_compiler INTERFACE HWY_BROKEN_EMU128=1)
 endif()
+# For sources whose own speed nobody notices: command line, bindings, tests. They take a third less time to compile.
+set(CLOUD2CSG_BRIEFLY_OPTIMISED $<$<CONFIG:Release>:-O1>)

@@ -1,10 +1,17 @@
 #!/usr/bin/env python3
-"""clang-tidy over sources, on all cores. A source that passed is not looked at again until something that it is made of
-changes: any file that its compilation reads, its flags, the checks or clang-tidy itself. What passed is kept in
-~/.cache/cloud2csg-tidy (or under XDG_CACHE_HOME), a file of size zero each.
+"""clang-tidy over sources, on all cores.
 
-tidy.py BUILD_FOLDER SOURCE...    exit status 1 when anything was found
+Most of its time goes into the headers that sources share, so the sources of a folder are looked at together, as one that
+includes them all; those that cannot be compiled together (names without linkage that meet) are taken apart. What passed
+is not looked at again until something that it is made of changes: any file that its compilation reads, its flags, the
+checks or clang-tidy itself. What passed is kept in ~/.cache/cloud2csg-tidy (or under XDG_CACHE_HOME), a file of size
+zero each.
+
+tidy.py [--each] BUILD_FOLDER SOURCE...    exit status 1 when anything was found
+  --each  every source by itself, with the checks that follow paths through functions (clang-analyzer-*), which look at
+          nothing but main files: about five times slower
 """
+import collections
 import concurrent.futures
 import hashlib
 import json
@@ -15,8 +22,10 @@ import subprocess
 import sys
 import time
 
-TIDY = ["clang-tidy", "-quiet", "-extra-arg=-Wno-unknown-warning-option"]
+MOST_SOURCES = 16
 KEPT_SECONDS = 60 * 24 * 3600
+
+Unit = collections.namedtuple("Unit", ["sources", "flags", "directory"])
 
 
 def run(command, **options):
@@ -36,56 +45,110 @@ def flags_of(command):
     return kept
 
 
-def key_of(common, root, entry):
-    """A hash of all that the findings depend on; None when the preprocessor fails: clang-tidy says why."""
-    flags = flags_of(entry["command"])
-    rule = run(["clang++", *flags, "-Wno-unknown-warning-option", "-M", entry["file"]], cwd=entry["directory"])
-    if rule.returncode != 0:
-        return None
-    key = common.copy()
-    key.update("\0".join(flags).replace(root, "").encode())
-    for name in rule.stdout.decode().split(":", 1)[1].replace("\\\n", " ").split():
-        key.update(name.replace(root, "").encode())
-        key.update(pathlib.Path(entry["directory"], name).read_bytes())
-    return key.hexdigest()
+class Lint:
+    """What is the same for all sources of a run."""
+
+    def __init__(self, build, each):
+        self.root = os.getcwd()
+        self.units = pathlib.Path(build, "tidy").resolve()
+        self.units.mkdir(exist_ok=True)
+        self.checks = [] if each else ["-checks=-clang-analyzer-*,-bugprone-suspicious-include"]
+        self.most_sources = 1 if each else MOST_SOURCES
+        self.passed = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache", "cloud2csg-tidy")
+        self.passed.mkdir(parents=True, exist_ok=True)
+        for old in self.passed.iterdir():
+            if time.time() - old.stat().st_mtime > KEPT_SECONDS:
+                old.unlink()
+        version = run(["clang-tidy", "--version"]).stdout
+        self.common = hashlib.sha256(version + pathlib.Path(".clang-tidy").read_bytes() + str(self.checks).encode())
+
+    def units_of(self, entries):
+        """Sources of one folder with the same flags, together."""
+        together = {}
+        for entry in entries:
+            flags = tuple(flags_of(entry["command"]))
+            alone = "HWY_TARGET_INCLUDE" in pathlib.Path(entry["file"]).read_text()
+            key = entry["file"] if alone else os.path.dirname(entry["file"])
+            together.setdefault((key, flags, entry["directory"]), []).append(entry["file"])
+        units = []
+        for (_, flags, directory), sources in together.items():
+            parts = -(-len(sources) // self.most_sources)
+            units += [Unit(sorted(sources)[part::parts], list(flags), directory) for part in range(parts)]
+        return sorted(units, key=lambda unit: -len(unit.sources))
+
+    def main_source(self, unit):
+        """The one source of a unit, or a new one that includes all."""
+        if len(unit.sources) == 1:
+            return unit.sources[0]
+        text = "".join(f'#include "{source}"\n' for source in unit.sources)
+        path = self.units / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.cpp"
+        if not path.exists():
+            path.write_text(text)
+        return str(path)
+
+    def key_of(self, unit, main):
+        """A hash of all that the findings depend on; None when the preprocessor fails: clang-tidy says why."""
+        rule = run(["clang++", *unit.flags, "-w", "-M", main], cwd=unit.directory)
+        if rule.returncode != 0:
+            return None
+        key = self.common.copy()
+        key.update("\0".join(unit.flags).replace(self.root, "").encode())
+        names = set(rule.stdout.decode().split(":", 1)[1].replace("\\\n", " ").split())
+        for name in sorted(names - {main} if len(unit.sources) > 1 else names):
+            key.update(name.replace(self.root, "").encode())
+            key.update(pathlib.Path(unit.directory, name).read_bytes())
+        return key.hexdigest()
+
+    def parts_of(self, unit, main):
+        """The unit alone when it can be compiled; else what met something in a source before it, and the others."""
+        if len(unit.sources) == 1:
+            return [unit]
+        syntax = run(["clang++", *unit.flags, "-w", "-ferror-limit=0", "-fsyntax-only", main], cwd=unit.directory)
+        if syntax.returncode == 0:
+            return [unit]
+        places = {line.split(":", 1)[0] for line in syntax.stderr.decode().splitlines() if ": error: " in line}
+        second = [source for source in unit.sources if source in places]
+        if not second or len(second) == len(unit.sources):
+            second = unit.sources[1::2]
+        first = [source for source in unit.sources if source not in second]
+        return [unit._replace(sources=first), unit._replace(sources=second)]
+
+    def check(self, unit):
+        """What clang-tidy finds in a unit: (sources with findings, sources that were known to pass, its words)."""
+        main = self.main_source(unit)
+        key = self.key_of(unit, main)
+        if key and (self.passed / key).exists():
+            (self.passed / key).touch()
+            return 0, len(unit.sources), ""
+        parts = self.parts_of(unit, main)
+        if len(parts) > 1:
+            return tuple(first + second for first, second in zip(*map(self.check, parts)))
+        flags = [*unit.flags, "-Wno-unknown-warning-option"]
+        config = f"--config-file={self.root}/.clang-tidy"
+        result = run(["clang-tidy", "-quiet", config, *self.checks, main, "--", *flags], cwd=unit.directory)
+        if result.returncode == 0 and key:
+            (self.passed / key).touch()
+        return int(result.returncode != 0), 0, (result.stdout + result.stderr).decode()
 
 
-def check(build, passed, common, root, entry):
-    """What clang-tidy finds in one source: (whether it passed, whether that was known, its words)."""
-    key = key_of(common, root, entry)
-    if key and (passed / key).exists():
-        (passed / key).touch()
-        return True, True, ""
-    result = run([*TIDY, "-p", build, entry["file"]])
-    if result.returncode == 0 and key:
-        (passed / key).touch()
-    return result.returncode == 0, False, (result.stdout + result.stderr).decode()
-
-
-def main(build, sources):
-    root = os.getcwd()
-    passed = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache", "cloud2csg-tidy")
-    passed.mkdir(parents=True, exist_ok=True)
-    for old in passed.iterdir():
-        if time.time() - old.stat().st_mtime > KEPT_SECONDS:
-            old.unlink()
-    common = hashlib.sha256(run(["clang-tidy", "--version"]).stdout + pathlib.Path(".clang-tidy").read_bytes())
+def main(build, sources, each):
     wanted = {str(pathlib.Path(source).resolve()) for source in sources}
     commands = json.loads(pathlib.Path(build, "compile_commands.json").read_text())
     entries = {entry["file"]: entry for entry in commands if entry["file"] in wanted}
     for missing in sorted(wanted - entries.keys()):
         print(f"tidy: {missing} is not compiled in {build}", file=sys.stderr)
+    lint = Lint(build, each)
     known, failed = 0, len(wanted - entries.keys())
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for right, was_known, words in pool.map(
-                lambda entry: check(build, passed, common, root, entry), entries.values()):
-            known += was_known
-            if not right:
-                failed += 1
+        for with_findings, were_known, words in pool.map(lint.check, lint.units_of(entries.values())):
+            known += were_known
+            failed += with_findings
+            if with_findings:
                 print(words, flush=True)
-    print(f"tidy: {len(entries)} sources, {known} of them known to pass, {failed} with findings")
+    print(f"tidy: {len(entries)} sources, {known} of them known to pass, {failed} groups with findings")
     return 1 if failed else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], sys.argv[2:]))
+    each = sys.argv[1:2] == ["--each"]
+    sys.exit(main(sys.argv[1 + each], sys.argv[2 + each:], each))
