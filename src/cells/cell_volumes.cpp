@@ -7,10 +7,10 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::uint64_t k_stream = 0x766f6c756d65'73;
+constexpr std::uint64_t k_volume_stream = 0x766f6c756d65'73;
 
 Points places_in(const AlignedBox& box, std::size_t count) {
-  RandomStream random(0, k_stream);
+  RandomStream random(0, k_volume_stream);
   Points places;
   places.reserve(count);
   for (std::size_t i = 0; i < count; ++i) places.push_back(random_between(box.min(), box.max(), random));

@@ -9,7 +9,7 @@ namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_directions = 1024;
-constexpr std::uint64_t k_stream = 0x696e66696e697479;
+constexpr std::uint64_t k_infinity_stream = 0x696e66696e697479;
 
 Eigen::Vector3d any_direction(RandomStream& random) {
   for (;;) {
@@ -28,7 +28,7 @@ std::vector<Cell> cells_at_infinity(const PrimitiveSet& primitives) {
   }
   if (half_spaces.empty()) return {Cell()};
   std::vector<Cell> cells;
-  RandomStream random(0, k_stream);
+  RandomStream random(0, k_infinity_stream);
   for (std::size_t i = 0; i < k_directions; ++i) {
     const Eigen::Vector3d direction = any_direction(random);
     Cell& cell = cells.emplace_back();

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t k_stream = 0x7669'6577;
+constexpr std::uint64_t k_view_stream = 0x7669'6577;
 constexpr double k_near_sensors = 0.05;  ///< of the diagonal of the cloud: sensors as near as this see the same
 constexpr std::size_t k_most_views = 256;
 constexpr double k_points_a_cell = 3;  ///< at least, on average over the cells with points
@@ -154,7 +154,7 @@ std::vector<bool> are_seen(const PointCloud& points, const PointCloud& cloud, st
   for_each_index_by_chunks(points.size(), 256, run, [&](std::size_t i) {
     densities[i] = views.density_at(points.positions[i], points.normals[i]);
   });
-  RandomStream random(0, k_stream);
+  RandomStream random(0, k_view_stream);
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = random.uniform() * *middle < densities[i];
   return seen;
 }

@@ -12,7 +12,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::uint64_t k_stream = 0x63656c6c73'00;
+constexpr std::uint64_t k_sample_stream = 0x63656c6c73'00;
 
 /// Moves points onto f = 0 along the gradient and gives them its direction; those that do not get there are left out.
 PointCloud settled(const Primitive& primitive, Points points, double scale) {
@@ -129,7 +129,7 @@ SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, std::span<const A
   const auto draw = [&](std::size_t p) {
     const std::size_t neighbours = std::max<std::size_t>(count_meeting(index, boxes[p], region), 1) - 1;
     const std::size_t samples = std::min(counts.base + counts.a_neighbour * neighbours, counts.most);
-    RandomStream random(0, k_stream, p);
+    RandomStream random(0, k_sample_stream, p);
     // Expressions reach anywhere, and half-spaces are without end.
     const bool is_formula = std::holds_alternative<Expression>(primitives[p].shape);
     const AlignedBox box = (is_formula ? bounds(primitives[p]) : boxes[p]).intersection(grown(region, 1));

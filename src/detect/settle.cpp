@@ -10,7 +10,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::size_t k_sample = 200;  // points that tell whether two surfaces are one
+constexpr std::size_t k_equal_sample = 200;  // points that tell whether two surfaces are one
 constexpr double k_nearly_all = 0.9;
 
 bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, const AgreementLimits& limits,
@@ -22,8 +22,8 @@ bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, 
 std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b, const WorkCloud& cloud,
                                    const AgreementLimits& limits) {
   if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
-  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_sample);
-  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_sample);
+  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_equal_sample);
+  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_equal_sample);
   // Each need not lie on the other, which is only sure where its points are; on one fitted to both they must.
   AgreementLimits wide = limits;
   wide.distance *= 3;
@@ -79,7 +79,7 @@ void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
     return preference(a.surface.type) * a.support > preference(b.surface.type) * b.support;
   });
   for (std::size_t k = surfaces.size(); k-- > 0;) {
-    std::vector<OrientedPoint> left = cloud.some_of(surfaces[k].points, k_sample);
+    std::vector<OrientedPoint> left = cloud.some_of(surfaces[k].points, k_equal_sample);
     const std::size_t count = left.size();
     for (std::size_t other = 0; other < surfaces.size() && !left.empty(); ++other) {
       if (other == k) continue;

@@ -6,7 +6,6 @@
 namespace cloud2csg {
 namespace {
 
-constexpr int k_layer = k_block_cells + 1;
 // In cells: far below what a vertex's position shows, far above the rounding of a distance.
 constexpr double k_root_tolerance = 1e-10;
 constexpr int k_most_steps = 60;

@@ -13,6 +13,8 @@ namespace cloud2csg {
 
 /// Cells along each edge of a block.
 constexpr int k_block_cells = 8;
+/// Corners along each edge of a block.
+constexpr int k_layer = k_block_cells + 1;
 constexpr int k_block_corners = k_block_cells * k_block_cells * k_block_cells;
 /// A block's tree is right this many cells beyond the block as well.
 constexpr int k_block_reach = 2;

@@ -7,7 +7,6 @@ namespace cloud2csg {
 namespace {
 
 constexpr std::uint32_t k_no_cell = std::numeric_limits<std::uint32_t>::max();
-constexpr int k_layer = k_block_cells + 1;
 
 using LayerSigns = std::bitset<std::size_t{k_layer} * k_layer * k_layer>;
 

@@ -14,7 +14,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t k_chunk_points = 512;
 /// Neighbours of a plane: more where the noise is larger than the spacing, as the angle's error is about
 /// 2 noise / (radius sqrt(neighbours)); about three degrees.
 constexpr double k_least_neighbours = 20.0;
@@ -22,9 +21,6 @@ constexpr double k_most_neighbours = 96.0;
 constexpr double k_neighbours_a_noise = 60.0;
 constexpr int k_trials = 16;
 constexpr int k_refinements = 3;
-constexpr double k_noise_tolerance = 3.0;
-/// Of the neighbourhood's radius: the surface of a sphere ten times as large leaves its plane by as much.
-constexpr double k_bend_tolerance = 0.05;
 /// Of the tolerance: less deviation than this and there is one plane only.
 constexpr double k_flat = 0.5;
 constexpr std::uint64_t k_trial_stage = 0x706c'616e'65;  // names its stream of random numbers
@@ -169,13 +165,10 @@ std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTa
                                          const RunContext& run) {
   std::vector<LocalPlane> planes(points.size());
   if (neighbours.width < 3) return planes;
-  for_each_index((points.size() + k_chunk_points - 1) / k_chunk_points, run, [&](std::size_t chunk) {
-    const std::size_t end = std::min(points.size(), (chunk + 1) * k_chunk_points);
-    for (std::size_t i = chunk * k_chunk_points; i < end; ++i) {
-      const double radius = neighbours.distances_of(i).back();
-      planes[i] =
-          fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, k_bend_tolerance * radius));
-    }
+  for_each_index_by_chunks(points.size(), k_chunk_points, run, [&](std::size_t i) {
+    const double radius = neighbours.distances_of(i).back();
+    planes[i] =
+        fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, k_bend_tolerance * radius));
   });
   return planes;
 }

@@ -9,6 +9,11 @@
 
 namespace cloud2csg {
 
+/// A surface leaves a plane that is fitted to it by so much: as many times the noise...
+constexpr double k_noise_tolerance = 3.0;
+/// ...and as much of the distance: a sphere ten times as large as the neighbourhood does.
+constexpr double k_bend_tolerance = 0.05;
+
 /// A plane through the surface near a point.
 struct LocalPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit length, either way round

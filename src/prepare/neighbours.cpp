@@ -6,11 +6,7 @@
 #include "base/parallel.hpp"
 
 namespace cloud2csg {
-namespace {
-
-constexpr std::size_t k_chunk_points = 512;
-
-}  // namespace
+namespace {}  // namespace
 
 CentredPoints centred(PointsView points) {
   const AlignedBox box = bounds_of(points);

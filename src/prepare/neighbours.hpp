@@ -11,6 +11,9 @@
 
 namespace cloud2csg {
 
+/// Points that one task of a loop over a cloud takes.
+constexpr std::size_t k_chunk_points = 512;
+
 /// Points relative to the middle of their box, so that sums of products of coordinates do not cancel far from the
 /// origin.
 struct CentredPoints {

@@ -11,11 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_chunk_points = 512;
 constexpr double k_isolated_spacings = 6.0;
-constexpr double k_noise_tolerance = 3.0;
-/// Of the distance between two points: a surface bends away from its plane by so much.
-constexpr double k_bend_tolerance = 0.05;
 /// A neighbour counts when its plane explains this share of its own neighbours.
 constexpr double k_planar_support = 0.4;
 /// Where there are outliers: the best plane of points by chance has so much more than any.
@@ -88,13 +84,10 @@ std::vector<Verdict> judge_points(const LocalFits& fits, const Scale& scale, Str
   const std::size_t count = fits.points.size();
   std::vector<Verdict> verdicts(count, Verdict::stays);
   if (fits.neighbours.width < k_least_witnesses) return verdicts;
-  for_each_index((count + k_chunk_points - 1) / k_chunk_points, run, [&](std::size_t chunk) {
-    const std::size_t end = std::min(count, (chunk + 1) * k_chunk_points);
-    for (std::size_t i = chunk * k_chunk_points; i < end; ++i) {
-      if (is_on_surface(fits, i, scale.noise, strictness)) continue;
-      const bool is_far = fits.neighbours.distances_of(i)[k_least_witnesses - 1] > k_isolated_spacings * scale.spacing;
-      verdicts[i] = is_far ? Verdict::isolated : Verdict::off_surface;
-    }
+  for_each_index_by_chunks(count, k_chunk_points, run, [&](std::size_t i) {
+    if (is_on_surface(fits, i, scale.noise, strictness)) return;
+    const bool is_far = fits.neighbours.distances_of(i)[k_least_witnesses - 1] > k_isolated_spacings * scale.spacing;
+    verdicts[i] = is_far ? Verdict::isolated : Verdict::off_surface;
   });
   return verdicts;
 }

@@ -18,7 +18,7 @@ constexpr int k_best_turns = 32;
 constexpr std::size_t k_tried_at_once = 12;
 /// Of the gain before: with less a group waits for the next round.
 constexpr double k_still_best = 0.7;
-constexpr int k_sweeps = 12;
+constexpr int k_patch_sweeps = 12;
 /// Of all the weight: a smaller gain is rounding.
 constexpr double k_least_gain = 1e-7;
 constexpr std::uint32_t k_none = UINT32_MAX;
@@ -265,7 +265,7 @@ PatchSigns find_patch_signs(const PatchFields& fields, std::span<const double> w
   Groups groups = GroupBuilder(fields.count, votes).build();
   SignSearch search(fields, weights, votes, groups);
   for (int turn = 0; turn < k_best_turns && search.turn_best(); ++turn) run.throw_if_stopped();
-  for (int sweep = 0; sweep < k_sweeps && search.sweep(); ++sweep) run.throw_if_stopped();
+  for (int sweep = 0; sweep < k_patch_sweeps && search.sweep(); ++sweep) run.throw_if_stopped();
   return {.flipped = search.flipped(), .windings = search.windings(), .body_of = std::move(groups.body_of)};
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_links = 12;
+constexpr std::size_t k_links_a_point = 12;
 constexpr std::size_t k_least_near = 8;  ///< neighbours that tell the area of a point
 constexpr double k_least_cosine = 0.9;
 /// Slope of the step beyond what the bend explains: the error of the normals.
@@ -52,7 +52,7 @@ Patches grow_patches(const Points& places, const Points& normals, const Neighbou
                   .flipped = std::vector<char>(places.size(), 0),
                   .points = {}};
   std::vector<char> is_done(places.size(), 0);
-  const std::size_t links = std::min(k_links, neighbours.width);
+  const std::size_t links = std::min(k_links_a_point, neighbours.width);
   std::vector<std::uint32_t> patch;
   for (std::uint32_t seed = 0; seed < places.size(); ++seed) {
     if (is_done[seed] != 0) continue;

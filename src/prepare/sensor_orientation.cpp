@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "prepare/neighbours.hpp"
 #include "prepare/orientation.hpp"
 
 namespace cloud2csg {
@@ -10,8 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_chunk_points = 512;
-constexpr std::size_t k_links = 12;  ///< neighbours that a point asks
+constexpr std::size_t k_asked = 12;  ///< neighbours that a point asks
 /// Of the angle between normal and line of sight: below, an error of the normal may turn its sign (11 degrees).
 constexpr double k_grazing_cosine = 0.2;
 /// Shares of the neighbours' weight: with less on one side they are of both sides of a wall, and tell nothing.
@@ -38,7 +38,7 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
     signs[i] = sight_cosine(places[i], normals[i], sensors[i]);
     is_grazing[i] = std::abs(signs[i]) < k_grazing_cosine ? 1 : 0;
   }
-  const std::size_t links = std::min(k_links, neighbours.width);
+  const std::size_t links = std::min(k_asked, neighbours.width);
   for (int round = 0; round < k_rounds; ++round) {
     std::vector<double> next = signs;
     for_each_index_by_chunks(places.size(), k_chunk_points, run, [&](std::size_t i) {

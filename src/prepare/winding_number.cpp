@@ -20,7 +20,7 @@ constexpr std::size_t k_area_neighbours = 8;
 constexpr std::size_t k_leaf_points = 8;
 /// Moments stand for points that are this many radii of their group away: more than the paper's 2, as there are no
 /// third moments.
-constexpr double k_far = 2.5;
+constexpr double k_far_radii = 2.5;
 
 }  // namespace
 
@@ -75,7 +75,7 @@ void WindingField::build(std::size_t first, std::size_t count) {
   for (const Dipole& dipole : group) {
     node.strength += dipole.strength;
     node.moment += (dipole.position - middle) * dipole.strength.transpose();
-    const double reach = k_far * (dipole.position - middle).norm() + std::sqrt(dipole.smoothing);
+    const double reach = k_far_radii * (dipole.position - middle).norm() + std::sqrt(dipole.smoothing);
     node.reach_square = std::max(node.reach_square, reach * reach);
   }
   const std::size_t index = nodes_.size();

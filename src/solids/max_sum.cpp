@@ -7,12 +7,6 @@
 namespace cloud2csg {
 namespace {
 
-double positive_sum(std::span<const double> values) {
-  double sum = 0;
-  for (const double value : values) sum += std::max(value, 0.0);
-  return sum;
-}
-
 void add(std::span<double> to, std::span<const double> values) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += values[i];
 }
@@ -86,6 +80,12 @@ class BoxSearch {
 };
 
 }  // namespace
+
+double positive_sum(std::span<const double> values) {
+  double sum = 0;
+  for (const double value : values) sum += std::max(value, 0.0);
+  return sum;
+}
 
 BestInterval max_sum_interval(std::span<const double> values) {
   assert(!values.empty());

@@ -9,6 +9,9 @@
 /// Parts of a grid whose sum is largest.
 namespace cloud2csg {
 
+/// The sum of the values above zero: no part of them has a larger one.
+[[nodiscard]] double positive_sum(std::span<const double> values);
+
 /// Of bins: both ends belong to it.
 struct BinRange {
   std::uint32_t first = 0, last = 0;

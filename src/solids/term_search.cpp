@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "solids/max_sum.hpp"
+
 namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_polytope_seeds = 4;
 constexpr std::size_t k_free_planes = 6;
 constexpr double k_gain_floor = 1e-9;  // less is rounding
-
-double positive_sum(std::span<const double> gains) {
-  double sum = 0;
-  for (const double gain : gains) sum += std::max(gain, 0.0);
-  return sum;
-}
 
 /// What is lost by having all places that are inside.
 double positive_sum_of_losses(const RevolvedFamily& revolved, std::span<const double> gains) {

@@ -8,9 +8,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_cell = 1.2;    ///< from a feature's middle to the next one's
-constexpr double k_margin = 0.5;  ///< around the outermost cells
-constexpr double k_top = 0.25;    ///< half of the panel's thickness
+constexpr double k_panel_cell = 1.2;  ///< from a feature's middle to the next one's
+constexpr double k_margin = 0.5;      ///< around the outermost cells
+constexpr double k_top = 0.25;        ///< half of the panel's thickness
 
 }  // namespace
 
@@ -21,9 +21,9 @@ void build_panel(FamilyBuilder& builder, const FamilyOptions& options) {
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(places))));
   const std::size_t rows = (places + columns - 1) / columns;
   const auto middle_of = [](std::size_t step, std::size_t count) {
-    return k_cell * (static_cast<double>(step) - 0.5 * static_cast<double>(count - 1));
+    return k_panel_cell * (static_cast<double>(step) - 0.5 * static_cast<double>(count - 1));
   };
-  const auto length_of = [](std::size_t count) { return k_cell * static_cast<double>(count) + 2 * k_margin; };
+  const auto length_of = [](std::size_t count) { return k_panel_cell * static_cast<double>(count) + 2 * k_margin; };
   std::vector<CsgTree> solids{
       builder.add(Box{.size = {length_of(columns), length_of(rows), 2 * k_top}}, {.position = Vector3d::Zero()})};
   std::vector<CsgTree> cuts;

@@ -23,7 +23,7 @@ Vector3d normal_vector(RandomStream& random) {
 }
 
 /// Any orientation is as likely as any other.
-Quaterniond random_orientation(RandomStream& random) {
+Quaterniond random_turn(RandomStream& random) {
   const Vector3d imaginary = normal_vector(random);
   const Quaterniond orientation(random.normal(), imaginary.x(), imaginary.y(), imaginary.z());
   return orientation.norm() > 0.0 ? orientation.normalized() : Quaterniond::Identity();
@@ -43,7 +43,7 @@ std::vector<Vector3d> view_directions(const ScanOptions& options) {
   RandomStream random(options.seed, k_turn_stream);
   const Quaterniond turn =
       options.on_table ? Quaterniond(Eigen::AngleAxisd(2.0 * std::numbers::pi * random.uniform(), Vector3d::UnitZ()))
-                       : random_orientation(random);
+                       : random_turn(random);
   const std::size_t steps = options.on_table ? 2 * options.views : options.views;  // the first half is above
   std::vector<Vector3d> directions;
   directions.reserve(options.views);
