@@ -38,53 +38,123 @@ std::size_t sides_of(const TermPart& part) {
   return part.kind == PartKind::box ? 3 : part.kind == PartKind::revolved ? 1 : 0;
 }
 
-/// Draws ends in, and finds those that may overshoot, where the list decides all places as before.
-class Ends {
+void set_term(const TermSpace& space, Rule& rule, const Term& term) {
+  rule.term = term;
+  rule.members = members_of(space, term);
+}
+
+/// Draws the ends of all parts in, where the list decides all places as before.
+class DrawnIn {
  public:
-  Ends(const TermSpace& space, DecisionList& list)
-      : space_(space), list_(list), wanted_(decisions_of(list, space.size())) {}
+  static DecisionList of(const TermSpace& space, DecisionList list) {
+    DrawnIn drawn(space, std::move(list));
+    for (std::size_t r = 0; r < drawn.list_.size(); ++r) {
+      for (std::size_t p = 0; p < drawn.list_[r].term.parts.size(); ++p) drawn.draw_in(r, p);
+    }
+    return std::move(drawn.list_);
+  }
+
+ private:
+  DrawnIn(const TermSpace& space, DecisionList list)
+      : space_(space), list_(std::move(list)), wanted_(decisions_of(list_, space.size())) {}
 
   void draw_in(std::size_t rule, std::size_t part) {
     for (std::size_t side = 0; side < sides_of(list_[rule].term.parts[part]); ++side) {
-      while (try_range(rule, part, side, 1, 0)) {
+      while (try_shorter(rule, part, side, 1, 0)) {
       }
-      while (try_range(rule, part, side, 0, -1)) {
+      while (try_shorter(rule, part, side, 0, 1)) {
       }
     }
   }
 
-  Overshoots overshoots(std::size_t rule, std::size_t part) {
-    Overshoots result{};
+  bool try_shorter(std::size_t rule, std::size_t part, std::size_t side, std::uint32_t at_first,
+                   std::uint32_t at_last) {
     const Term kept = list_[rule].term;
-    for (std::size_t side = 0; side < sides_of(kept.parts[part]); ++side) {
-      result[side][0] = try_range(rule, part, side, -1, 0);
-      result[side][1] = try_range(rule, part, side, 0, 1);
+    Term moved = kept;
+    BinRange& range = moved.parts[part].ranges[side];
+    if (range.first == range.last) return false;
+    range = {range.first + at_first, range.last - at_last};
+    set_term(space_, list_[rule], moved);
+    if (decisions_of(list_, space_.size()) == wanted_) return true;
+    set_term(space_, list_[rule], kept);
+    return false;
+  }
+
+  const TermSpace& space_;
+  DecisionList list_;
+  std::vector<std::uint8_t> wanted_;
+};
+
+/// Finds ends that may lie anywhere in the next bin: whichever of them do, and however far, all places are decided as
+/// before. For that, a place that comes into or out of one rule's term must not depend on this rule, nor come into or
+/// out of another's.
+class FreeEnds {
+ public:
+  /// By rule and part.
+  static std::vector<std::vector<Overshoots>> of(const TermSpace& space, const DecisionList& list) {
+    FreeEnds ends(space, list);
+    std::vector<std::vector<Overshoots>> result;
+    for (std::size_t r = 0; r < list.size(); ++r) {
+      const std::vector<std::uint8_t> is_free = ends.places_that_do_not_depend_on(r);
+      std::vector<Overshoots>& of_parts = result.emplace_back(list[r].term.parts.size());
+      for (std::size_t p = 0; p < of_parts.size(); ++p) {
+        for (std::size_t side = 0; side < sides_of(list[r].term.parts[p]); ++side) {
+          for (std::size_t end = 0; end < 2; ++end) of_parts[p][side][end] = ends.free(r, p, side, end, is_free);
+        }
+      }
     }
-    set_term(rule, kept);
     return result;
   }
 
  private:
-  void set_term(std::size_t rule, const Term& term) {
-    list_[rule].term = term;
-    list_[rule].members = members_of(space_, term);
+  FreeEnds(const TermSpace& space, const DecisionList& list) : space_(space), list_(list), owners_(space.size(), 0) {
+    for (const Rule& rule : list) longest_.push_back(rule.term);
   }
 
-  /// Moves the ends of a range if that changes nothing.
-  bool try_range(std::size_t rule, std::size_t part, std::size_t side, int first_step, int last_step) {
-    const Term kept = list_[rule].term;
-    Term moved = kept;
-    BinRange& range = moved.parts[part].ranges[side];
-    const std::int64_t first = std::int64_t{range.first} + first_step;
-    const std::int64_t last = std::int64_t{range.last} + last_step;
-    if (first < 0 || last >= bins_of(space_, kept.parts[part], side).count() || first > last) return false;
-    range = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
-    const bool grows = first_step < 0 || last_step > 0;
-    if (grows && !reaches_other_places(kept.parts[part], moved.parts[part])) return false;
-    set_term(rule, moved);
-    if (decisions_of(list_, space_.size()) == wanted_) return true;
-    set_term(rule, kept);
-    return false;
+  [[nodiscard]] std::vector<std::uint8_t> places_that_do_not_depend_on(std::size_t rule) const {
+    DecisionList list = list_;
+    list[rule].members.assign(space_.size(), 1);
+    std::vector<std::uint8_t> result = decisions_of(list, space_.size());
+    list[rule].members.assign(space_.size(), 0);
+    const std::vector<std::uint8_t> without = decisions_of(list, space_.size());
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[i] == without[i] ? 1 : 0;
+    return result;
+  }
+
+  bool free(std::size_t rule, std::size_t part, std::size_t side, std::size_t end,
+            const std::vector<std::uint8_t>& is_free) {
+    const TermPart& exact = list_[rule].term.parts[part];
+    const BinRange range = exact.ranges[side];
+    if (end == 0 ? range.first == 0 : range.last + 1 == bins_of(space_, exact, side).count()) return false;
+    TermPart moved = exact;
+    (end == 0 ? moved.ranges[side].first : moved.ranges[side].last) += end == 0 ? -1U : 1U;
+    if (!reaches_other_places(exact, moved)) return false;
+    Term longer = longest_[rule];
+    BinRange& longest = longer.parts[part].ranges[side];
+    (end == 0 ? longest.first : longest.last) += end == 0 ? -1U : 1U;
+    const std::vector<std::uint32_t> changing = places_that_change(list_[rule].term, longer);
+    for (const std::uint32_t i : changing) {
+      if (is_free[i] == 0 || (owners_[i] != 0 && owners_[i] != rule + 1)) return false;
+    }
+    for (const std::uint32_t i : changing) owners_[i] = static_cast<std::uint32_t>(rule + 1);
+    longest_[rule] = std::move(longer);
+    return true;
+  }
+
+  /// Those that are in the term for some lengths of its parts, and for others not.
+  [[nodiscard]] std::vector<std::uint32_t> places_that_change(const Term& exact, const Term& longest) const {
+    Term most = longest;
+    Term least = exact;
+    for (std::size_t p = 0; p < exact.parts.size(); ++p) {
+      if (exact.parts[p].is_inverted) std::swap(most.parts[p], least.parts[p]);
+    }
+    const std::vector<std::uint8_t> in_most = members_of(space_, most);
+    const std::vector<std::uint8_t> in_least = members_of(space_, least);
+    std::vector<std::uint32_t> places;
+    for (std::uint32_t i = 0; i < in_most.size(); ++i) {
+      if (in_most[i] != in_least[i]) places.push_back(i);
+    }
+    return places;
   }
 
   /// Of a bin without places nothing is known.
@@ -95,8 +165,9 @@ class Ends {
   }
 
   const TermSpace& space_;
-  DecisionList& list_;
-  std::vector<std::uint8_t> wanted_;
+  const DecisionList& list_;
+  std::vector<Term> longest_;          ///< by rule, with all free ends a bin farther
+  std::vector<std::uint32_t> owners_;  ///< by place: the rule, from 1, whose term it comes into or out of
 };
 
 struct Span {
@@ -247,18 +318,15 @@ class SolidWriter {
 }  // namespace
 
 WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
-  Ends ends(space, list);
-  for (std::size_t r = 0; r < list.size(); ++r) {
-    for (std::size_t p = 0; p < list[r].term.parts.size(); ++p) ends.draw_in(r, p);
-  }
+  list = DrawnIn::of(space, std::move(list));
+  const std::vector<std::vector<Overshoots>> overshoots = FreeEnds::of(space, list);
   SolidWriter writer(space.known);
   std::vector<CsgTree> terms;
   for (std::size_t r = 0; r < list.size(); ++r) {
     std::optional<CsgTree> term;
     for (std::size_t p = 0; p < list[r].term.parts.size(); ++p) {
       const TermPart part = list[r].term.parts[p];
-      const CsgTree leaf =
-          CsgTree::leaf(writer.add(space, part, ends.overshoots(r, p), list[r].is_in != part.is_inverted));
+      const CsgTree leaf = CsgTree::leaf(writer.add(space, part, overshoots[r][p], list[r].is_in != part.is_inverted));
       term = !term ? leaf : part.is_inverted ? subtract(*term, leaf) : intersect(*term, leaf);
     }
     terms.push_back(*term);

@@ -41,17 +41,28 @@ BinRange any_range(std::uint32_t bins) {
   return {first, *rc::gen::inRange(first, bins)};
 }
 
-Rule any_rule() {
+TermPart any_part(PartKind kind) {
   const TermSpace& space = scene().space;
   TermPart part;
-  part.kind = *rc::gen::element(PartKind::box, PartKind::revolved);
+  part.kind = kind;
   if (part.kind == PartKind::box) {
     for (std::size_t axis = 0; axis < 3; ++axis) part.ranges[axis] = any_range(space.boxes[0].bins[axis].count());
   } else {
     part.ranges[0] = any_range(space.revolved[0].bins.count());
   }
-  Rule rule{.term = {.parts = {part}}, .members = {}, .is_in = *rc::gen::arbitrary<bool>()};
-  rule.members = members_of(space, rule.term);
+  return part;
+}
+
+/// A box, a cylinder, or what one of them has in common with the other or with what is outside of it.
+Rule any_rule() {
+  const PartKind first = *rc::gen::element(PartKind::box, PartKind::revolved);
+  Rule rule{.term = {.parts = {any_part(first)}}, .members = {}, .is_in = *rc::gen::arbitrary<bool>()};
+  if (*rc::gen::arbitrary<bool>()) {
+    TermPart second = any_part(first == PartKind::box ? PartKind::revolved : PartKind::box);
+    second.is_inverted = *rc::gen::arbitrary<bool>();
+    rule.term.parts.push_back(second);
+  }
+  rule.members = members_of(scene().space, rule.term);
   return rule;
 }
 
