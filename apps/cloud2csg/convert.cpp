@@ -18,6 +18,7 @@ struct ConvertCommand {
   std::string model;
   std::vector<std::string> outputs;
   ExportOptions exporting;
+  PictureOptions drawing;
   RunOptions running;
 
   void run(std::stop_token stop) const;
@@ -37,12 +38,13 @@ void ConvertCommand::run(std::stop_token stop) const {
                       .downloads = std::move(added.texts),
                       .warnings = added.warnings};
   naming(model, [&] { add_reports(written, outputs, report, session.run()); });
+  naming(model, [&] { add_pictures(written, outputs, {.model = read}, drawing, session.run()); });
   written.commit();
   for (const std::string& warning : added.warnings) session.display().note("warning: " + warning);
 }
 
 void add_options(CLI::App& app, ConvertCommand& command) {
-  add_file(app, "model", command.model, "Model file")->type_name("MODEL.json");
+  add_file(app, "model", command.model, "Model file: .json, or of OpenSCAD: .scad .csg")->type_name("MODEL");
   add_outputs(app, command.outputs, join_endings(model_endings()));
   app.add_option("--resolution", command.exporting.meshing.resolution,
                  "Meshes (.stl .off .obj): cells along the longest side")
@@ -64,6 +66,7 @@ void add_options(CLI::App& app, ConvertCommand& command) {
       ->type_name("N")
       ->group("Output")
       ->capture_default_str();
+  add_picture_options(app, command.drawing);
   add_run_options(app, command.running);
 }
 
