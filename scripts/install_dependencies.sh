@@ -16,6 +16,7 @@ command -v npm >/dev/null || packages+=(npm)
 case "${1:-}" in
   lint) packages+=(git clang clang-format clang-tidy python3) ;;
   instructions) packages+=(valgrind) ;;
+  reference) packages=(doxygen python3) ;;
 esac
 
 missing=()

@@ -141,9 +141,9 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   add("--picture-width", options.width, "PIXELS", "Width of a .png; 0: a square for the cloud, one for the solid")
       ->transform(whole_number(0, 8192));
   add("--picture-height", options.height, "PIXELS", "Height of a .png")->transform(whole_number(16, 4096));
-  add("--azimuth", options.azimuth_deg, "DEG", "Where the camera of a .png stands: turned from the x axis towards y");
-  add("--elevation", options.elevation_deg, "DEG", "... and raised over the xy plane, -90 to 90")
-      ->check(CLI::Range(-90.0, 90.0));
+  add("--azimuth", options.azimuth_deg, "DEG", "Where the camera of a .png stands: turned from the x axis towards y")
+      ->check(number_from_to(-360, 360));
+  add("--elevation", options.elevation_deg, "DEG", "... and raised over the xy plane")->check(number_from_to(-90, 90));
 }
 
 bool needs_tree(const std::filesystem::path& file) {
