@@ -11,7 +11,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// In samples: a little more than half of the spacing that the points would have, were they spread over the surface of their bounds.
+/// In samples: a little more than half of the spacing that the points would have, were they spread over the surface of
+/// their bounds.
 double disc_radius(const AlignedBox& box, std::size_t points, double step) {
   const Vector3d s = box.sizes();
   const double area = 2 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
@@ -44,10 +45,13 @@ Samples draw_cloud(const PointCloud& cloud, std::span<const Colour> colours, con
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vector3d place = cloud.positions[i] - view.corner;
     const double depth = place.dot(view.forward);
-    // Points that face away are seen from behind: through gaps, or on an open surface.
+    // Points that face away are seen from behind, through gaps or on an open surface: pale, so that both sides of the
+    // solid can be told apart.
     const Vector3d normal = cloud.has_normals() ? cloud.normals[i] : Vector3d(-view.forward);
-    const Vector3d facing = normal.dot(view.forward) > 0 ? Vector3d(-normal) : normal;
-    const auto haze = static_cast<float>(0.25 * std::clamp((depth - nearest) / depth_of_box, 0.0, 1.0));
+    const bool is_behind = normal.dot(view.forward) > 0;
+    const Vector3d facing = is_behind ? Vector3d(-normal) : normal;
+    const double far = std::clamp((depth - nearest) / depth_of_box, 0.0, 1.0);
+    const auto haze = static_cast<float>(is_behind ? 0.7 : 0.25 * far);
     const Vector3f colour = brightness(facing, view) * (colours.empty() ? plain : linear_colour(colours[i]));
     draw_disc(samples, view, place.dot(view.right) / view.step, -place.dot(view.up) / view.step, radius,
               {.depth = static_cast<float>(depth), .colour = (1 - haze) * colour + Vector3f::Constant(haze)});

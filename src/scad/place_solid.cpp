@@ -208,7 +208,7 @@ std::variant<Polytope, Misfit> faceted_frustum(double radius_bottom, double radi
     const Vector3d outward(std::cos(angle), std::sin(angle), 0);
     corners.emplace_back(radius_bottom * outward - 0.5 * height * Vector3d::UnitZ());
     corners.emplace_back(radius_top * outward + 0.5 * height * Vector3d::UnitZ());
-    const auto bottom = static_cast<std::size_t>(2 * i);
+    const std::size_t bottom = 2 * static_cast<std::size_t>(i);
     const std::size_t next = (bottom + 2) % (2 * static_cast<std::size_t>(facets));
     faces.push_back({bottom, next, next + 1, bottom + 1});
     faces[0].insert(faces[0].begin(), bottom);
