@@ -83,6 +83,7 @@ void DetectCommand::check_files() const {
   files.push_back(cloud);
   if (!primitives.empty()) files.push_back(primitives);
   check_distinct(files);
+  validate(drawing);
 }
 
 void DetectCommand::run(std::stop_token stop) const {

@@ -173,6 +173,7 @@ std::vector<std::string> ExtractCommand::check_files() const {
   all.push_back(cloud);
   if (!primitives.empty()) all.push_back(primitives);
   check_distinct(all);
+  validate(drawing);
   return written;
 }
 

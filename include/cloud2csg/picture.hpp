@@ -28,7 +28,7 @@ struct Scene {
 };
 
 struct PictureOptions {
-  int width = 0;  ///< pixels; 0: so many that each half is a square
+  int width = 0;  ///< pixels, 4096 at most; 0: so many that each half is a square. In all at most 4 million
   int height = 600;
   /// Where the camera stands, seen from the middle: turned from the x axis towards y, then raised over the xy plane.
   double azimuth_deg = -60, elevation_deg = 25;

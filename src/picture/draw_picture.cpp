@@ -20,7 +20,9 @@ namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_oversampling = 3;
-constexpr int k_most_pixels = 8192;  // along a side
+constexpr int k_longest_side = 4096;
+// In all: samples and what rays meet take half a kilobyte a pixel.
+constexpr double k_most_pixels = 4e6;
 
 std::uint8_t byte_of(float linear) {
   return static_cast<std::uint8_t>(std::lround(255.0F * std::pow(std::clamp(linear, 0.0F, 1.0F), 1 / 2.2F)));
@@ -86,11 +88,13 @@ void validate(const PictureOptions& options) {
     throw Error(
         {.file = {}, .where = field, .expected = fmt::format("expected {}, found {}", expected, found), .remedy = {}});
   };
-  const std::string pixels = fmt::format("16 to {} pixels", k_most_pixels);
-  require(options.width == 0 || (options.width >= 16 && options.width <= k_most_pixels), "width", pixels,
-          options.width);
-  require(options.height >= 16 && options.height <= k_most_pixels / 2, "height",
-          fmt::format("16 to {} pixels", k_most_pixels / 2), options.height);
+  const std::string pixels = fmt::format("16 to {} pixels", k_longest_side);
+  const auto is_side = [](int side) { return side >= 16 && side <= k_longest_side; };
+  require(options.width == 0 || is_side(options.width), "width", pixels, options.width);
+  require(is_side(options.height), "height", pixels, options.height);
+  const double width = options.width > 0 ? options.width : 2.0 * options.height;
+  require(width * options.height <= k_most_pixels, "height",
+          fmt::format("at most {:.0f} pixels with this width", k_most_pixels / width), options.height);
   require(std::isfinite(options.azimuth_deg), "azimuth_deg", "a finite number", options.azimuth_deg);
   require(std::abs(options.elevation_deg) <= 90, "elevation_deg", "-90 to 90 degrees", options.elevation_deg);
   require(options.resolution >= 4 && options.resolution <= 4096, "resolution", "4 to 4096 cells", options.resolution);
@@ -116,11 +120,11 @@ Image draw_picture(const Scene& scene, const PictureOptions& options, const RunC
   AlignedBox box;
   if (!mesh.triangles.empty()) box.extend(bounds_of(mesh.vertices));
   if (has_cloud) box.extend(main_box(*scene.cloud));
-  if (box.isEmpty()) {
+  const int panes = (has_cloud ? 1 : 0) + (scene.model.tree ? 1 : 0);
+  if (panes == 0 || box.isEmpty()) {
     throw Error(
         {.file = {}, .where = {}, .expected = "expected a cloud or a solid to draw, found neither", .remedy = {}});
   }
-  const int panes = (has_cloud ? 1 : 0) + (scene.model.tree ? 1 : 0);
   Image image{.width = options.width > 0 ? options.width : panes * options.height, .height = options.height};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   Pane pane{.begin = 0, .width = image.width / panes};

@@ -36,6 +36,12 @@ TEST_F(Pictures, AreWrittenByConvertExtractAndDetect) {
   EXPECT_EQ(size_of_png(read_file(path("points.png"))), std::pair(100U, 64U));
 }
 
+TEST_F(Pictures, TooManyPixelsAreRefusedBeforeTheWork) {
+  expect_failure(
+      run({"convert", shipped("m2.json"), "-o", path("m2.png"), "--picture-width", "4000", "--picture-height", "2000"}),
+      1, {"height: expected at most 1000 pixels"});
+}
+
 TEST_F(Pictures, NeedASolid) {
   const std::string primitives = file("p.json", R"({"format": "cloud2csg", "version": 1, "primitives": []})");
   expect_failure(run({"convert", primitives, "-o", path("p.png")}), 1, {"p.json", "tree"});
