@@ -4,7 +4,7 @@ PREFIX ?= /usr/local
 # make instructions RECORD=1 writes what it counts to bench/instructions.csv.
 RECORD ?=
 
-.PHONY: help demo test bench instructions format lint analyze install deb clean dependencies configure
+.PHONY: help demo test bench instructions format lint analyze reference install deb clean dependencies configure
 .DEFAULT_GOAL := help
 
 help: ## What there is to make
@@ -24,6 +24,10 @@ bench: configure ## Print the figures of speed and recovery (docs/performance.md
 
 instructions: configure ## Count the instructions of each step; fails when one takes many more than recorded
 	@scripts/instructions.sh $(if $(RECORD),record)
+
+reference: ## Write the C++ and Python references to build/reference
+	@scripts/install_dependencies.sh reference
+	@scripts/reference.sh
 
 format: ## Format all sources in place
 	@scripts/install_dependencies.sh lint

@@ -6,7 +6,7 @@ packages=(
   g++ make cmake ninja-build pkg-config ccache
   libeigen3-dev libtbb-dev libhwy-dev libboost-dev libboost-graph-dev libccd-dev libmuparser-dev libassimp-dev
   libceres-dev libembree-dev libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtomlplusplus-dev libfmt-dev
-  libocct-data-exchange-dev zlib1g-dev libmeshoptimizer-dev libcpp-httplib-dev
+  libocct-data-exchange-dev zlib1g-dev libpng-dev libmeshoptimizer-dev libcpp-httplib-dev
   pybind11-dev python3-dev python3-numpy python3-pytest
   libgtest-dev librapidcheck-dev libbenchmark-dev openscad gnuplot-nox chromium groff-base zsh fish
 )
@@ -16,6 +16,7 @@ command -v npm >/dev/null || packages+=(npm)
 case "${1:-}" in
   lint) packages+=(git clang clang-format clang-tidy python3) ;;
   instructions) packages+=(valgrind) ;;
+  reference) packages=(doxygen python3) ;;
 esac
 
 missing=()

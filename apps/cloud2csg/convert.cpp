@@ -18,6 +18,7 @@ struct ConvertCommand {
   std::string model;
   std::vector<std::string> outputs;
   ExportOptions exporting;
+  PictureOptions drawing;
   RunOptions running;
 
   void run(std::stop_token stop) const;
@@ -26,6 +27,7 @@ struct ConvertCommand {
 void ConvertCommand::run(std::stop_token stop) const {
   for (const std::string& file : outputs) check_output(file, model_endings());
   check_distinct(outputs);
+  validate(drawing);
   Session session(running, std::move(stop));
   const Model read = read_model(model);
   if (std::any_of(outputs.begin(), outputs.end(), needs_tree)) (void)tree_of(read, model);
@@ -37,12 +39,13 @@ void ConvertCommand::run(std::stop_token stop) const {
                       .downloads = std::move(added.texts),
                       .warnings = added.warnings};
   naming(model, [&] { add_reports(written, outputs, report, session.run()); });
+  naming(model, [&] { add_pictures(written, outputs, {.model = read}, drawing, session.run()); });
   written.commit();
   for (const std::string& warning : added.warnings) session.display().note("warning: " + warning);
 }
 
 void add_options(CLI::App& app, ConvertCommand& command) {
-  add_file(app, "model", command.model, "Model file")->type_name("MODEL.json");
+  add_file(app, "model", command.model, "Model file: .json, or of OpenSCAD: .scad .csg")->type_name("MODEL");
   add_outputs(app, command.outputs, join_endings(model_endings()));
   app.add_option("--resolution", command.exporting.meshing.resolution,
                  "Meshes (.stl .off .obj): cells along the longest side")
@@ -64,6 +67,7 @@ void add_options(CLI::App& app, ConvertCommand& command) {
       ->type_name("N")
       ->group("Output")
       ->capture_default_str();
+  add_picture_options(app, command.drawing);
   add_run_options(app, command.running);
 }
 

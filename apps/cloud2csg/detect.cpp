@@ -21,7 +21,7 @@
 namespace cloud2csg::app {
 namespace {
 
-constexpr std::array<std::string_view, 2> k_endings{".json", ".ply"};
+constexpr std::array<std::string_view, 3> k_endings{".json", ".ply", ".png"};
 
 struct DetectCommand {
   std::string cloud;
@@ -30,6 +30,7 @@ struct DetectCommand {
   std::vector<std::string> outputs;
   RawArguments raw;
   std::uint64_t seed = 1;
+  PictureOptions drawing;
   RunOptions running;
 
   void run(std::stop_token stop) const;
@@ -82,6 +83,7 @@ void DetectCommand::check_files() const {
   files.push_back(cloud);
   if (!primitives.empty()) files.push_back(primitives);
   check_distinct(files);
+  validate(drawing);
 }
 
 void DetectCommand::run(std::stop_token stop) const {
@@ -103,7 +105,9 @@ void DetectCommand::run(std::stop_token stop) const {
                     .description = fmt::format("found by cloud2csg {} in {}, whose points lie on:\n{}",
                                                CLOUD2CSG_VERSION, cloud, table)};
   OutputSet written;
+  add_pictures(written, outputs, {.cloud = found.prepared.cloud, .colours = colours_of(found)}, drawing, session.run());
   for (const std::string& file : outputs) {
+    if (is_picture(file)) continue;
     written.add(file, [&](const std::filesystem::path& path) {
       if (lower_ending(file) == ".json") {
         write_model(path, model);
@@ -137,13 +141,14 @@ void add_options(CLI::App& app, DetectCommand& command) {
   app.add_flag("--detect-rest", command.detect_rest, "As in extract; here it is so whenever --primitives is given")
       ->needs(primitives)
       ->group("Input");
-  add_outputs(app, command.outputs, "the solids (.json), or the points in the colours of their solids (.ply)");
+  add_outputs(app, command.outputs, "the solids (.json), or the points in the colours of their solids (.ply, .png)");
   app.add_option("--seed", command.seed, "Same seed, same primitives, whatever the threads")
       ->transform(whole_number_from(0))
       ->type_name("S")
       ->group("Finding primitives")
       ->capture_default_str();
   add_raw_arguments(app, command.raw, "Finding primitives");
+  add_picture_options(app, command.drawing);
   add_run_options(app, command.running);
 }
 

@@ -47,6 +47,7 @@ struct ExtractCommand {
   bool refine = false;
   ExtractArguments arguments;
   RawArguments raw;
+  PictureOptions drawing;
   RunOptions running;
   std::vector<ReportParameter> parameters;  // options, for reports
 
@@ -59,6 +60,7 @@ struct ExtractCommand {
   [[nodiscard]] PointCloud unexplained_part(const Extracted& extracted, int threads) const;
   [[nodiscard]] AddedModels write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run,
                                   OutputSet& written) const;
+  void draw(const Extracted& extracted, const RunContext& run, OutputSet& written) const;
   void report(Extracted extracted, std::vector<ReportDownload> downloads, const RunContext& run,
               OutputSet& written) const;
 };
@@ -100,6 +102,14 @@ AddedModels ExtractCommand::write(const Extraction& result, const PrimitiveSet& 
   const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
   return naming(primitives.empty() ? cloud : primitives,
                 [&] { return add_models(written, outputs, model, {.openscad = {.comment = comment}}, writing); });
+}
+
+void ExtractCommand::draw(const Extracted& extracted, const RunContext& run, OutputSet& written) const {
+  if (std::none_of(outputs.begin(), outputs.end(), is_picture)) return;
+  const Scene scene{.model = {.primitives = extracted.solids, .tree = extracted.result.tree},
+                    .cloud = extracted.points};
+  const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
+  naming(cloud, [&] { add_pictures(written, outputs, scene, drawing, writing); });
 }
 
 void ExtractCommand::report(Extracted extracted, std::vector<ReportDownload> downloads, const RunContext& run,
@@ -163,6 +173,7 @@ std::vector<std::string> ExtractCommand::check_files() const {
   all.push_back(cloud);
   if (!primitives.empty()) all.push_back(primitives);
   check_distinct(all);
+  validate(drawing);
   return written;
 }
 
@@ -198,6 +209,7 @@ void ExtractCommand::run(const std::stop_token& stop) const {
                 [&](const std::filesystem::path& path) { write_text_file(path, to_json(result.statistics)); });
   }
   const ExtractStatistics summary = result.statistics;
+  draw(extracted, session.run(), written);
   report(std::move(extracted), std::move(models.texts), session.run(), written);
   written.commit();
 
@@ -240,6 +252,7 @@ void add_options(CLI::App& app, ExtractCommand& command) {
       ->group("Fit");
   add_raw_arguments(app, command.raw, "Finding primitives");
   add_extract_arguments(app, command.arguments);
+  add_picture_options(app, command.drawing);
   add_run_options(app, command.running);
 }
 

@@ -16,13 +16,14 @@
 #include "cloud2csg/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "reports.hpp"
+#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
 
 constexpr std::array<std::string_view, 6> k_cloud_endings{".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"};
-constexpr std::array<std::string_view, 10> k_model_endings{".json", ".scad", ".step", ".stp", ".brep",
-                                                           ".stl",  ".off",  ".obj",  ".dot", ".html"};
+constexpr std::array<std::string_view, 11> k_model_endings{".json", ".scad", ".step", ".stp",  ".brep", ".stl",
+                                                           ".off",  ".obj",  ".dot",  ".html", ".png"};
 
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -121,6 +122,30 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
   if (is_report(file.string())) check_report(file);
 }
 
+bool is_picture(const std::filesystem::path& file) {
+  return lower_ending(file) == ".png";
+}
+
+void add_pictures(OutputSet& set, std::span<const std::string> files, const Scene& scene, const PictureOptions& options,
+                  const RunContext& run) {
+  for (const std::string& file : files) {
+    if (!is_picture(file)) continue;
+    set.add(file, [&](const std::filesystem::path& path) { write_picture(path, scene, options, run); });
+  }
+}
+
+void add_picture_options(CLI::App& app, PictureOptions& options) {
+  const auto add = [&app](const char* name, auto& value, const char* type, const char* help) {
+    return app.add_option(name, value, help)->type_name(type)->group("Pictures")->capture_default_str();
+  };
+  add("--picture-width", options.width, "PIXELS", "Width of a .png; 0: a square for the cloud, one for the solid")
+      ->transform(whole_number(0, 4096));
+  add("--picture-height", options.height, "PIXELS", "Height of a .png")->transform(whole_number(16, 4096));
+  add("--azimuth", options.azimuth_deg, "DEG", "Where the camera of a .png stands: turned from the x axis towards y")
+      ->check(number_from_to(-360, 360));
+  add("--elevation", options.elevation_deg, "DEG", "... and raised over the xy plane")->check(number_from_to(-90, 90));
+}
+
 bool needs_tree(const std::filesystem::path& file) {
   return lower_ending(file) != ".json";
 }
@@ -129,7 +154,7 @@ AddedModels add_models(OutputSet& set, std::span<const std::string> files, const
                        const ExportOptions& options, const RunContext& run) {
   AddedModels added;
   for (const std::string& file : files) {
-    if (is_report(file)) continue;
+    if (is_report(file) || is_picture(file)) continue;
     ExportReport report;
     set.add(file, [&](const std::filesystem::path& path) {
       report = export_model(path, model, named_for(file, options), run);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "base/output_set.hpp"
 #include "cloud2csg/export.hpp"
+#include "cloud2csg/picture.hpp"
 #include "cloud2csg/report.hpp"
 
 namespace cloud2csg::app {
@@ -38,6 +40,16 @@ struct AddedModels {
 /// Writes a model to those files of a set that are no reports. @throws Error, Cancelled
 [[nodiscard]] AddedModels add_models(OutputSet& set, std::span<const std::string> files, const Model& model,
                                      const ExportOptions& options, const RunContext& run);
+
+/// Whether a file is to be a picture, by its ending.
+[[nodiscard]] bool is_picture(const std::filesystem::path& file);
+
+/// Draws the pictures among `files`. @throws Error, Cancelled
+void add_pictures(OutputSet& set, std::span<const std::string> files, const Scene& scene, const PictureOptions& options,
+                  const RunContext& run);
+
+/// Size and view of pictures, as a group of a subcommand's help.
+void add_picture_options(CLI::App& app, PictureOptions& options);
 
 /// Refuses a list of inputs and outputs in which two name the same file.
 /// @throws Error

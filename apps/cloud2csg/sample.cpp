@@ -79,8 +79,8 @@ void SampleCommand::run(std::stop_token stop) const {
 }
 
 void add_options(CLI::App& app, SampleCommand& command) {
-  add_file(app, "shape", command.shape, "Model file with a tree, or mesh: .stl .off .obj .ply")
-      ->type_name("MODEL.json|MESH");
+  add_file(app, "shape", command.shape, "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply")
+      ->type_name("MODEL|MESH");
   add_outputs(app, command.outputs, join_endings(cloud_endings()));
   app.add_flag("--ascii", command.is_ascii, "Text instead of binary numbers in .ply and .pcd")->group("Output");
   SampleOptions& sampling = command.sampling;

@@ -109,8 +109,8 @@ void add_defects(CLI::App& app, ScanCommand& command) {
 }
 
 void add_options(CLI::App& app, ScanCommand& command) {
-  add_file(app, "shape", command.shape, "Model file with a tree, or mesh: .stl .off .obj .ply")
-      ->type_name("MODEL.json|MESH");
+  add_file(app, "shape", command.shape, "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply")
+      ->type_name("MODEL|MESH");
   add_outputs(app, command.outputs, join_endings(cloud_endings()) + ", with sensor positions in .ply and .pcd");
   app.add_flag("--normals", command.scanning.with_normals, "With the true outward normals, which no scanner knows")
       ->group("Output");

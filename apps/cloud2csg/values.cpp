@@ -90,8 +90,12 @@ CLI::Validator number_positive() {
                         std::numeric_limits<double>::max());
 }
 
+CLI::Validator number_from_to(double least, double most) {
+  return number_between(fmt::format("a number from {} to {}", least, most), least, most);
+}
+
 CLI::Validator share() {
-  return number_between("a number from 0 to 1", 0, 1);
+  return number_from_to(0, 1);
 }
 
 CLI::Validator one_of(std::vector<std::string> names) {

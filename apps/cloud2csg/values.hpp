@@ -19,6 +19,7 @@ namespace cloud2csg::app {
 /// A finite number of 0 or more.
 [[nodiscard]] CLI::Validator number_not_negative();
 [[nodiscard]] CLI::Validator number_positive();
+[[nodiscard]] CLI::Validator number_from_to(double least, double most);
 /// A number from 0 to 1.
 [[nodiscard]] CLI::Validator share();
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> names);

@@ -57,7 +57,7 @@ void ViewCommand::run(const std::stop_token& stop) const {
 }
 
 void add_options(CLI::App& app, ViewCommand& command) {
-  add_file(app, "model", command.model, "Model file with a tree")->type_name("MODEL.json");
+  add_file(app, "model", command.model, "Model file with a tree: .json .scad .csg")->type_name("MODEL");
   app.add_option("--cloud", command.cloud, "Points to show beside the solid, and how far they are from it")
       ->check(file_name())
       ->type_name("CLOUD|MESH");

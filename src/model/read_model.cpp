@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -175,8 +177,15 @@ Model parse_model(std::string_view json, const std::string& name) {
   }
 }
 
+bool is_openscad(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".scad" || ending == ".csg";
+}
+
 Model read_model(const std::filesystem::path& file) {
-  return parse_model(read_text_file(file), file.string());
+  const std::string text = read_text_file(file);
+  return is_openscad(file) ? parse_openscad(text, file.string()) : parse_model(text, file.string());
 }
 
 }  // namespace cloud2csg

@@ -1,0 +1,343 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.hpp"
+#include "base/random.hpp"
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/export.hpp"
+#include "cloud2csg/model.hpp"
+#include "support/random_scene.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+bool contains(const Model& model, const Vector3d& point) {
+  return implicit_value(*model.tree, model.primitives, test::single(point))[0] < 0;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    (void)parse_openscad(text, "part.scad");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// A part by itself, to look at its primitive.
+Primitive only_primitive(const std::string& text) {
+  const Model model = parse_openscad(text);
+  EXPECT_EQ(model.primitives.size(), 1U) << text;
+  EXPECT_EQ(model.tree, CsgTree::leaf(0)) << text;
+  return model.primitives.at(0);
+}
+
+TEST(OpenScad, ReadsCubes) {
+  const Primitive corner = only_primitive("cube([1, 2, 3]);");
+  EXPECT_EQ(std::get<Box>(corner.shape).size, Vector3d(1, 2, 3));
+  EXPECT_EQ(corner.pose.position, Vector3d(0.5, 1, 1.5));
+  EXPECT_EQ(only_primitive("cube(size = 2, center = true);").pose.position, Vector3d(0, 0, 0));
+  EXPECT_EQ(std::get<Box>(only_primitive("cube();").shape).size, Vector3d(1, 1, 1));
+}
+
+TEST(OpenScad, ReadsSpheresAndCylinders) {
+  EXPECT_EQ(std::get<Sphere>(only_primitive("sphere(2);").shape).radius, 2);
+  EXPECT_EQ(std::get<Sphere>(only_primitive("sphere(d = 3, $fn = 50);").shape).radius, 1.5);
+  const Primitive cylinder = only_primitive("cylinder(h = 4, d = 1);");
+  EXPECT_EQ(std::get<Cylinder>(cylinder.shape).radius, 0.5);
+  EXPECT_EQ(std::get<Cylinder>(cylinder.shape).height, 4);
+  EXPECT_EQ(cylinder.pose.position, Vector3d(0, 0, 2));
+  const Primitive cone = only_primitive("cylinder(3, 2, 0, center = true);");
+  EXPECT_EQ(std::get<Cone>(cone.shape).radius_bottom, 2);
+  EXPECT_EQ(std::get<Cone>(cone.shape).radius_top, 0);
+  EXPECT_EQ(cone.pose.position, Vector3d(0, 0, 0));
+}
+
+TEST(OpenScad, ReadsATorus) {
+  const Primitive torus = only_primitive("rotate_extrude($fn = 90) translate([3, 2]) circle(r = 1);");
+  EXPECT_EQ(std::get<Torus>(torus.shape).major_radius, 3);
+  EXPECT_EQ(std::get<Torus>(torus.shape).minor_radius, 1);
+  EXPECT_EQ(torus.pose.position, Vector3d(0, 0, 2));
+}
+
+TEST(OpenScad, DrawsACylinderOfFewFacetsAsAPrism) {
+  const Model nut = parse_openscad("cylinder(h = 2, r = 1, center = true, $fn = 6);");
+  EXPECT_EQ(std::get<Polytope>(nut.primitives[0].shape).planes.size(), 8U);
+  EXPECT_TRUE(contains(nut, {0.99, 0, 0}));
+  EXPECT_FALSE(contains(nut, {0, 0.9, 0})) << "a flat is at cos 30 degrees";
+  EXPECT_TRUE(contains(parse_openscad("$fn = 4; cylinder(h = 2, r1 = 1, r2 = 0);"), {0.45, 0, 1}));
+  EXPECT_FALSE(contains(parse_openscad("$fn = 4; cylinder(h = 2, r1 = 1, r2 = 0);"), {0.4, 0.4, 1}));
+}
+
+TEST(OpenScad, ReadsAConvexPolyhedronInEitherDirection) {
+  const std::string points = "polyhedron(points = [[0,0,0], [1,0,0], [0,1,0], [0,0,1]], faces = ";
+  for (const char* faces : {"[[0,1,2], [0,3,1], [0,2,3], [1,3,2]]", "[[0,2,1], [0,1,3], [0,3,2], [1,2,3]]"}) {
+    const Model model = parse_openscad(points + faces + ");");
+    EXPECT_EQ(std::get<Polytope>(model.primitives[0].shape).planes.size(), 4U);
+    EXPECT_TRUE(contains(model, {0.2, 0.2, 0.2}));
+    EXPECT_FALSE(contains(model, {0.4, 0.4, 0.4}));
+  }
+  EXPECT_NE(refusal(points + "[[0,1,2], [0,3,1], [0,2,3]]);").find("a closed polyhedron"), std::string::npos);
+  EXPECT_NE(refusal(points + "[[0,1,2], [0,3,1], [0,2,3], [1,3,4]]);").find("0 to 3"), std::string::npos);
+}
+
+TEST(OpenScad, RefusesAPolyhedronWithADent) {
+  EXPECT_NE(refusal("polyhedron(points = [[0,0,0], [4,0,0], [0,4,0], [1,1,1], [0,0,4]],"
+                    "faces = [[0,1,2], [0,4,1], [0,2,4], [1,4,3], [4,2,3], [2,1,3]]);")
+                .find("line 1, column 1: expected a convex polyhedron"),
+            std::string::npos);
+}
+
+TEST(OpenScad, MovesSolidsAsOpenScadDoes) {
+  const Vector3d place = only_primitive("rotate([0, 0, 90]) translate([2, 1, 0]) sphere(1);").pose.position;
+  EXPECT_EQ(place, Vector3d(-1, 2, 0));
+  const Vector3d turned = only_primitive("rotate([90, 0, 90]) translate([0, 0, 1]) sphere(1);").pose.position;
+  EXPECT_LT((turned - Vector3d(1, 0, 0)).norm(), 1e-12);
+  const Vector3d about = only_primitive("rotate(a = 180, v = [1, 1, 0]) translate([1, 0, 0]) sphere(1);").pose.position;
+  EXPECT_LT((about - Vector3d(0, 1, 0)).norm(), 1e-12);
+  EXPECT_EQ(only_primitive("mirror([1, 0, 0]) translate([2, 1, 0]) sphere(1);").pose.position, Vector3d(-2, 1, 0));
+  EXPECT_EQ(only_primitive("multmatrix([[1,0,0,5],[0,1,0,6],[0,0,1,7],[0,0,0,1]]) sphere(1);").pose.position,
+            Vector3d(5, 6, 7));
+}
+
+TEST(OpenScad, ScalesWhatStaysASolidOfOurs) {
+  EXPECT_EQ(std::get<Sphere>(only_primitive("scale(3) sphere(2);").shape).radius, 6);
+  EXPECT_EQ(std::get<Box>(only_primitive("scale([1, 2, 3]) cube(1);").shape).size, Vector3d(1, 2, 3));
+  const Primitive cylinder = only_primitive("scale([2, 2, 5]) cylinder(h = 1, r = 1);");
+  EXPECT_EQ(std::get<Cylinder>(cylinder.shape).radius, 2);
+  EXPECT_EQ(std::get<Cylinder>(cylinder.shape).height, 5);
+  const Model sheared =
+      parse_openscad("scale([2, 1, 1]) rotate([0, 0, 45]) cube(sqrt2, center = true); sqrt2 = 1.414214;");
+  EXPECT_TRUE(contains(sheared, {1.9, 0, 0}));
+  EXPECT_FALSE(contains(sheared, {1.9, 0.2, 0}));
+  const Model mirrored =
+      parse_openscad("scale([-1, 1, 1]) rotate([0, 30, 10]) translate([1, 0, 0]) cylinder(h = 1, r1 = 1, r2 = 0);");
+  const Model by_mirror =
+      parse_openscad("mirror([1, 0, 0]) rotate([0, 30, 10]) translate([1, 0, 0]) cylinder(h = 1, r1 = 1, r2 = 0);");
+  RandomStream random(3);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3d point = test::random_within(2, random);
+    EXPECT_EQ(contains(mirrored, point), contains(by_mirror, point));
+  }
+}
+
+TEST(OpenScad, RefusesWhatIsNoLongerASolidOfOurs) {
+  EXPECT_NE(refusal("scale([1, 1, 2])\n  sphere(1);").find("part.scad: line 2, column 3: expected a scaling"),
+            std::string::npos);
+  EXPECT_NE(refusal("scale([1, 2, 1]) cylinder(h = 1, r = 1);").find("round and upright"), std::string::npos);
+  EXPECT_NE(refusal("scale([1, 1, 0]) cube(1);").find("with a volume"), std::string::npos);
+}
+
+TEST(OpenScad, CombinesSolids) {
+  const Model model = parse_openscad(R"(
+    // a plate with two bores, of which one is closed again
+    difference() {
+      cube([4, 4, 1], center = true);
+      translate([1, 0, 0]) cylinder(h = 3, r = 0.5, center = true);
+      translate([-1, 0, 0]) { cylinder(h = 3, r = 0.5, center = true); }
+      *sphere(10);
+      %sphere(10);
+    }
+    color("red", 0.5) render() group() intersection() {
+      #translate([-1, 0, 0]) cylinder(h = 3, r = 0.5, center = true);
+      cube([4, 4, 1], center = true);
+    } /* end */)");
+  EXPECT_EQ(model.primitives.size(), 3U) << "equal solids are one primitive";
+  EXPECT_EQ(to_text(*model.tree, model.primitives), "(cube - cylinder - cylinder_2) | (cylinder_2 & cube)");
+  EXPECT_FALSE(contains(model, {1, 0, 0}));
+  EXPECT_TRUE(contains(model, {-1, 0, 0}));
+}
+
+TEST(OpenScad, KnowsWhatIsEmpty) {
+  EXPECT_EQ(to_text(*parse_openscad("sphere(1); difference() { group(); sphere(2); }").tree,
+                    {{.id = "s", .shape = Sphere{1}}}),
+            "s");
+  EXPECT_NE(refusal("intersection() { sphere(1); group(); sphere(2); }").find("expected a solid, found none"),
+            std::string::npos);
+  EXPECT_NE(refusal("").find("expected a solid, found none"), std::string::npos);
+}
+
+TEST(OpenScad, EvaluatesSimpleNumbersAndModules) {
+  const Model model = parse_openscad(R"(
+    width = 2 * (3 + 1) - 6 / 3;  // 6
+    size = [width, width, -(-1) % 2];
+    plate();
+    module plate() { half = width / 2; translate([half, 0, 0]) cube(size, center = true); }
+    module unused() { hull() cube(1); }
+    boss(); translate([0, 0, 1]) boss();
+    module boss() cylinder(h = 1, r = 1);)");
+  ASSERT_EQ(model.primitives.size(), 3U);
+  EXPECT_EQ(model.primitives[0].id, "plate");
+  EXPECT_EQ(std::get<Box>(model.primitives[0].shape).size, Vector3d(6, 6, 1));
+  EXPECT_EQ(model.primitives[0].pose.position, Vector3d(3, 0, 0));
+  EXPECT_EQ(model.primitives[1].id, "boss");
+  EXPECT_EQ(model.primitives[2].id, "boss_2");
+}
+
+TEST(OpenScad, SaysWhereAndWhatWasExpected) {
+  EXPECT_EQ(refusal("cube(1)"),
+            "part.scad: line 1, column 8: expected a solid, an operation or an assignment, found the end of the file");
+  EXPECT_EQ(refusal("union() {\n  cube(1);\n"), "part.scad: line 3, column 1: expected '}', found the end of the file");
+  EXPECT_EQ(refusal("cube(size = tall);"),
+            "part.scad: line 1, column 13: expected a variable that has a value here, found 'tall'; flatten the file "
+            "first: openscad -o flat.csg FILE.scad");
+  EXPECT_EQ(refusal("for (i = [0:3]) cube(i);"),
+            "part.scad: line 1, column 1: expected a solid or an operation, found 'for'; flatten the file first: "
+            "openscad -o flat.csg FILE.scad");
+  EXPECT_NE(refusal("/* \xc3\xa4 */ hull() cube(1);").find("column 9: expected a solid, a transformation"),
+            std::string::npos);
+  EXPECT_NE(refusal("cube(wide = 1);").find("expected an argument of cube(), found 'wide'"), std::string::npos);
+  EXPECT_NE(refusal("cube(1, true, 2);").find("at most 2 arguments"), std::string::npos);
+  EXPECT_NE(refusal("cube(-1);").find("above 0"), std::string::npos);
+  EXPECT_NE(refusal("cube(1 / 0);").find("expected a number"), std::string::npos);
+  EXPECT_NE(refusal("cube([1, 2]);").find("expected three numbers, found a list of 2"), std::string::npos);
+  EXPECT_NE(refusal("cube(1, center = 3);").find("expected true or false for 'center', found 3"), std::string::npos);
+  EXPECT_NE(refusal("a = 1; a = 2; cube(a);").find("one value of 'a'"), std::string::npos);
+  EXPECT_NE(refusal("r = sqrt(2); cube(r);").find("numbers with + - * / %, found '('"), std::string::npos);
+  EXPECT_NE(refusal("module m(x) cube(x);").find("without parameters"), std::string::npos);
+  EXPECT_NE(refusal("cube(1e999);").find("double precision"), std::string::npos);
+  EXPECT_NE(refusal("/* cube(1);").find("expected the end of this comment"), std::string::npos);
+  EXPECT_NE(refusal("color(\"red) cube(1);").find("expected the end of this string"), std::string::npos);
+}
+
+std::string repeated(const std::string& text, std::size_t count) {
+  std::string all;
+  for (std::size_t i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+TEST(OpenScad, HostileNestingDoesNotOverflowTheStack) {
+  constexpr std::size_t k_many = 300'000;
+  for (const char* opening :
+       {"union(){", "{", "translate([0,0,1])", "#", "*", "cube(", "cube([", "x=(", "x=-", "x=!"}) {
+    EXPECT_NE(refusal(repeated(opening, k_many)).find("expected"), std::string::npos) << opening;
+  }
+  EXPECT_NE(refusal("module a() { a(); } a();").find("calls in each other"), std::string::npos);
+  std::string doubling = "module m0() { cube(1); }";
+  for (int i = 1; i < 60; ++i) {
+    doubling += "module m" + std::to_string(i) + "() {" + repeated("m" + std::to_string(i - 1) + "();", 2) + "}";
+  }
+  EXPECT_NE(refusal(doubling + "m59();").find("in all"), std::string::npos);
+  EXPECT_NE(refusal("a0 = [1, 2]; a1 = [a0, a0]; cube(1);").find("the list 'a0'"), std::string::npos);
+  const Model sum = parse_openscad("cube(" + repeated("1+", k_many) + "1);");
+  EXPECT_EQ(std::get<Box>(sum.primitives[0].shape).size.x(), k_many + 1.0) << "what is only long is read";
+  EXPECT_EQ(parse_openscad(repeated("sphere(1);", 10'000)).primitives.size(), 1U);
+}
+
+TEST(OpenScad, EveryBeginningOfAFileIsReadOrRefusedWithItsPlace) {
+  const std::string text = R"(w = [1, 2.5e0, .5]; // size
+module m() { rotate([0, 90, 0]) difference() { cube(w, center = true); sphere(d = w2 * 2); } }
+w2 = -(3 - 4) % 5; /* c */ m(); polyhedron(points = [[0,0,0], [1,0,0], [0,1,0], [0,0,1]],
+faces = [[0,1,2], [0,3,1], [0,2,3], [1,3,2]]); color("a\"b") multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0]]) cube(1);)";
+  EXPECT_EQ(refusal(text), "accepted");
+  for (std::size_t length = 0; length < text.size(); ++length) {
+    const std::string answer = refusal(text.substr(0, length));
+    EXPECT_TRUE(answer == "accepted" || answer.starts_with("part.scad: ")) << answer;
+  }
+}
+
+RC_GTEST_PROP(OpenScadProperty, AnyChangedBytesAreReadOrRefused, (std::uint64_t seed)) {
+  RandomStream random(seed);
+  std::string text =
+      "a = 2; difference() { translate([a, 0, 1]) cube([1, 2, a * 3], center = true); "
+      "rotate(a = 30, v = [1, 0, 0]) cylinder(h = 2, r1 = 1, r2 = 0.5, $fn = 30); }";
+  for (int change = 0; change < 4; ++change) {
+    const std::string alphabet = "(){}[];,=+-*/%#!\"1a. \n\xc3";
+    text[random.below(text.size())] = alphabet[random.below(alphabet.size())];
+  }
+  const std::string answer = refusal(text);
+  RC_ASSERT(answer == "accepted" || answer.starts_with("part.scad: "));
+}
+
+std::filesystem::path temporary(const std::string& name) {
+  return std::filesystem::temp_directory_path() / ("cloud2csg_scad_test_" + name);
+}
+
+bool has_openscad() {
+  return std::system("command -v openscad > /dev/null 2>&1") == 0;  // NOLINT: a fixed command
+}
+
+/// Where both models say the same, but for points so near to a surface that six digits decide.
+void expect_same_solid(const Model& expected, const Model& found, RandomStream& random) {
+  Points points;
+  for (int i = 0; i < 4000; ++i) points.push_back(test::random_within(2.5, random));
+  const std::vector<double> left = implicit_value(*expected.tree, expected.primitives, points);
+  const std::vector<double> right = implicit_value(*found.tree, found.primitives, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::abs(left[i]) < 1e-3) continue;
+    ASSERT_EQ(left[i] < 0, right[i] < 0) << to_text(*expected.tree, expected.primitives) << "\nat "
+                                         << points[i].transpose() << ", " << left[i] << " and " << right[i];
+  }
+}
+
+/// Of the solids that .scad files hold as such: no half-spaces (cubes there), displaced solids and formulas (meshes).
+Model random_model(RandomStream& random) {
+  Model model{.primitives = test::random_primitives(6, random)};
+  for (Primitive& primitive : model.primitives) {
+    primitive.displacement.reset();
+    const bool is_mesh = std::holds_alternative<Expression>(primitive.shape);
+    if (is_mesh || std::holds_alternative<HalfSpace>(primitive.shape)) {
+      primitive.shape =
+          Polytope{.planes = {{{-1, 0, 0}, 1}, {{0, -1, 0}, 1}, {{0, 0, -1}, 1}, {{0.6, 0.8, 0}, 1}, {{0, 0, 1}, 0.5}}};
+    }
+    auto* torus = std::get_if<Torus>(&primitive.shape);
+    if (torus != nullptr && torus->minor_radius >= torus->major_radius) torus->minor_radius /= 2;
+  }
+  const CsgTree whole = CsgTree::leaf(0);  // so that complements stay bounded
+  model.tree = subtract(unite(whole, CsgTree::leaf(1)), test::random_formula(6, 9, random));
+  return model;
+}
+
+TEST(OpenScadRoundTrip, OurScriptsAreReadAsTheyAre) {
+  int compared = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    RandomStream random(seed);
+    const Model model = random_model(random);
+    const std::string text = to_openscad(*model.tree, model.primitives);
+    if (text.find("everything()") != std::string::npos) continue;
+    if (primitives_of(*model.tree).empty() || text.find("empty solid") != std::string::npos) continue;
+    SCOPED_TRACE(text);
+    expect_same_solid(model, parse_openscad(text), random);
+    ++compared;
+  }
+  EXPECT_GT(compared, 20);
+}
+
+TEST(OpenScadRoundTrip, OurScriptsAreReadAsOpenScadFlattensThem) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  const std::filesystem::path scad = temporary("model.scad");
+  const std::filesystem::path csg = temporary("model.csg");
+  for (std::uint64_t seed = 100; seed < 120; ++seed) {
+    RandomStream random(seed);
+    const Model model = random_model(random);
+    export_model(scad, model);
+    const std::string command = "openscad -o '" + csg.string() + "' '" + scad.string() + "' > /dev/null 2>&1";
+    ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: our names
+    SCOPED_TRACE(read_text_file(csg));
+    expect_same_solid(model, read_model(csg), random);
+  }
+  std::filesystem::remove(scad);
+  std::filesystem::remove(csg);
+}
+
+TEST(OpenScadRoundTrip, TheShippedModelsKeepTheirSolids) {
+  for (const char* name : {"m0.json", "m3.json"}) {
+    const Model model = read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / name);
+    const Model again = parse_openscad(to_openscad(*model.tree, model.primitives));
+    RandomStream random(1);
+    expect_same_solid(model, again, random);
+    EXPECT_EQ(leaf_count(*again.tree), leaf_count(*model.tree));
+  }
+}
+
+}  // namespace
+}  // namespace cloud2csg
