@@ -12,8 +12,6 @@
 namespace cloud2csg {
 namespace {
 
-using script::exact;
-
 /// A function of the script, written when it is used.
 struct Helper {
   const char* call;

@@ -46,7 +46,7 @@ template <class Options>
 ExportReport export_script(const std::filesystem::path& file, const Model& model, Options options,
                            std::string (*to_script)(const CsgTree&, const PrimitiveSet&, const Options&)) {
   const CsgTree& tree = tree_of(model, file);
-  const ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
+  ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
   options.comment = head_comment(std::move(options.comment), model, report.cut_at);
   write_text_file(file, to_script(tree, model.primitives, options));
   return report;

@@ -58,11 +58,14 @@ Program program_of(const script::Plan& plan, const PrimitiveSet& primitives, con
     program.parameters += parameters.section();
   }
   bool has_everything = false;
-  program.tree = openscad::print_blocks(plan, [&](std::size_t step) -> std::string {
-    if (plan.steps[step].kind == Kind::primitive) return calls[plan.steps[step].primitive];
-    has_everything = true;
-    return "everything();";
-  });
+  program.tree = openscad::print_blocks(
+      plan,
+      [&](std::size_t step) -> std::string {
+        if (plan.steps[step].kind == Kind::primitive) return calls[plan.steps[step].primitive];
+        has_everything = true;
+        return "everything();";
+      },
+      openscad::Intersections::of_all);
   if (has_everything) program.modules += everything_module(context);
   return program;
 }

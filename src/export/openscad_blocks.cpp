@@ -12,7 +12,8 @@ using Kind = script::Step::Kind;
 /// Without recursion: a chain may be as deep as it is long.
 class BlockPrinter {
  public:
-  BlockPrinter(const script::Plan& plan, const StatementOf& statement_of) : plan_(plan), statement_of_(statement_of) {}
+  BlockPrinter(const script::Plan& plan, const StatementOf& statement_of, Intersections intersections)
+      : plan_(plan), statement_of_(statement_of), intersections_(intersections) {}
 
   std::string print() {
     to_do_.push_back({.step = plan_.steps.size() - 1, .text = {}, .level = 0});
@@ -59,8 +60,7 @@ class BlockPrinter {
 
   void print_common(const script::Step& step, std::size_t level) {
     if (step.removed.empty()) {
-      open("intersection", level);
-      push(step.kept, level + 1);
+      push_intersection(step.kept, level);
       return;
     }
     open("difference", level);
@@ -68,16 +68,26 @@ class BlockPrinter {
     if (step.kept.size() == 1) {
       push(step.kept, level + 1);
     } else {
-      to_do_.push_back({.step = 0, .text = "}", .level = level + 1});
-      push(step.kept, level + 2);
-      to_do_.push_back({.step = 0, .text = "intersection() {", .level = level + 1});
+      push_intersection(step.kept, level + 1);
     }
+  }
+
+  void push_intersection(const std::vector<std::size_t>& steps, std::size_t level) {
+    const std::size_t blocks = intersections_ == Intersections::in_pairs ? steps.size() - 1 : 1;
+    for (std::size_t block = 0; block < blocks; ++block) {
+      push_line("}", level + block);
+      if (block + 1 < blocks) push({steps[steps.size() - 1 - block]}, level + block + 1);
+    }
+    push({steps.begin(), steps.end() - static_cast<std::ptrdiff_t>(blocks - 1)}, level + blocks);
+    for (std::size_t block = blocks; block-- > 0;) push_line("intersection() {", level + block);
   }
 
   void open(const char* operation, std::size_t level) {
     print_line(std::string(operation) + "() {", level);
-    to_do_.push_back({.step = 0, .text = "}", .level = level});
+    push_line("}", level);
   }
+
+  void push_line(const char* text, std::size_t level) { to_do_.push_back({.step = 0, .text = text, .level = level}); }
 
   /// Last in, first out: what comes last is pushed first.
   void push(const std::vector<std::size_t>& steps, std::size_t level) {
@@ -86,14 +96,15 @@ class BlockPrinter {
 
   const script::Plan& plan_;
   const StatementOf& statement_of_;
+  Intersections intersections_;
   std::vector<Item> to_do_ = {};
   std::string out_ = {};
 };
 
 }  // namespace
 
-std::string print_blocks(const script::Plan& plan, const StatementOf& statement_of) {
-  return BlockPrinter(plan, statement_of).print();
+std::string print_blocks(const script::Plan& plan, const StatementOf& statement_of, Intersections intersections) {
+  return BlockPrinter(plan, statement_of, intersections).print();
 }
 
 }  // namespace cloud2csg::openscad

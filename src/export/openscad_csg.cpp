@@ -36,7 +36,10 @@ class FlatBody {
         "{{ circle({0}, r = {2}); }} }}",
         round_, number_(torus.major_radius), number_(torus.minor_radius));
   }
-  std::string operator()(const brep::Facets& facets) const { return openscad::polyhedron(facets, number_, ""); }
+  /// FreeCAD wants a convexity.
+  std::string operator()(const brep::Facets& facets) const {
+    return fmt::format("polyhedron({}, convexity = 2);", openscad::facet_lists(facets, number_, " "));
+  }
 
  private:
   [[nodiscard]] std::string frustum(double height, double bottom, double top) const {
@@ -72,13 +75,15 @@ std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives,
   const script::NumberFormat number(plan.everything.sizes().maxCoeff());
   const brep::KernelSolid everything{.shape = Box{.size = plan.everything.sizes()},
                                      .pose = {.position = plan.everything.center()}};
-  return script::comment(options.comment, "// ") + openscad::print_blocks(plan, [&](std::size_t step) {
-           const bool is_primitive = plan.steps[step].kind == Kind::primitive;
-           const PrimitiveIndex index = plan.steps[step].primitive;
-           return statement(is_primitive ? script::solid_of(primitives[index], plan.everything, options.mesh_resolution)
-                                         : everything,
-                            number, options.facets);
-         });
+  const auto statement_of = [&](std::size_t step) {
+    const bool is_primitive = plan.steps[step].kind == Kind::primitive;
+    const PrimitiveIndex index = plan.steps[step].primitive;
+    return statement(
+        is_primitive ? script::solid_of(primitives[index], plan.everything, options.mesh_resolution) : everything,
+        number, options.facets);
+  };
+  return script::comment(options.comment, "// ") +
+         openscad::print_blocks(plan, statement_of, openscad::Intersections::in_pairs);
 }
 
 }  // namespace cloud2csg

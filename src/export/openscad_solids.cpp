@@ -58,7 +58,8 @@ class Body {
 
   [[nodiscard]] std::string facets() const {
     const brep::KernelSolid solid = script::solid_of(primitive_, context_.everything, context_.mesh_resolution);
-    return polyhedron(std::get<brep::Facets>(solid.shape), context_.number, "\n    ");
+    const auto& facets = std::get<brep::Facets>(solid.shape);
+    return fmt::format("polyhedron(\n    {});", facet_lists(facets, context_.number, "\n    "));
   }
 
  private:
@@ -89,7 +90,7 @@ std::string solid(const Primitive& primitive, const SolidContext& context, Param
   return text + shape;
 }
 
-std::string polyhedron(const brep::Facets& facets, const script::NumberFormat& number, const std::string& separator) {
+std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number, const std::string& separator) {
   std::vector<std::string> points;
   points.reserve(facets.corners.size());
   for (const Eigen::Vector3d& corner : facets.corners) points.push_back(list(corner, number));
@@ -99,8 +100,7 @@ std::string polyhedron(const brep::Facets& facets, const script::NumberFormat& n
     // OpenSCAD turns the other way: clockwise seen from outside.
     faces.push_back(fmt::format("[{}]", fmt::join(face.rbegin(), face.rend(), ", ")));
   }
-  return fmt::format("polyhedron({}points = [{}],{}faces = [{}]);", separator, fmt::join(points, ", "),
-                     separator.empty() ? " " : separator, fmt::join(faces, ", "));
+  return fmt::format("points = [{}],{}faces = [{}]", fmt::join(points, ", "), separator, fmt::join(faces, ", "));
 }
 
 }  // namespace cloud2csg::openscad

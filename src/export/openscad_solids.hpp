@@ -22,8 +22,8 @@ struct SolidContext {
 /// `translate(bore_position) cylinder(h = bore_height, r = bore_radius, center = true);`
 [[nodiscard]] std::string solid(const Primitive& primitive, const SolidContext& context, Parameters& parameters);
 
-/// `polyhedron(points = ..., faces = ...);`, with `separator` before each of both lists.
-[[nodiscard]] std::string polyhedron(const brep::Facets& facets, const script::NumberFormat& number,
-                                     const std::string& separator);
+/// `points = ...,<separator>faces = ...`, as polyhedron() takes them.
+[[nodiscard]] std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number,
+                                      const std::string& separator);
 
 }  // namespace cloud2csg::openscad

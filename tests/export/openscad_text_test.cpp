@@ -47,6 +47,18 @@ TEST(OpenScadTree, ConstantsVanishWhereTheyCan) {
   EXPECT_EQ(tree_part("a & empty").rfind("union();", 0), 0U);
 }
 
+TEST(OpenScadTree, FlatIntersectionsAreOfTwo) {
+  const PrimitiveSet primitives = balls({"a", "b", "c", "d"});
+  std::string text = to_openscad_csg(parse_tree("(a & b & c) - d", primitives), primitives);
+  const std::string ball =
+      "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { sphere($fn = 0, $fa = 5.625, $fs = 0.01, "
+      "r = 1); }";
+  for (std::size_t at = text.find(ball); at != std::string::npos; at = text.find(ball))
+    text.replace(at, ball.size(), "o");
+  EXPECT_EQ(text,
+            "difference() {\n  intersection() {\n    intersection() {\n      o\n      o\n    }\n    o\n  }\n  o\n}\n");
+}
+
 TEST(OpenScadTree, LongChainsNeedNoStack) {
   const PrimitiveSet primitives = balls({"a", "b"});
   CsgTree tree = CsgTree::leaf(0);

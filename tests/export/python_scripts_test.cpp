@@ -122,9 +122,42 @@ TEST(CadQueryScript, HasItsValuesAtTheTop) {
   EXPECT_EQ(text.find("def sphere"), std::string::npos) << "what is not used is not there";
 }
 
+std::string freecad() {
+  for (const char* name : {"freecadcmd", "FreeCADCmd"}) {
+    if (test::has_program(name)) return name;
+  }
+  return {};
+}
+
+double mesh_volume(const Model& model) {
+  return volume_of(
+      mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives), {.resolution = 128}));
+}
+
+TEST(FreeCadProgram, ReadsTheFlatLanguageWithTrueSolids) {
+  const std::string program = freecad();
+  if (program.empty()) GTEST_SKIP() << "needs FreeCAD's freecadcmd (Debian: freecad-python3)";
+  for (const Model& model : {test::paper_model("m0"), test::model_of_every_type()}) {
+    const test::ScratchFolder folder;
+    export_model(folder.file("part.csg"), model, {.openscad = {.mesh_resolution = 16}});
+    write_text_file(folder.file("read.py"), R"(import FreeCAD, importCSG
+importCSG.open("part.csg")
+document = FreeCAD.ActiveDocument
+document.recompute()
+print("VOLUME", sum(thing.Shape.Volume for thing in document.RootObjects))
+print("KINDS", *(thing.TypeId for thing in document.Objects), "END")
+)");
+    const test::Run run = test::run_in(folder, "HOME=. timeout 300 " + program + " read.py");
+    const std::size_t place = run.output.find("VOLUME ");
+    ASSERT_NE(place, std::string::npos) << run.output;
+    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / mesh_volume(model), 1, 0.01);
+    EXPECT_NE(run.output.find(" Part::Sphere "), std::string::npos) << run.output;
+  }
+}
+
 TEST(FreeCadProgram, MakesTheTreesVolume) {
-  const std::string program = test::has_program("freecadcmd") ? "freecadcmd" : "FreeCADCmd";
-  if (!test::has_program(program)) GTEST_SKIP() << "needs FreeCAD's freecadcmd (Debian: freecad-python3)";
+  const std::string program = freecad();
+  if (program.empty()) GTEST_SKIP() << "needs FreeCAD's freecadcmd (Debian: freecad-python3)";
   for (const Model& model :
        {test::paper_model("m0"), test::paper_model("m1"), test::model_of_every_type(), test::flange()}) {
     const test::ScratchFolder folder;
@@ -135,9 +168,7 @@ TEST(FreeCadProgram, MakesTheTreesVolume) {
     const std::size_t place = run.output.find("VOLUME ");
     ASSERT_NE(place, std::string::npos) << run.output;
     EXPECT_NE(run.output.find("VALID True"), std::string::npos) << run.output;
-    const TriangleMesh mesh =
-        mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives), {.resolution = 128});
-    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / volume_of(mesh), 1, 0.01);
+    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / mesh_volume(model), 1, 0.01);
   }
 }
 
