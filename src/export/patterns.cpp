@@ -186,7 +186,7 @@ class Group {
     std::optional<CirclePattern> motion = circle_of(a, b, normal.normalized(), position(second));
     if (!motion) return {};
     Pattern circle = chain(first, *motion);
-    const double count = static_cast<double>(circle.members.size());
+    const auto count = static_cast<double>(circle.members.size());
     const bool divides = std::abs(std::remainder(360.0, motion->angle_deg)) < 1e-9;
     motion->is_full = std::abs(count * motion->angle_deg - 360.0) < 1e-9;
     circle.motion = *motion;
