@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -37,7 +38,7 @@ Character first_character(std::string_view text) {
   const unsigned lead = byte(0);
   if (lead < 0x80U) return {.code = lead, .bytes = text.substr(0, 1)};
   const std::size_t length = lead >= 0xF0U ? 4 : lead >= 0xE0U ? 3 : 2;
-  constexpr std::uint32_t k_least[] = {0, 0, 0x80, 0x800, 0x10000};
+  constexpr std::array<std::uint32_t, 5> k_least{0, 0, 0x80, 0x800, 0x10000};
   const Character none{.code = k_no_character, .bytes = text.substr(0, 1)};
   if (lead < 0xC2U || lead > 0xF4U || text.size() < length) return none;
   std::uint32_t code = lead & (0x7FU >> length);
