@@ -15,7 +15,7 @@ constexpr const char* k_example = "Example:\n";
 
 /// The endings of files that a text speaks of, in its order.
 std::vector<std::string> endings_in(const std::string& text) {
-  static const std::regex k_ending(R"((^|[^.\w])(\.[a-z][a-z0-9]+)\b)");
+  static const std::regex k_ending(R"((^|[^.\w])(\.[A-Za-z][A-Za-z0-9]+)\b)");
   std::vector<std::string> endings;
   for (std::sregex_iterator it(text.begin(), text.end(), k_ending), end; it != end; ++it) {
     const std::string ending = (*it)[2];

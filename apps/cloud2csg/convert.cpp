@@ -32,7 +32,9 @@ void ConvertCommand::run(std::stop_token stop) const {
   const Model read = read_model(model);
   if (std::any_of(outputs.begin(), outputs.end(), needs_tree)) (void)tree_of(read, model);
   OutputSet written;
-  AddedModels added = naming(model, [&] { return add_models(written, outputs, read, exporting, session.run()); });
+  ExportOptions options = exporting;
+  options.script.facet_resolution = options.brep.facet_resolution;
+  AddedModels added = naming(model, [&] { return add_models(written, outputs, read, options, session.run()); });
   const Report report{.title = std::filesystem::path(model).filename().string(),
                       .source = read.description,
                       .model = read,
@@ -53,7 +55,7 @@ void add_options(CLI::App& app, ConvertCommand& command) {
       ->type_name("N")
       ->group("Output")
       ->capture_default_str();
-  app.add_option("--facets", command.exporting.openscad.facets, "OpenSCAD: facets of a full circle ($fn)")
+  app.add_option("--facets", command.exporting.openscad.facets, "OpenSCAD (.scad .csg): facets of a full circle")
       ->transform(whole_number(3, 10'000))
       ->type_name("N")
       ->group("Output")
@@ -62,7 +64,7 @@ void add_options(CLI::App& app, ConvertCommand& command) {
                "STEP: the primitives, too, as components with their names")
       ->group("Output");
   app.add_option("--facet-resolution", command.exporting.brep.facet_resolution,
-                 "STEP, BREP: cells along the longest side of what has no exact surface")
+                 "STEP, BREP, .FCMacro, .py: cells along the longest side of what has no exact surface")
       ->transform(whole_number(4, 256))
       ->type_name("N")
       ->group("Output")

@@ -100,8 +100,10 @@ AddedModels ExtractCommand::write(const Extraction& result, const PrimitiveSet& 
   const Model model{.primitives = solids, .tree = result.tree, .description = comment};
   // Not to be stopped: what has been found is written also after an interrupt.
   const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
-  return naming(primitives.empty() ? cloud : primitives,
-                [&] { return add_models(written, outputs, model, {.openscad = {.comment = comment}}, writing); });
+  return naming(primitives.empty() ? cloud : primitives, [&] {
+    return add_models(written, outputs, model, {.openscad = {.comment = comment}, .script = {.comment = comment}},
+                      writing);
+  });
 }
 
 void ExtractCommand::draw(const Extracted& extracted, const RunContext& run, OutputSet& written) const {

@@ -22,8 +22,9 @@ namespace cloud2csg::app {
 namespace {
 
 constexpr std::array<std::string_view, 6> k_cloud_endings{".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"};
-constexpr std::array<std::string_view, 11> k_model_endings{".json", ".scad", ".step", ".stp",  ".brep", ".stl",
-                                                           ".off",  ".obj",  ".dot",  ".html", ".png"};
+constexpr std::array<std::string_view, 14> k_model_endings{".json", ".scad", ".csg",  ".FCMacro", ".py",
+                                                           ".step", ".stp",  ".brep", ".stl",     ".off",
+                                                           ".obj",  ".dot",  ".html", ".png"};
 
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -104,7 +105,8 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
     throw Error({.file = file.string(), .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
   };
   const std::string ending = lower_ending(file);
-  if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
+  const auto is_same = [&ending](std::string_view known) { return lower_case(std::string(known)) == ending; };
+  if (std::none_of(endings.begin(), endings.end(), is_same)) {
     refuse(ending.empty() ? std::string("the name has no ending") : fmt::format("unknown ending '{}'", ending),
            fmt::format("use one of {}", join_endings(endings)));
   }

@@ -12,32 +12,60 @@
 namespace cloud2csg {
 
 struct OpenScadOptions {
-  int facets = 64;           ///< $fn: how many facets a circle has
+  int facets = 64;           ///< how many facets a circle has: $fn, in .csg by $fa
   int mesh_resolution = 64;  ///< for displaced and expression solids, which become polyhedra
+  bool patterns = true;      ///< write equal solids at equal steps or angles as loops
   std::string comment = {};  ///< lines for the head of the file, e.g. the fit; without "//"
 };
 
-/// An OpenSCAD program: a named module a primitive, the tree with indentation, chains of the same operation as one
-/// block. Renders in OpenSCAD 2021.01 without warnings.
+/// An OpenSCAD program: the values of each primitive as named variables in a section of the customiser, a named module
+/// a primitive, the tree with indentation, chains of the same operation as one block. Of three or more equal solids
+/// that are united or taken away, at equal steps or at equal angles about an axis, to 1e-6 of the model's size, the
+/// first is written, in a loop. Renders in OpenSCAD 2021.01 without warnings.
 [[nodiscard]] std::string to_openscad(const CsgTree& tree, const PrimitiveSet& primitives,
                                       const OpenScadOptions& options = {});
 
+/// The flat language that OpenSCAD calculates with (.csg): each solid by a matrix, numbers in place of names, no loops.
+/// Circles have no number of facets of their own ($fn = 0), so that FreeCAD reads true cylinders and spheres; OpenSCAD
+/// makes facets by angle, down to its least length of 0.01, below which they are fewer.
+[[nodiscard]] std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives,
+                                          const OpenScadOptions& options = {});
+
+struct ScriptOptions {
+  int facet_resolution = 16;  ///< of what has no exact surface: cells along its longest side
+  std::string comment = {};   ///< lines for the head of the file; without "#"
+};
+
+/// A macro for FreeCAD (.FCMacro, Python): a document in which each primitive is an object with its sizes and its
+/// placement, labelled with its id, and each operation one over others. In numbers that are read as they are here.
+/// Displaced solids, expressions and polytopes have facets.
+/// @throws Error when the solid is empty
+[[nodiscard]] std::string to_freecad_macro(const CsgTree& tree, const PrimitiveSet& primitives,
+                                           const ScriptOptions& options = {});
+
+/// A script for CadQuery 2.2 or later (.py): the values of each primitive as named variables, then the solids, then the
+/// operations; the result is `part`.
+/// @throws Error when the solid is empty
+[[nodiscard]] std::string to_cadquery(const CsgTree& tree, const PrimitiveSet& primitives,
+                                      const ScriptOptions& options = {});
+
 struct ExportOptions {
   OpenScadOptions openscad = {};
+  ScriptOptions script = {};
   MeshingOptions meshing = {};
   BrepOptions brep = {};
 };
 
 /// What a file does not say of itself.
 struct ExportReport {
-  /// STEP, BREP, meshes and OpenSCAD know bounded solids only: one that goes on beyond its primitives (a lone
+  /// STEP, BREP, meshes and scripts know bounded solids only: one that goes on beyond its primitives (a lone
   /// half-space, a complement) is cut at this box around them. Absent when nothing was cut.
   std::optional<AlignedBox> cut_at = {};
   std::optional<BrepReport> brep = {};  ///< STEP and BREP
 };
 
-/// Writes a model by the file's ending: .json, .scad, .step, .stp, .brep, .stl, .off, .obj, .dot. All but .json need a
-/// tree, STEP and BREP need OpenCASCADE (has_brep()).
+/// Writes a model by the file's ending: .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj, .dot.
+/// All but .json need a tree, STEP and BREP need OpenCASCADE (has_brep()).
 /// Nothing half-written. @throws Error
 ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options = {},
                           const RunContext& run = {});

@@ -56,6 +56,7 @@ from cloud2csg._native import (
     SampleCounts,
     SampleOptions,
     ScanOptions,
+    ScriptOptions,
     SegmentationOptions,
     SolidOptions,
     Sphere,
@@ -82,7 +83,7 @@ __all__ = [
     "LabelOptions", "Leaf", "MeshingOptions", "MinimalFormulaOptions", "Model", "Node", "ObjectiveOptions",
     "OpenScadOptions", "PlaceOptions", "PointCloud", "Polytope", "PrepareOptions", "Primitive",
     "ReconstructOptions", "RefineOptions", "RegularityOptions", "ReportOptions", "Result", "SampleCounts",
-    "SampleOptions", "ScanOptions", "SegmentationOptions", "SolidOptions", "Sphere", "Torus", "TriangleMesh",
+    "SampleOptions", "ScanOptions", "ScriptOptions", "SegmentationOptions", "SolidOptions", "Sphere", "Torus", "TriangleMesh",
     "Union", "__version__", "compare", "detect", "extract", "has_brep", "has_viewer", "read_cloud", "read_mesh",
     "sample", "scan",
 ]

@@ -7,10 +7,16 @@ namespace cloud2csg::python {
 
 void bind_output_options(py::module_& module) {
   OptionClass<OpenScadOptions>(module, "OpenScadOptions", "How an OpenSCAD program is written.")
-      .field("facets", &OpenScadOptions::facets, "How many facets a circle has ($fn).")
+      .field("facets", &OpenScadOptions::facets, "How many facets a circle has ($fn; in .csg by $fa).")
       .field("mesh_resolution", &OpenScadOptions::mesh_resolution,
              "Of displaced and expression solids, which become polyhedra: cells along the longest side.")
+      .field("patterns", &OpenScadOptions::patterns, ".scad: equal solids at equal steps or angles as loops.")
       .field("comment", &OpenScadOptions::comment, "Lines for the head of the file, without '//'.")
+      .finish();
+  OptionClass<ScriptOptions>(module, "ScriptOptions", "How scripts in Python are written (.FCMacro, .py).")
+      .field("facet_resolution", &ScriptOptions::facet_resolution,
+             "Solids without exact surfaces are written with facets: so many cells along their longest side.")
+      .field("comment", &ScriptOptions::comment, "Lines for the head of the file, without '#'.")
       .finish();
   OptionClass<BrepOptions>(module, "BrepOptions", "How exact solids are written (.step, .brep).")
       .field("name", &BrepOptions::name, "Of the part in the file; '': the name of the file without its ending.")
@@ -22,7 +28,8 @@ void bind_output_options(py::module_& module) {
              "The part of its volume by which a node may be wrong before its operation counts as failed.")
       .finish();
   OptionClass<ExportOptions>(module, "ExportOptions", "How a model is written: see Model.write().")
-      .nested("openscad", &ExportOptions::openscad, "Of .scad.")
+      .nested("openscad", &ExportOptions::openscad, "Of .scad and .csg.")
+      .nested("script", &ExportOptions::script, "Of .FCMacro and .py.")
       .nested("meshing", &ExportOptions::meshing, "Of .stl, .off and .obj.")
       .nested("brep", &ExportOptions::brep, "Of .step, .stp and .brep.")
       .finish();

@@ -108,7 +108,7 @@ def test_wrong_models(plate):
     assert raised.value.where == "/primitives/1/radius"
 
 
-@pytest.mark.parametrize("ending", [".json", ".scad", ".stl", ".off", ".obj", ".dot", ".step", ".brep", ".html"])
+@pytest.mark.parametrize("ending", [".json", ".scad", ".csg", ".FCMacro", ".py", ".stl", ".off", ".obj", ".dot", ".step", ".brep", ".html"])
 def test_files(tmp_path, plate, ending):
     if ending in (".step", ".brep") and not cloud2csg.has_brep() or ending == ".html" and not cloud2csg.has_viewer():
         pytest.skip("not in this build")

@@ -32,16 +32,23 @@ std::string text_of(const Eigen::Vector3d& corner) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", corner.x(), corner.y(), corner.z());
 }
 
-ExportReport export_openscad(const std::filesystem::path& file, const Model& model, OpenScadOptions options) {
+/// The comment for the head of a script: the caller's, else the model's, and where the solid is cut.
+std::string head_comment(std::string comment, const Model& model, const std::optional<AlignedBox>& cut) {
+  if (comment.empty()) comment = model.description;
+  if (cut) {
+    comment += fmt::format("{}The solid has no bounds: it is cut at {} to {}.", comment.empty() ? "" : "\n",
+                           text_of(cut->min()), text_of(cut->max()));
+  }
+  return comment;
+}
+
+template <class Options>
+ExportReport export_script(const std::filesystem::path& file, const Model& model, Options options,
+                           std::string (*to_script)(const CsgTree&, const PrimitiveSet&, const Options&)) {
   const CsgTree& tree = tree_of(model, file);
   ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
-  if (options.comment.empty()) options.comment = model.description;
-  if (report.cut_at) {
-    options.comment +=
-        fmt::format("{}The solid has no bounds: it is cut at {} to {}.", options.comment.empty() ? "" : "\n",
-                    text_of(report.cut_at->min()), text_of(report.cut_at->max()));
-  }
-  write_text_file(file, to_openscad(tree, model.primitives, options));
+  options.comment = head_comment(std::move(options.comment), model, report.cut_at);
+  write_text_file(file, to_script(tree, model.primitives, options));
   return report;
 }
 
@@ -73,7 +80,10 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
     write_text_file(file, to_graphviz(tree_of(model, file), model.primitives));
     return {};
   }
-  if (ending == ".scad") return export_openscad(file, model, options.openscad);
+  if (ending == ".scad") return export_script(file, model, options.openscad, to_openscad);
+  if (ending == ".csg") return export_script(file, model, options.openscad, to_openscad_csg);
+  if (ending == ".fcmacro") return export_script(file, model, options.script, to_freecad_macro);
+  if (ending == ".py") return export_script(file, model, options.script, to_cadquery);
   if (ending == ".stl" || ending == ".off" || ending == ".obj") return export_mesh(file, model, options.meshing, run);
   if (ending == ".step" || ending == ".stp" || ending == ".brep") {
     return export_brep(file, model, ending, options.brep, run);
@@ -81,8 +91,8 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
   throw Error(
       {.file = file.string(),
        .where = {},
-       .expected = fmt::format("expected a file ending in .json, .scad, .step, .stp, .brep, .stl, .off, .obj or "
-                               ".dot, found \"{}\"",
+       .expected = fmt::format("expected a file ending in .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, "
+                               ".stl, .off, .obj or .dot, found \"{}\"",
                                ending),
        .remedy = {}});
 }

@@ -2,7 +2,9 @@
 
 #include <string>
 
+#include "brep/kernel.hpp"
 #include "cloud2csg/primitive.hpp"
+#include "export/openscad_parameters.hpp"
 #include "export/openscad_text.hpp"
 
 namespace cloud2csg::openscad {
@@ -10,13 +12,18 @@ namespace cloud2csg::openscad {
 struct SolidContext {
   AlignedBox everything;  ///< finite; half-spaces reach to its ends
   int mesh_resolution;    ///< of solids that OpenSCAD has no name for
-  NumberFormat number;
+  script::NumberFormat number;
 };
 
 /// Whether the solid becomes a long list of triangles: displaced solids and expressions.
 [[nodiscard]] bool needs_mesh(const Primitive& primitive);
 
-/// The OpenSCAD statement for a primitive, in place: `translate([0, 0, 1]) cylinder(h = 2, r = 1, center = true);`
-[[nodiscard]] std::string solid(const Primitive& primitive, const SolidContext& context);
+/// The OpenSCAD statement for a primitive, in place, by the values that it adds to `parameters`:
+/// `translate(bore_position) cylinder(h = bore_height, r = bore_radius, center = true);`
+[[nodiscard]] std::string solid(const Primitive& primitive, const SolidContext& context, Parameters& parameters);
+
+/// `points = ...,<separator>faces = ...`, as polyhedron() takes them.
+[[nodiscard]] std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number,
+                                      const std::string& separator);
 
 }  // namespace cloud2csg::openscad

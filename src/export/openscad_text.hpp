@@ -1,35 +1,25 @@
 #pragma once
 
+#include <set>
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include "cloud2csg/primitive.hpp"
+#include "cloud2csg/export.hpp"
+#include "export/script_text.hpp"
 
 /// Small parts of an OpenSCAD program.
 namespace cloud2csg::openscad {
 
-/// Writes lengths and positions: short, ten significant digits, and plain 0 for what is rounding of the model's size.
-class NumberFormat {
- public:
-  /// `scale`: the size of the model.
-  explicit NumberFormat(double scale) : smallest_(1e-12 * scale) {}
+/// Words of the language, its modules, and the modules that every file of ours may define.
+[[nodiscard]] const std::set<std::string>& reserved_words();
 
-  [[nodiscard]] std::string operator()(double number) const;
-  [[nodiscard]] std::string operator()(const Eigen::Vector3d& vector) const;  ///< [x, y, z]
+/// @throws Error naming the field
+void validate(const OpenScadOptions& options);
 
- private:
-  double smallest_;
-};
+/// [x, y, z]
+[[nodiscard]] std::string list(const Eigen::Vector3d& vector, const script::NumberFormat& number);
 
-/// A module name for each primitive: its id as far as OpenSCAD allows, unique, no word that OpenSCAD knows.
-[[nodiscard]] std::vector<std::string> module_names(const PrimitiveSet& primitives);
-
-/// `// ` before each line.
-[[nodiscard]] std::string comment(std::string_view text);
-
-/// `translate(...) rotate(...) `, each left out where it does nothing. A solid of revolution about z is turned about
-/// two axes only.
-[[nodiscard]] std::string placement(const Primitive& primitive, const NumberFormat& number);
+/// Angles for rotate() that turn the solid as its pose does. A solid of revolution about z is turned about two axes
+/// only.
+[[nodiscard]] Eigen::Vector3d rotation_angles(const Primitive& primitive);
 
 }  // namespace cloud2csg::openscad

@@ -8,6 +8,8 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
+#include "support/every_type.hpp"
+#include "support/flange.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -43,7 +45,7 @@ struct Rendering {
 
 /// Renders with the OpenSCAD program, as a user would.
 Rendering render(const std::string& name, const Model& model, const OpenScadOptions& options) {
-  const std::filesystem::path scad = temporary(name + ".scad");
+  const std::filesystem::path scad = temporary(name.ends_with(".csg") ? name : name + ".scad");
   const std::filesystem::path off = temporary(name + ".off");
   const std::filesystem::path log = temporary(name + ".log");
   export_model(scad, model, {.openscad = options});
@@ -78,27 +80,28 @@ TEST(OpenScadProgram, RendersADisplacedSolid) {
 
 TEST(OpenScadProgram, RendersEveryTypeTurnedAndMoved) {
   if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
-  const Model model = parse_model(R"({"format": "cloud2csg", "version": 1, "primitives": [
-    {"id": "box", "type": "box", "pose": {"position": [1, 2, 3], "quaternion": [0.5, 0.5, 0.5, 0.5]}, "size": [2, 3, 4]},
-    {"id": "cone", "type": "cone", "pose": {"position": [3, 2, 3], "quaternion": [0.6, 0, 0.8, 0]},
-     "radius_bottom": 1, "radius_top": 0.2, "height": 4},
-    {"id": "torus", "type": "torus", "pose": {"position": [1, 5, 3], "quaternion": [0.6, 0.48, 0.64, 0]},
-     "major_radius": 1.5, "minor_radius": 0.5},
-    {"id": "horn torus", "type": "torus", "pose": {"position": [-2.7, 2, 3]}, "major_radius": 1, "minor_radius": 1},
-    {"id": "sphere", "type": "sphere", "pose": {"position": [1, 2, 6]}, "radius": 1.7},
-    {"id": "cut", "type": "half_space", "pose": {"position": [1, 2, 3], "quaternion": [0.8, 0, 0.36, 0.48]}},
-    {"id": "keep", "type": "half_space", "pose": {"position": [1, 2, 6.6]}},
-    {"id": "polytope", "type": "polytope", "pose": {"position": [1, -1, 3], "quaternion": [0.6, 0.48, 0.64, 0]},
-     "planes": [[-1, 0, 0, 1], [0, -1, 0, 1], [0, 0, -1, 1], [0.6, 0.8, 0, 1], [0, 0, 1, 1], [0, 0.6, 0.8, 1.1]]},
-    {"id": "egg", "type": "expression", "pose": {"position": [1, 2, 0.2], "quaternion": [0.6, 0.48, 0.64, 0]},
-     "distance": "sqrt(x^2 + y^2 + 0.5 * z^2) - 1", "bounds": [[-1.1, -1.1, -1.5], [1.1, 1.1, 1.5]]}],
-    "tree": {"op": "difference", "children": [
-      {"op": "intersection", "children": [
-        {"op": "union", "children": [{"primitive": "box"}, {"primitive": "cone"}, {"primitive": "torus"},
-          {"primitive": "horn torus"}, {"primitive": "sphere"}, {"primitive": "polytope"}, {"primitive": "egg"}]},
-        {"op": "complement", "children": [{"op": "complement", "children": [{"primitive": "keep"}]}]}]},
-      {"op": "complement", "children": [{"op": "union", "children": [{"primitive": "cut"}, {"primitive": "sphere"}]}]}]}})");
+  const Model model = test::model_of_every_type();
   expect_same_solid("every_type", model, {.facets = 24, .mesh_resolution = 24}, 0.03);
+}
+
+TEST(OpenScadProgram, RendersTheFlatLanguage) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  expect_same_solid("m0.csg", data_model("m0.json"), {.facets = 16}, 0.02);
+  expect_same_solid("every_type.csg", test::model_of_every_type(), {.facets = 24, .mesh_resolution = 24}, 0.03);
+}
+
+TEST(OpenScadProgram, RendersLoopsLikeTheirMembers) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  const Model model = test::flange();
+  const Rendering loops = render("loops", model, {.facets = 48});
+  const Rendering plain = render("plain", model, {.facets = 48, .patterns = false});
+  ASSERT_EQ(loops.status, 0) << loops.log;
+  ASSERT_EQ(plain.status, 0) << plain.log;
+  EXPECT_NE(to_openscad(*model.tree, model.primitives, {}).find("for (i = "), std::string::npos);
+  EXPECT_EQ(loops.log.find("WARNING"), std::string::npos) << loops.log;
+  EXPECT_NEAR(volume_of(loops.mesh) / mesh_volume(model), 1.0, 0.01);
+  // The facets of a turned cylinder turn with it.
+  EXPECT_NEAR(volume_of(loops.mesh) / volume_of(plain.mesh), 1.0, 1e-3);
 }
 
 TEST(OpenScadProgram, RendersAComplement) {
@@ -115,6 +118,9 @@ TEST(ExportModel, FollowsTheEnding) {
   const Model model = data_model("m3.json");
   const std::pair<const char*, const char*> expected[] = {{"m3.json", "{\"format\": \"cloud2csg\""},
                                                           {"m3.scad", "// A stand-in"},
+                                                          {"m3.csg", "// A stand-in"},
+                                                          {"m3.FCMacro", "# A stand-in"},
+                                                          {"m3.py", "# A stand-in"},
                                                           {"m3.dot", "digraph"},
                                                           {"m3.OFF", "OFF\n"},
                                                           {"m3.obj", "v "},
@@ -137,6 +143,10 @@ TEST(ExportModel, MeshesHaveTheModelsVolume) {
   EXPECT_NEAR(volume_of(mesh) / mesh_volume(model), 1, 0.01);
 }
 
+bool is_script(const std::string& ending) {
+  return ending == ".scad" || ending == ".csg" || ending == ".FCMacro" || ending == ".py";
+}
+
 /// How an export says that it cut a model, by the ending.
 std::optional<AlignedBox> cut_of(const std::string& tree, const char* ending) {
   const Model model = parse_model(R"({"format": "cloud2csg", "version": 1, "primitives": [
@@ -146,7 +156,7 @@ std::optional<AlignedBox> cut_of(const std::string& tree, const char* ending) {
                                   tree + "}");
   const std::filesystem::path file = temporary(std::string("cut") + ending);
   const ExportReport report = export_model(file, model, {.meshing = {.resolution = 16}});
-  if (std::string(ending) == ".scad") {
+  if (is_script(ending)) {
     EXPECT_EQ(content_of(file).find("has no bounds") != std::string::npos, report.cut_at.has_value());
   }
   std::filesystem::remove(file);
@@ -157,7 +167,7 @@ TEST(ExportModel, SaysWhereItCutsWhatHasNoBounds) {
   const auto operation = [](const char* name, const char* children) {
     return std::string(R"({"op": ")") + name + R"(", "children": [)" + children + "]}";
   };
-  for (const char* ending : {".stl", ".off", ".obj", ".scad"}) {
+  for (const char* ending : {".stl", ".off", ".obj", ".scad", ".csg", ".FCMacro", ".py"}) {
     for (const std::string& unbounded :
          {std::string(R"({"primitive": "down"})"), operation("complement", R"({"primitive": "ball"})"),
           operation("intersection", R"({"primitive": "down"}, {"primitive": "up"})"), std::string(R"({"op": "full"})"),
@@ -172,6 +182,10 @@ TEST(ExportModel, SaysWhereItCutsWhatHasNoBounds) {
           operation("intersection", R"({"primitive": "down"}, {"primitive": "ball"})"),
           operation("complement", R"({"op": "union", "children": [{"op": "complement", "children":
                     [{"primitive": "ball"}]}, {"primitive": "down"}]})")}) {
+      if (bounded.find("empty") != std::string::npos && (is_script(ending) && ending[1] != 's' && ending[1] != 'c')) {
+        EXPECT_THROW((void)cut_of(bounded, ending), Error) << "the solid is empty";
+        continue;
+      }
       EXPECT_FALSE(cut_of(bounded, ending).has_value()) << bounded << ending;
     }
   }
@@ -189,8 +203,9 @@ TEST(ExportModel, RefusesUnknownEndingsAndMissingTrees) {
     }
     return "no error";
   };
-  EXPECT_NE(message_for("model.docx").find(".json, .scad, .step, .stp, .brep, .stl, .off, .obj or .dot"),
-            std::string::npos);
+  EXPECT_NE(
+      message_for("model.docx").find(".json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj or .dot"),
+      std::string::npos);
   model.tree.reset();
   EXPECT_NE(message_for("model.scad").find("a model with a tree"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(temporary("model.scad")));

@@ -16,12 +16,13 @@ PrimitiveSet balls(const std::vector<std::string>& ids) {
   return primitives;
 }
 
-/// The tree's part of the program: from the line after $fn to the first module.
+/// The tree's part of the program: from the paragraph that is no parameters to the first module.
 std::string tree_part(const std::string& formula) {
   const PrimitiveSet primitives = balls({"a", "b", "c", "d"});
-  const std::string text = to_openscad(parse_tree(formula, primitives), primitives);
-  const std::size_t begin = text.find("\n\n") + 2;
-  return text.substr(begin, text.find("\nmodule") - begin);
+  const std::string text = to_openscad(parse_tree(formula, primitives), primitives, {.patterns = false});
+  std::size_t begin = text.find("\n\n") + 2;
+  while (text.compare(begin, 2, "/*") == 0 || text.compare(begin, 2, "//") == 0) begin = text.find("\n\n", begin) + 2;
+  return text.substr(begin, text.find("\nmodule", begin) - begin);
 }
 
 TEST(OpenScadTree, ChainsAreOneBlock) {
@@ -43,7 +44,19 @@ TEST(OpenScadTree, ComplementsBecomeDifferencesWhereTheyCan) {
 TEST(OpenScadTree, ConstantsVanishWhereTheyCan) {
   EXPECT_EQ(tree_part("(a | empty) & full"), "a();\n");
   EXPECT_EQ(tree_part("full").rfind("everything();\n", 0), 0U);
-  EXPECT_EQ(tree_part("a & empty").rfind("union() {}", 0), 0U);
+  EXPECT_EQ(tree_part("a & empty").rfind("union();", 0), 0U);
+}
+
+TEST(OpenScadTree, FlatIntersectionsAreOfTwo) {
+  const PrimitiveSet primitives = balls({"a", "b", "c", "d"});
+  std::string text = to_openscad_csg(parse_tree("(a & b & c) - d", primitives), primitives);
+  const std::string ball =
+      "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { sphere($fn = 0, $fa = 5.625, $fs = 0.01, "
+      "r = 1); }";
+  for (std::size_t at = text.find(ball); at != std::string::npos; at = text.find(ball))
+    text.replace(at, ball.size(), "o");
+  EXPECT_EQ(text,
+            "difference() {\n  intersection() {\n    intersection() {\n      o\n      o\n    }\n    o\n  }\n  o\n}\n");
 }
 
 TEST(OpenScadTree, LongChainsNeedNoStack) {
@@ -64,10 +77,12 @@ TEST(OpenScadNames, AreUniqueAndAllowed) {
   EXPECT_NE(text.find("// sphere\nmodule sphere_2"), std::string::npos) << "the id it had";
 }
 
-std::string solid_line(Shape shape, const Pose& pose = {}) {
+/// The values of a solid, then its statement.
+std::string solid_lines(Shape shape, const Pose& pose = {}) {
   const std::string text = to_openscad(CsgTree::leaf(0), {named("p", std::move(shape), pose)});
+  const std::size_t values = text.find("/* [p] */\n") + 10;
   const std::size_t begin = text.find("module p() {\n  ") + 15;
-  return text.substr(begin, text.rfind("\n}") - begin);
+  return text.substr(values, text.find("\n\n", values) + 1 - values) + text.substr(begin, text.rfind("\n}") - begin);
 }
 
 Pose turned(double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
@@ -78,22 +93,56 @@ Pose turned(double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& 
 
 TEST(OpenScadSolids, AreShort) {
   using Eigen::Vector3d;
-  EXPECT_EQ(solid_line(Box{.size = {1, 2, 0.1}}), "cube([1, 2, 0.1], center = true);");
-  EXPECT_EQ(solid_line(Box{.size = {1, 1, 1}}, turned(30, Vector3d::UnitZ(), {1, 1e-17, 0})),
-            "translate([1, 0, 0]) rotate([0, 0, 30]) cube([1, 1, 1], center = true);");
-  EXPECT_EQ(solid_line(Box{.size = {1, 1, 1}}, turned(90, Vector3d::UnitY())),
-            "rotate([0, 90, 0]) cube([1, 1, 1], center = true);");
-  EXPECT_EQ(solid_line(Sphere{.radius = 0.5}, turned(30, Vector3d::UnitZ())), "sphere(r = 0.5);");
-  EXPECT_EQ(solid_line(Cylinder{.radius = 1, .height = 2}, turned(90, Vector3d::UnitX())),
-            "rotate([90, 0, 0]) cylinder(h = 2, r = 1, center = true);");
-  EXPECT_EQ(solid_line(Cylinder{.radius = 1, .height = 2}, turned(90, Vector3d::UnitY())),
-            "rotate([0, 90, 0]) cylinder(h = 2, r = 1, center = true);");
-  EXPECT_EQ(solid_line(Cylinder{.radius = 1, .height = 2}, turned(77, Vector3d::UnitZ())),
-            "cylinder(h = 2, r = 1, center = true);");
-  EXPECT_EQ(solid_line(Cone{.radius_bottom = 1, .radius_top = 0, .height = 2}),
-            "cylinder(h = 2, r1 = 1, r2 = 0, center = true);");
-  EXPECT_EQ(solid_line(Torus{.major_radius = 1, .minor_radius = 0.25}),
-            "rotate_extrude() translate([1, 0]) circle(r = 0.25);");
+  EXPECT_EQ(solid_lines(Box{.size = {1, 2, 0.1}}),
+            "p_size = [1, 2, 0.1];\np_position = [0, 0, 0];\ntranslate(p_position) cube(p_size, center = true);");
+  EXPECT_EQ(solid_lines(Box{.size = {1, 1, 1}}, turned(30, Vector3d::UnitZ(), {1, 1e-17, 0})),
+            "p_size = [1, 1, 1];\np_position = [1, 0, 0];\np_rotation = [0, 0, 30];\n"
+            "translate(p_position) rotate(p_rotation) cube(p_size, center = true);");
+  EXPECT_EQ(solid_lines(Sphere{.radius = 0.5}, turned(30, Vector3d::UnitZ())),
+            "p_radius = 0.5;\np_position = [0, 0, 0];\ntranslate(p_position) sphere(r = p_radius);");
+  const std::string turned_cylinder =
+      "translate(p_position) rotate(p_rotation) cylinder(h = p_height, r = p_radius, center = true);";
+  const std::string cylinder_values = "p_radius = 1;\np_height = 2;\np_position = [0, 0, 0];\n";
+  EXPECT_EQ(solid_lines(Cylinder{.radius = 1, .height = 2}, turned(90, Vector3d::UnitX())),
+            cylinder_values + "p_rotation = [90, 0, 0];\n" + turned_cylinder);
+  EXPECT_EQ(solid_lines(Cylinder{.radius = 1, .height = 2}, turned(90, Vector3d::UnitY())),
+            cylinder_values + "p_rotation = [0, 90, 0];\n" + turned_cylinder);
+  EXPECT_EQ(solid_lines(Cylinder{.radius = 1, .height = 2}, turned(77, Vector3d::UnitZ())),
+            cylinder_values + "translate(p_position) cylinder(h = p_height, r = p_radius, center = true);");
+  EXPECT_EQ(solid_lines(Cone{.radius_bottom = 1, .radius_top = 0, .height = 2}),
+            "p_radius_bottom = 1;\np_radius_top = 0;\np_height = 2;\np_position = [0, 0, 0];\n"
+            "translate(p_position) cylinder(h = p_height, r1 = p_radius_bottom, r2 = p_radius_top, center = true);");
+  EXPECT_EQ(solid_lines(Torus{.major_radius = 1, .minor_radius = 0.25}),
+            "p_major_radius = 1;\np_minor_radius = 0.25;\np_position = [0, 0, 0];\n"
+            "translate(p_position) rotate_extrude() translate([p_major_radius, 0]) circle(r = p_minor_radius);");
+}
+
+TEST(OpenScadSolids, VariablesAreUnique) {
+  const PrimitiveSet primitives{named("a", Torus{.major_radius = 1, .minor_radius = 0.25}),
+                                named("a_major", Sphere{.radius = 7})};
+  const std::string text = to_openscad(unite(CsgTree::leaf(0), CsgTree::leaf(1)), primitives);
+  EXPECT_NE(text.find("a_major_radius = 1;"), std::string::npos) << text;
+  EXPECT_NE(text.find("a_major_radius_2 = 7;"), std::string::npos) << text;
+  EXPECT_NE(text.find("sphere(r = a_major_radius_2)"), std::string::npos) << text;
+}
+
+TEST(OpenScadLoops, AreWrittenForThreeOrMore) {
+  PrimitiveSet holes;
+  CsgTree tree = CsgTree::leaf(0);
+  for (int i = 0; i < 3; ++i) {
+    holes.push_back(named("hole_" + std::to_string(i + 1), Sphere{.radius = 1}, {.position = {20.0 * i, 0, 0}}));
+    if (i > 0) tree = unite(tree, CsgTree::leaf(static_cast<PrimitiveIndex>(i)));
+  }
+  const std::string text = to_openscad(tree, holes);
+  EXPECT_NE(text.find("hole_1_count = 3;\nhole_1_step = [20, 0, 0];\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("  for (i = [0 : hole_1_count - 1]) translate(i * hole_1_step) hole_1();\n"), std::string::npos);
+  EXPECT_EQ(text.find("module hole_2"), std::string::npos);
+  EXPECT_NE(text.find("as hole_2, hole_3"), std::string::npos) << "which primitives it stands for";
+  EXPECT_NE(to_openscad(tree, holes, {.patterns = false}).find("module hole_2"), std::string::npos);
+  // Two have a step, but no pattern; what the tree has twice stays alone.
+  EXPECT_EQ(to_openscad(unite(CsgTree::leaf(0), CsgTree::leaf(1)), holes).find("for ("), std::string::npos);
+  EXPECT_EQ(to_openscad(unite(tree, subtract(CsgTree::leaf(0), CsgTree::leaf(1))), holes).find("for ("),
+            std::string::npos);
 }
 
 TEST(OpenScadText, HeadIsComment) {

@@ -1,0 +1,252 @@
+#include "export/patterns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "primitive/overloaded.hpp"
+
+namespace cloud2csg::script {
+namespace {
+
+constexpr double k_infinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t k_fewest = 3;
+constexpr std::size_t k_most_in_line = 256;
+constexpr std::size_t k_most_in_circle = 48;
+
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180.0;
+}
+
+bool can_repeat(const Primitive& primitive) {
+  return !primitive.displacement && primitive.shape.index() <= Shape(Torus{}).index();
+}
+
+double size_difference(const Shape& a, const Shape& b) {
+  if (a.index() != b.index()) return k_infinite;
+  const auto between = [](std::initializer_list<double> differences) {
+    double most = 0;
+    for (const double difference : differences) most = std::max(most, std::abs(difference));
+    return most;
+  };
+  return std::visit(
+      Overloaded{[&](const Box& box) { return (box.size - std::get<Box>(b).size).cwiseAbs().maxCoeff(); },
+                 [&](const Sphere& sphere) { return between({sphere.radius - std::get<Sphere>(b).radius}); },
+                 [&](const Cylinder& cylinder) {
+                   const auto& other = std::get<Cylinder>(b);
+                   return between({cylinder.radius - other.radius, cylinder.height - other.height});
+                 },
+                 [&](const Cone& cone) {
+                   const auto& other = std::get<Cone>(b);
+                   return between({cone.radius_bottom - other.radius_bottom, cone.radius_top - other.radius_top,
+                                   cone.height - other.height});
+                 },
+                 [&](const Torus& torus) {
+                   const auto& other = std::get<Torus>(b);
+                   return between({torus.major_radius - other.major_radius, torus.minor_radius - other.minor_radius});
+                 },
+                 [](const auto&) { return k_infinite; }},
+      a);
+}
+
+/// How far directions of unit length are apart where a solid looks the same turned; its symmetries do not count.
+double turn_difference(const Primitive& a, const Primitive& b) {
+  if (std::holds_alternative<Sphere>(a.shape)) return 0;
+  const Eigen::Matrix3d m = a.pose.orientation.toRotationMatrix();
+  const Eigen::Matrix3d n = b.pose.orientation.toRotationMatrix();
+  const auto line = [&](int axis) {
+    return std::min((m.col(axis) - n.col(axis)).norm(), (m.col(axis) + n.col(axis)).norm());
+  };
+  if (std::holds_alternative<Box>(a.shape)) return std::max({line(0), line(1), line(2)});
+  if (std::holds_alternative<Cone>(a.shape)) return (m.col(2) - n.col(2)).norm();
+  return line(2);
+}
+
+Pose motion_of(const LinePattern& line, std::size_t place) {
+  return {.position = static_cast<double>(place) * line.step};
+}
+
+Pose motion_of(const CirclePattern& circle, std::size_t place) {
+  const double angle = radians(static_cast<double>(place) * circle.angle_deg);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, circle.axis));
+  return {.position = circle.centre - turn * circle.centre, .orientation = turn};
+}
+
+/// Longer, or once around where the other goes around more often.
+bool is_better_circle(const Pattern& a, const Pattern& b) {
+  if (a.members.size() != b.members.size()) return a.members.size() > b.members.size();
+  const auto angle = [](const Pattern& pattern) { return std::get<CirclePattern>(pattern.motion).angle_deg; };
+  return angle(a) < angle(b) - 1e-6;
+}
+
+using Motion = decltype(Pattern::motion);
+
+Primitive moved(const Primitive& first, const Motion& motion, std::size_t place) {
+  Primitive member = first;
+  const Pose pose = std::visit([place](const auto& way) { return motion_of(way, place); }, motion);
+  member.pose = compose(pose, first.pose);
+  return member;
+}
+
+/// Equal solids in which patterns are looked for.
+class Group {
+ public:
+  Group(const PrimitiveSet& primitives, double tolerance) : primitives_(primitives), tolerance_(tolerance) {}
+
+  void add(PrimitiveIndex index) { free_.push_back(index); }
+  [[nodiscard]] bool takes(PrimitiveIndex index) const {
+    return size_difference(at(free_.front()).shape, at(index).shape) <= tolerance_;
+  }
+
+  /// Takes the longest pattern out of the group.
+  std::optional<Pattern> take_longest() {
+    Pattern longest;
+    const auto keep_longer = [&longest](std::optional<Pattern> pattern) {
+      if (pattern && pattern->members.size() > longest.members.size()) longest = std::move(*pattern);
+    };
+    if (free_.size() <= k_most_in_line) keep_longer(longest_line());
+    if (free_.size() <= k_most_in_circle) keep_longer(longest_circle());
+    if (longest.members.size() < k_fewest) return {};
+    std::erase_if(free_, [&longest](PrimitiveIndex index) {
+      return std::find(longest.members.begin(), longest.members.end(), index) != longest.members.end();
+    });
+    return longest;
+  }
+
+ private:
+  [[nodiscard]] const Primitive& at(PrimitiveIndex index) const { return primitives_[index]; }
+  [[nodiscard]] const Eigen::Vector3d& position(PrimitiveIndex index) const { return at(index).pose.position; }
+
+  /// The member of the group that is where `wanted` is.
+  [[nodiscard]] std::optional<PrimitiveIndex> find(const Primitive& wanted) const {
+    for (const PrimitiveIndex index : free_) {
+      if ((position(index) - wanted.pose.position).norm() > tolerance_) continue;
+      if (misfit(wanted, at(index)) <= tolerance_) return index;
+    }
+    return {};
+  }
+
+  /// All that the motion reaches from the first, one after the other.
+  [[nodiscard]] Pattern chain(PrimitiveIndex first, const Motion& motion) const {
+    Pattern pattern{.members = {first}, .motion = motion};
+    while (true) {
+      const Primitive wanted = moved(at(first), motion, pattern.members.size());
+      const std::optional<PrimitiveIndex> next = find(wanted);
+      // Back at the first, or at one of two solids in the same place.
+      if (!next || std::find(pattern.members.begin(), pattern.members.end(), *next) != pattern.members.end()) break;
+      pattern.deviation = std::max(pattern.deviation, misfit(wanted, at(*next)));
+      pattern.members.push_back(*next);
+    }
+    return pattern;
+  }
+
+  [[nodiscard]] std::optional<Pattern> longest_line() const {
+    std::optional<Pattern> longest;
+    double longest_step = 0;
+    for (const PrimitiveIndex first : free_) {
+      for (const PrimitiveIndex second : free_) {
+        const Eigen::Vector3d step = position(second) - position(first);
+        if (step.norm() <= 2 * tolerance_) continue;
+        Primitive before = at(first);
+        before.pose.position -= step;
+        if (find(before)) continue;
+        Pattern line = chain(first, LinePattern{.step = step});
+        const std::size_t least = longest ? longest->members.size() : k_fewest;
+        if (line.members.size() < least) continue;
+        if (longest && line.members.size() == least && !(step.norm() < longest_step * (1 - 1e-9))) continue;
+        longest = std::move(line);
+        longest_step = step.norm();
+      }
+    }
+    return longest;
+  }
+
+  [[nodiscard]] std::optional<Pattern> longest_circle() const {
+    std::optional<Pattern> longest;
+    for (const PrimitiveIndex first : free_) {
+      for (const PrimitiveIndex second : free_) {
+        for (const PrimitiveIndex third : free_) {
+          std::optional<Pattern> circle = circle_through(first, second, third);
+          if (circle && (!longest || is_better_circle(*circle, *longest))) longest = std::move(circle);
+        }
+      }
+    }
+    return longest;
+  }
+
+  [[nodiscard]] std::optional<Pattern> circle_through(PrimitiveIndex first, PrimitiveIndex second,
+                                                      PrimitiveIndex third) const {
+    const Eigen::Vector3d a = position(second) - position(first);
+    const Eigen::Vector3d b = position(third) - position(second);
+    if (std::abs(a.norm() - b.norm()) > 2 * tolerance_ || a.norm() <= 2 * tolerance_) return {};
+    const Eigen::Vector3d normal = a.cross(b);
+    if (normal.norm() <= 1e-3 * a.squaredNorm()) return {};  // on a line, nearly
+    std::optional<CirclePattern> motion = circle_of(a, b, normal.normalized(), position(second));
+    if (!motion) return {};
+    Pattern circle = chain(first, *motion);
+    const auto count = static_cast<double>(circle.members.size());
+    const bool divides = std::abs(std::remainder(360.0, motion->angle_deg)) < 1e-9;
+    motion->is_full = std::abs(count * motion->angle_deg - 360.0) < 1e-9;
+    circle.motion = *motion;
+    // Three solids lie on a circle by accident, unless the angle is one that a person would choose.
+    const bool is_meant = divides ? count >= 3 : count >= 4;
+    return is_meant ? std::optional(circle) : std::nullopt;
+  }
+
+  /// The circle on which two chords of equal length follow each other at `corner`.
+  [[nodiscard]] std::optional<CirclePattern> circle_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                                       const Eigen::Vector3d& axis,
+                                                       const Eigen::Vector3d& corner) const {
+    // Each circle can be gone through in two directions: take that about the positive axis.
+    Eigen::Index largest = 0;
+    axis.cwiseAbs().maxCoeff(&largest);
+    if (axis[largest] < 0) return {};
+    const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+    const Eigen::Vector3d inward = (b - a).normalized();
+    const double radius = 0.5 * a.norm() / std::sin(0.5 * angle);
+    double degrees = angle * 180.0 / std::numbers::pi;
+    const double whole = 360.0 / std::round(360.0 / degrees);
+    if (std::abs(radians(whole - degrees)) * radius <= tolerance_) degrees = whole;
+    return CirclePattern{.centre = corner + radius * inward, .axis = axis, .angle_deg = degrees, .is_full = false};
+  }
+
+  const PrimitiveSet& primitives_;
+  double tolerance_;
+  std::vector<PrimitiveIndex> free_ = {};
+};
+
+}  // namespace
+
+std::vector<Pattern> find_patterns(const PrimitiveSet& primitives, std::span<const PrimitiveIndex> candidates,
+                                   double tolerance) {
+  std::vector<Group> groups;
+  for (const PrimitiveIndex index : candidates) {
+    if (!can_repeat(primitives[index])) continue;
+    const auto group =
+        std::find_if(groups.begin(), groups.end(), [index](const Group& one) { return one.takes(index); });
+    (group == groups.end() ? groups.emplace_back(primitives, tolerance) : *group).add(index);
+  }
+  std::vector<Pattern> patterns;
+  for (Group& group : groups) {
+    while (std::optional<Pattern> pattern = group.take_longest()) patterns.push_back(std::move(*pattern));
+  }
+  std::stable_sort(patterns.begin(), patterns.end(),
+                   [](const Pattern& a, const Pattern& b) { return a.members.size() > b.members.size(); });
+  return patterns;
+}
+
+Primitive member_of(const PrimitiveSet& primitives, const Pattern& pattern, std::size_t place) {
+  return moved(primitives[pattern.members.front()], pattern.motion, place);
+}
+
+double misfit(const Primitive& a, const Primitive& b) {
+  if (!can_repeat(a) || !can_repeat(b)) return k_infinite;
+  const double size = size_difference(a.shape, b.shape);
+  if (size == k_infinite) return size;
+  const double place = (a.pose.position - b.pose.position).norm();
+  return size + place + turn_difference(a, b) * oriented_bounds(a).half_size.norm();
+}
+
+}  // namespace cloud2csg::script

@@ -1,0 +1,132 @@
+"""Solids by membership: what stands for a CAD kernel in the tests. A solid is a function from a point to a bool."""
+
+import math
+
+
+def add(a, b):
+    return tuple(x + y for x, y in zip(a, b))
+
+
+def subtract(a, b):
+    return tuple(x - y for x, y in zip(a, b))
+
+
+def scale(a, s):
+    return tuple(x * s for x in a)
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def norm(a):
+    return math.sqrt(dot(a, a))
+
+
+class Rotation:
+    """A unit quaternion x, y, z, w."""
+
+    def __init__(self, x=0, y=0, z=0, w=1):
+        length = math.sqrt(x * x + y * y + z * z + w * w)
+        self.v, self.w = (x / length, y / length, z / length), w / length
+
+    def turn(self, point):
+        t = scale(cross(self.v, point), 2)
+        return add(add(point, scale(t, self.w)), cross(self.v, t))
+
+    def back(self, point):
+        return Rotation(*scale(self.v, -1), self.w).turn(point)
+
+    def times(self, other):
+        v = add(add(scale(other.v, self.w), scale(self.v, other.w)), cross(self.v, other.v))
+        return Rotation(*v, self.w * other.w - dot(self.v, other.v))
+
+
+def about(axis, degrees):
+    half = math.radians(degrees) / 2
+    return Rotation(*scale(axis, math.sin(half) / norm(axis)), math.cos(half))
+
+
+def box(x, y, z):
+    """From the origin on, as both programs have it."""
+    return lambda p: 0 <= p[0] <= x and 0 <= p[1] <= y and 0 <= p[2] <= z
+
+
+def sphere(radius, lowest=-90, highest=90):
+    low, high = radius * math.sin(math.radians(lowest)), radius * math.sin(math.radians(highest))
+    return lambda p: norm(p) <= radius and low <= p[2] <= high
+
+
+def cone(bottom, top, height):
+    if bottom == top:
+        raise ValueError("the kernel refuses cones with parallel sides")
+    return lambda p: 0 <= p[2] <= height and math.hypot(p[0], p[1]) <= bottom + (top - bottom) * p[2] / height
+
+
+def cylinder(radius, height):
+    return lambda p: 0 <= p[2] <= height and math.hypot(p[0], p[1]) <= radius
+
+
+def torus(major, minor):
+    if minor >= major:
+        raise ValueError("the kernel refuses tori without a hole")
+    return lambda p: math.hypot(math.hypot(p[0], p[1]) - major, p[2]) <= minor
+
+
+def triangles_of(polygons):
+    return [(polygon[0], b, c) for polygon in polygons for b, c in zip(polygon[1:], polygon[2:])]
+
+
+def signed_volume(polygons):
+    return sum(dot(a, cross(b, c)) for a, b, c in triangles_of(polygons)) / 6
+
+
+def check_closed(polygons):
+    edges = {}
+    for polygon in polygons:
+        for a, b in zip(polygon, polygon[1:] + polygon[:1]):
+            edges[a, b] = edges.get((a, b), 0) + 1
+    if any(count != 1 or (b, a) not in edges for (a, b), count in edges.items()):
+        raise ValueError("the shell is not closed")
+
+
+def is_over(triangle, x, y):
+    """Whether a vertical line goes through: of two triangles at an edge, through one."""
+    crossings = 0
+    for (ax, ay, _), (bx, by, _) in zip(triangle, triangle[1:] + triangle[:1]):
+        if (ay > y) != (by > y):
+            # From the lower end on, so that both triangles at the edge find the same.
+            if ay > by:
+                ax, ay, bx, by = bx, by, ax, ay
+            crossings += x < ax + (y - ay) / (by - ay) * (bx - ax)
+    return crossings % 2 == 1
+
+
+def height_at(triangle, x, y):
+    a, b, c = triangle
+    n = cross(subtract(b, a), subtract(c, a))
+    return a[2] - (n[0] * (x - a[0]) + n[1] * (y - a[1])) / n[2]
+
+
+def polyhedron(polygons):
+    """Inside by how many faces are above, whichever way they turn."""
+    check_closed(polygons)
+    triangles = triangles_of(polygons)
+    corners = [corner for polygon in polygons for corner in polygon]
+    low, high = ([extreme(corner[axis] for corner in corners) for axis in range(3)] for extreme in (min, max))
+
+    def inside(point):
+        if not all(a <= x <= b for a, x, b in zip(low, point, high)):
+            return False
+        x, y, z = point
+        return sum(is_over(t, x, y) and height_at(t, x, y) > z for t in triangles) % 2 == 1
+
+    return inside
+
+
+def moved(inside, position, rotation):
+    return lambda p: inside(rotation.back(subtract(p, position)))
