@@ -8,13 +8,13 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "base/atomic_file.hpp"
 #include "cloud2csg/brep.hpp"
 #include "cloud2csg/error.hpp"
+#include "overwriting.hpp"
 #include "reports.hpp"
 #include "values.hpp"
 
@@ -36,23 +36,6 @@ std::string lower_case(std::string text) {
 bool is_text_model(const std::filesystem::path& file) {
   const std::string ending = lower_ending(file);
   return ending == ".scad" || ending == ".json" || ending == ".step" || ending == ".stp";
-}
-
-/// A page is what is overwritten by a page: another file of that name is somebody's work under a wrong name.
-void check_report(const std::filesystem::path& file) {
-  constexpr std::string_view k_begin = "<!doctype html>";
-  check_report_page(file.string());
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return;
-  std::ifstream older(file, std::ios::binary);
-  std::string begin(k_begin.size(), '\0');
-  older.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<std::size_t>(older.gcount()));
-  if (begin.empty() || lower_case(begin) == k_begin) return;
-  throw Error({.file = file.string(),
-               .where = {},
-               .expected = "is there already and is no HTML page",
-               .remedy = "remove it, or choose another name"});
 }
 
 std::string corner(const Eigen::Vector3d& point) {
@@ -121,7 +104,8 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
     refuse(fmt::format("cannot be written: folder '{}' ({})", folder.string(), std::strerror(errno)),
            "check its permissions");
   }
-  if (is_report(file.string())) check_report(file);
+  if (is_report(file.string())) check_report_page(file.string());
+  check_overwriting(file);
 }
 
 bool is_picture(const std::filesystem::path& file) {

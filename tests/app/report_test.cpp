@@ -48,19 +48,6 @@ TEST_F(Reports, AreWrittenByExtractAndConvert) {
   EXPECT_LT(read_file(path("c.html")).size(), read_file(path("m.html")).size());
 }
 
-TEST_F(Reports, OverwriteReportsOnly) {
-  const std::string work = file("notes.html", "my notes");
-  const Outcome refused = run({"convert", shipped("m1.json"), "-o", work});
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_NE(refused.err.find("notes.html: is there already and is no HTML page"), std::string::npos) << refused.err;
-  EXPECT_EQ(read_file(work), "my notes");
-  for (const std::string& begin : {std::string(), std::string("<!DOCTYPE HTML><p>old")}) {
-    const std::string page = file("page.html", begin);
-    EXPECT_EQ(run({"convert", shipped("m1.json"), "-o", page}).status, 0);
-    EXPECT_GT(read_file(page).size(), 1000U);
-  }
-}
-
 TEST_F(Reports, NeedATree) {
   const std::string model = file("p.json", R"({"format": "cloud2csg", "version": 1, "primitives": [
     {"id": "a", "type": "sphere", "pose": {"position": [0, 0, 0], "quaternion": [1, 0, 0, 0]}, "radius": 1}]})");

@@ -1,0 +1,83 @@
+#include "overwriting.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "cloud2csg/error.hpp"
+#include "outputs.hpp"
+
+namespace cloud2csg::app {
+namespace {
+
+constexpr std::streamsize k_looked_at = 512;
+
+enum class Beginning : std::uint8_t {
+  is_it,       ///< the file begins so, letters in either case
+  within_it,   ///< it is near the file's beginning
+  after_space  ///< so begins what is not white space
+};
+
+struct Kind {
+  std::string_view ending;
+  std::string_view name;
+  std::string_view mark;
+  Beginning beginning = Beginning::is_it;
+};
+
+/// Kinds of files that have a mark. Binary .stl begins with anything; all others are text.
+constexpr std::array<Kind, 9> k_marked{{{".html", "HTML page", "<!doctype html>"},
+                                        {".json", "JSON object", "{", Beginning::after_space},
+                                        {".png", "PNG picture", "\x89PNG"},
+                                        {".ply", "PLY file", "ply"},
+                                        {".pcd", "PCD file", "version ", Beginning::within_it},
+                                        {".off", "OFF file", "off", Beginning::within_it},
+                                        {".step", "STEP file", "ISO-10303-21"},
+                                        {".stp", "STEP file", "ISO-10303-21"},
+                                        {".brep", "BREP file", "CASCADE", Beginning::within_it}}};
+
+std::string beginning_of(const std::filesystem::path& file) {
+  std::ifstream older(file, std::ios::binary);
+  std::string begin(static_cast<std::size_t>(k_looked_at), '\0');
+  older.read(begin.data(), k_looked_at);
+  begin.resize(static_cast<std::size_t>(older.gcount()));
+  return begin;
+}
+
+bool is_same_letter(char a, char b) {
+  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+}
+
+bool bears(std::string_view begin, const Kind& kind) {
+  if (kind.beginning == Beginning::after_space) {
+    begin.remove_prefix(std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));
+  }
+  const auto at = std::search(begin.begin(), begin.end(), kind.mark.begin(), kind.mark.end(), is_same_letter);
+  return kind.beginning == Beginning::within_it ? at != begin.end() : at == begin.begin();
+}
+
+}  // namespace
+
+void check_overwriting(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  const std::string begin = beginning_of(file);
+  if (begin.empty()) return;
+  const std::string ending = lower_ending(file);
+  const auto kind = std::ranges::find(k_marked, ending, &Kind::ending);
+  const bool is_marked = kind != k_marked.end();
+  const bool is_of_kind = is_marked ? bears(begin, *kind) : ending == ".stl" || begin.find('\0') == std::string::npos;
+  if (is_of_kind) return;
+  throw Error({.file = file.string(),
+               .where = {},
+               .expected = fmt::format("is there already and is no {}", is_marked ? kind->name : "text"),
+               .remedy = "remove it, or choose another name"});
+}
+
+}  // namespace cloud2csg::app
