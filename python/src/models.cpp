@@ -10,6 +10,7 @@
 #include "cloud.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
+#include "cloud2csg/picture.hpp"
 #include "cloud2csg/simplify.hpp"
 #include "field_arrays.hpp"
 #include "mesh/model_extent.hpp"
@@ -51,8 +52,13 @@ PrimitiveSet to_primitives(const py::object& primitives) {
 ExportReport write_any(const std::filesystem::path& file, const Report& report,
                        const std::optional<ExportOptions>& options, const RunArguments& arguments) {
   return run_work(arguments, [&](const RunContext& run) {
-    if (file.extension() != ".html") return export_model(file, report.model, options.value_or(ExportOptions{}), run);
-    write_report(file, report, {}, run);
+    if (file.extension() == ".html") {
+      write_report(file, report, {}, run);
+    } else if (file.extension() == ".png") {
+      write_picture(file, {.model = report.model, .cloud = report.cloud, .colours = {}}, {}, run);
+    } else {
+      return export_model(file, report.model, options.value_or(ExportOptions{}), run);
+    }
     return ExportReport{};
   });
 }
@@ -221,9 +227,24 @@ void bind_outputs(ModelClass& model) {
           },
           py::arg("file"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
           py::arg("progress") = py::none(),
-          "Writes by the file's ending: .json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .dot .html. All "
-          "but "
-          ".json need a tree. Nothing half-written. Returns ExportReport; raises Error.")
+          "Writes by the file's ending: .json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .dot .html .png. "
+          "All "
+          "but .json need a tree. Nothing half-written. Returns ExportReport; raises Error.")
+      .def(
+          "picture",
+          [](const Model& self, const py::object& cloud, const std::optional<PictureOptions>& options, int threads,
+             const py::object& progress, const py::kwargs& fields) {
+            const Report report = report_of(self, cloud, "");
+            const PictureOptions picture = with_fields(options, fields);
+            const Image image = run_work({.threads = threads, .progress = progress}, [&](const RunContext& run) {
+              return draw_picture({.model = report.model, .cloud = report.cloud, .colours = {}}, picture, run);
+            });
+            return py::array_t<std::uint8_t>({image.height, image.width, 3}, image.rgb.data());
+          },
+          py::arg("cloud") = py::none(), py::kw_only(), py::arg("options") = py::none(), py::arg("threads") = 0,
+          py::arg("progress") = py::none(),
+          "The solid in the colours of its primitives, with a cloud (PointCloud, or positions of shape (n, 3)) on its "
+          "left: red, green and blue, shape (height, width, 3), uint8. Further keywords are fields of PictureOptions.")
       .def(
           "report",
           [](const Model& self, const py::object& cloud, const std::string& title,

@@ -1,5 +1,6 @@
 #include "bindings.hpp"
 #include "cloud2csg/export.hpp"
+#include "cloud2csg/picture.hpp"
 #include "cloud2csg/report.hpp"
 #include "option_class.hpp"
 
@@ -32,6 +33,14 @@ void bind_output_options(py::module_& module) {
       .nested("script", &ExportOptions::script, "Of .FCMacro and .py.")
       .nested("meshing", &ExportOptions::meshing, "Of .stl, .off and .obj.")
       .nested("brep", &ExportOptions::brep, "Of .step, .stp and .brep.")
+      .finish();
+  OptionClass<PictureOptions>(module, "PictureOptions", "How large a picture is, and from where: see Model.picture().")
+      .field("width", &PictureOptions::width, "Pixels; 0: so many that each half is a square.")
+      .field("height", &PictureOptions::height, "Pixels.")
+      .field("azimuth_deg", &PictureOptions::azimuth_deg, "Of the camera, from the x axis towards y.")
+      .field("elevation_deg", &PictureOptions::elevation_deg, "Of the camera, over the xy plane.")
+      .field("resolution", &PictureOptions::resolution,
+             "Cells along the longest side of the solid's mesh, of which only outlines show any.")
       .finish();
   OptionClass<ReportOptions>(module, "ReportOptions", "How large the page of a report is: see Model.report().")
       .field("most_points", &ReportOptions::most_points, "Points to show; of more, so many are taken.")

@@ -79,6 +79,18 @@ def test_measures(plate):
     assert twice.simplified().tree == plate.tree
 
 
+def test_pictures(plate, tmp_path):
+    picture = plate.picture(width=60, height=40)
+    assert picture.shape == (40, 60, 3) and picture.dtype == np.uint8
+    assert (picture != picture[:1]).any(axis=2).mean() > 0.1  # more than the background, which a row has in common
+    with_cloud = plate.picture(cloud2csg.sample(plate, count=500), height=40, azimuth_deg=30)
+    assert with_cloud.shape == (40, 80, 3)
+    plate.write(tmp_path / "plate.png")
+    assert (tmp_path / "plate.png").read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(cloud2csg.Error, match="height"):
+        plate.picture(height=0)
+
+
 def test_without_a_tree(plate):
     primitives = cloud2csg.Model(plate)
     assert primitives.tree is None and primitives.primitives[0].id == "plate"
