@@ -47,7 +47,7 @@ struct PlaceOptions {
 struct RegularityOptions {
   /// False: surfaces are not made like each other. What is given below holds all the same.
   bool snap = true;
-  /// Directions nearer than this to each other, or to an orthogonal one, are made so.
+  /// Directions nearer than this to each other, or to an orthogonal one, are made so; see regularise().
   double angle_tolerance_deg = 1.0;
   /// Offsets, centres and radii nearer than this are made equal, in the cloud's units. Absent: twice the noise, at
   /// least 1e-3 of the cloud's diagonal.
@@ -87,8 +87,10 @@ struct FixedValues {
 };
 
 /// Makes directions that nearly are so equal or orthogonal, planes that nearly are so coplanar, axes coaxial, radii
-/// equal. A value that several share is the mean by their points, so what has more is moved less. Turned surfaces keep
-/// their position, which should be near their points. `fixed` has one a surface, or none. O(surfaces^2).
+/// equal. A direction is laid along an axis of coordinates where that moves no surface by more than the distance
+/// tolerance: a part that lies so is easier to edit. A value that several share is the mean by their points, so what
+/// has more is moved less. Turned surfaces keep their position, which should be near their points. `fixed` has one a
+/// surface, or none. O(surfaces^2).
 [[nodiscard]] RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
                                          double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
                                          std::span<const FixedValues> fixed = {});

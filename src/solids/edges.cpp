@@ -1,6 +1,7 @@
 #include "solids/edges.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -106,12 +107,30 @@ std::vector<Direction> distinct_directions(std::span<const DetectedSurface> surf
   return directions;
 }
 
+/// The same directions, in the order and with the signs that turn the frame least from the axes of coordinates.
+Eigen::Matrix3d turned_least(const Eigen::Matrix3d& axes) {
+  Eigen::Matrix3d best = axes;
+  std::array<Eigen::Index, 3> order{0, 1, 2};
+  do {
+    for (const double x : {1.0, -1.0}) {
+      for (const double y : {1.0, -1.0}) {
+        Eigen::Matrix3d turned;
+        turned.col(0) = x * axes.col(order[0]);
+        turned.col(1) = y * axes.col(order[1]);
+        turned.col(2) = turned.col(0).cross(turned.col(1));
+        if (turned.trace() > best.trace() + 1e-9) best = turned;
+      }
+    }
+  } while (std::ranges::next_permutation(order).found);
+  return best;
+}
+
 Eigen::Matrix3d frame_of(const Eigen::Vector3d& first, const Eigen::Vector3d& about_second) {
   Eigen::Matrix3d axes;
   axes.col(0) = first.normalized();
   axes.col(1) = (about_second - about_second.dot(axes.col(0)) * axes.col(0)).normalized();
   axes.col(2) = axes.col(0).cross(axes.col(1));
-  return axes;
+  return turned_least(axes);
 }
 
 bool has_axis(const Eigen::Matrix3d& frame, const Eigen::Vector3d& direction) {

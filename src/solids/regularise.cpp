@@ -49,6 +49,11 @@ class Regulariser {
     fixed_.resize(surfaces.size());
     std::iota(by_weight_.begin(), by_weight_.end(), 0U);
     std::ranges::stable_sort(by_weight_, std::greater{}, [&](std::uint32_t i) { return weight_of(surfaces[i]); });
+    AlignedBox box;
+    for (const DetectedSurface& detected : surfaces) box.extend(detected.surface.position);
+    if (!box.isEmpty() && box.diagonal().norm() > 0) {
+      upright_sine_ = std::min(sine_tolerance_, distance_tolerance / box.diagonal().norm());
+    }
   }
 
   RegularSurfaces run() {
@@ -100,7 +105,7 @@ class Regulariser {
     std::vector<Eigen::Vector3d> settled;
     for (const DirectionCluster& cluster : clusters()) {
       const Eigen::Vector3d direction =
-          cluster.is_fixed ? cluster.direction : made_orthogonal(cluster.direction, settled);
+          cluster.is_fixed ? cluster.direction : made_upright(made_orthogonal(cluster.direction, settled), settled);
       settled.push_back(direction);
       for (const std::uint32_t i : cluster.surfaces) {
         if (fixed_[i].direction) continue;
@@ -124,6 +129,19 @@ class Regulariser {
     Eigen::Vector3d result = direction;
     for (const Eigen::Vector3d& other : across) result -= result.dot(other) * other;
     return result.normalized();
+  }
+
+  /// Along an axis of coordinates, if it nearly is and that is no less orthogonal to the settled directions.
+  [[nodiscard]] Eigen::Vector3d made_upright(const Eigen::Vector3d& direction,
+                                             const std::vector<Eigen::Vector3d>& settled) const {
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
+      const bool fits = std::ranges::none_of(settled, [&](const Eigen::Vector3d& other) {
+        return std::abs(direction.dot(other)) <= 1e-9 && std::abs(axis.dot(other)) > 1e-9;
+      });
+      if (fits && direction.cross(axis).norm() <= upright_sine_) return direction.dot(axis) < 0 ? -axis : axis;
+    }
+    return direction;
   }
 
   /// Surfaces that are like the first of their group: one in which the value is fixed, or else that of most points.
@@ -224,6 +242,7 @@ class Regulariser {
   std::vector<FixedValues> fixed_;
   double distance_tolerance_;
   double sine_tolerance_;
+  double upright_sine_ = 0;  ///< turned so little, no surface moves farther than the distance tolerance
   std::vector<std::uint32_t> by_weight_;
 };
 

@@ -202,24 +202,33 @@ Primitive box_solid(const BoxFamily& boxes, const std::array<Span, 3>& spans) {
           .pose = {.position = boxes.axes * middle, .orientation = Eigen::Quaterniond(boxes.axes).normalized()}};
 }
 
+/// Whether a solid stands on its head: the other way round it is turned less.
+bool is_upside_down(const Eigen::Vector3d& axis) {
+  constexpr double k_level = 1e-9;
+  for (const Eigen::Index k : {2, 1, 0}) {
+    if (std::abs(axis[k]) > k_level) return axis[k] < 0;
+  }
+  return false;
+}
+
 Primitive revolved_solid(const Surface& surface, const Span& span) {
   const Eigen::Vector3d middle = surface.position + 0.5 * (span.low + span.high) * surface.axis;
   const double height = span.high - span.low;
+  const bool is_turned = is_upside_down(surface.axis);
+  const Eigen::Vector3d axis = is_turned ? -surface.axis : surface.axis;
   switch (surface.type) {
     case SurfaceType::cylinder:
-      return {.id = {}, .shape = Cylinder{surface.radius, height}, .pose = pose_from_axis(middle, surface.axis)};
+      return {.id = {}, .shape = Cylinder{surface.radius, height}, .pose = pose_from_axis(middle, axis)};
     case SurfaceType::cone: {
       const double slope = std::tan(surface.half_angle);
-      return {
-          .id = {},
-          .shape =
-              Cone{.radius_bottom = std::max(slope * span.low, 0.0), .radius_top = slope * span.high, .height = height},
-          .pose = pose_from_axis(middle, surface.axis)};
+      Cone cone{.radius_bottom = std::max(slope * span.low, 0.0), .radius_top = slope * span.high, .height = height};
+      if (is_turned) std::swap(cone.radius_bottom, cone.radius_top);
+      return {.id = {}, .shape = cone, .pose = pose_from_axis(middle, axis)};
     }
     case SurfaceType::torus:
       return {.id = {},
               .shape = Torus{surface.radius, surface.minor_radius},
-              .pose = pose_from_axis(surface.position, surface.axis)};
+              .pose = pose_from_axis(surface.position, axis)};
     default:
       return {.id = {}, .shape = Sphere{surface.radius}, .pose = {.position = surface.position}};
   }

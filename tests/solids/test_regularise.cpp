@@ -31,7 +31,7 @@ TEST(Regularise, MakesDirectionsEqualOrOrthogonal) {
       with_points(test::plane_at({0, 0, -1}, turned(-k_z, k_x, 0.5)), 500),
       with_points(test::plane_at({1, 0, 0}, turned(k_x, Eigen::Vector3d::UnitY(), 0.7)), 300),
       with_points(cylinder_at({0, 0, 0}, turned(k_z, k_x, -0.4), 1), 200)};
-  const RegularSurfaces regular = regularise(surfaces, k_tolerance);
+  const RegularSurfaces regular = regularise(surfaces, 1e-4);  // too small to lay them along axes of coordinates
   const auto axis = [&](std::size_t i) { return regular.surfaces[i].surface.axis; };
   EXPECT_NEAR(axis(0).dot(axis(1)), -1, 1e-12);
   EXPECT_NEAR(axis(0).dot(axis(2)), 0, 1e-12);
@@ -55,6 +55,25 @@ TEST(Regularise, LeavesWhatIsFarFromRegular) {
     EXPECT_EQ(regular.surfaces[i].surface.position, surfaces[i].surface.position);
     EXPECT_LT((regular.surfaces[i].surface.axis - surfaces[i].surface.axis).norm(), 1e-12);
   }
+}
+
+TEST(Regularise, LaysDirectionsAlongAxesOfCoordinatesWhereThatMovesNothingFar) {
+  // Two units apart: 0.2 degrees move one of them by 0.007.
+  const Eigen::Vector3d up = turned(k_z, k_x, 0.2);
+  const std::vector<DetectedSurface> surfaces{with_points(test::plane_at({0, 0, 1}, up), 1000),
+                                              with_points(test::plane_at({0, 0, -1}, -up), 1000),
+                                              with_points(test::plane_at({0, 0, 0}, k_x), 500)};
+  const RegularSurfaces regular = regularise(surfaces, 0.01);
+  EXPECT_EQ(regular.surfaces[0].surface.axis, k_z);
+  EXPECT_EQ(regular.surfaces[1].surface.axis, -k_z);
+  EXPECT_EQ(regular.surfaces[2].surface.axis, k_x);
+  EXPECT_EQ(regularise(surfaces, 0.005).surfaces[0].surface.axis, up) << "that would be too far";
+  // What stands across a direction that is no axis stays there, even near an axis.
+  std::vector<DetectedSurface> turned_off = surfaces;
+  for (std::size_t i : {0UL, 1UL}) turned_off[i].surface.axis = turned(turned_off[i].surface.axis, k_x, 2.3);
+  turned_off.push_back(with_points(test::plane_at({0, 0, 0}, turned(Eigen::Vector3d::UnitY(), k_x, 2.6)), 500));
+  const RegularSurfaces kept = regularise(turned_off, 0.5);
+  EXPECT_NEAR(kept.surfaces[0].surface.axis.dot(kept.surfaces[3].surface.axis), 0, 1e-12);
 }
 
 TEST(Regularise, SharesOffsetsAxesAndRadiiByTheirPoints) {
