@@ -2,7 +2,7 @@
 # so that it tells when a source misses an #include.
 option(CLOUD2CSG_PRECOMPILE_HEADERS "Precompile the headers of Eigen, the standard library and GoogleTest" OFF)
 
-# cloud2csg_precompile(TARGET KIND): lets TARGET use the headers that are precompiled for KIND, stage or test.
+# cloud2csg_precompile(TARGET KIND): lets TARGET use the headers that are precompiled for KIND: stage, test or app.
 function(cloud2csg_precompile target kind)
   if(NOT CLOUD2CSG_PRECOMPILE_HEADERS)
     return()
@@ -18,6 +18,10 @@ function(cloud2csg_precompile target kind)
     if(kind STREQUAL "test")
       target_link_libraries(${precompiled} PRIVATE GTest::gtest rapidcheck rapidcheck_gtest)
       target_precompile_headers(${precompiled} PRIVATE <gtest/gtest.h> <rapidcheck/gtest.h>)
+    elseif(kind STREQUAL "app")
+      target_link_libraries(${precompiled} PRIVATE CLI11::CLI11)
+      target_compile_options(${precompiled} PRIVATE ${CLOUD2CSG_HARDLY_OPTIMISED})
+      target_precompile_headers(${precompiled} PRIVATE <CLI/CLI.hpp>)
     else()
       set_target_properties(${precompiled} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     endif()
