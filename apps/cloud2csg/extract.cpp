@@ -10,6 +10,7 @@
 #include "base/atomic_file.hpp"
 #include "base/output_set.hpp"
 #include "base/stopwatch.hpp"
+#include "base/without_stop.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/input.hpp"
@@ -99,10 +100,9 @@ AddedModels ExtractCommand::write(const Extraction& result, const PrimitiveSet& 
   const std::string comment = headline(result.statistics, cloud);
   const Model model{.primitives = solids, .tree = result.tree, .description = comment};
   // Not to be stopped: what has been found is written also after an interrupt.
-  const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
   return naming(primitives.empty() ? cloud : primitives, [&] {
     return add_models(written, outputs, model, {.openscad = {.comment = comment}, .script = {.comment = comment}},
-                      writing);
+                      without_stop(run));
   });
 }
 
@@ -110,8 +110,7 @@ void ExtractCommand::draw(const Extracted& extracted, const RunContext& run, Out
   if (std::none_of(outputs.begin(), outputs.end(), is_picture)) return;
   const Scene scene{.model = {.primitives = extracted.solids, .tree = extracted.result.tree},
                     .cloud = extracted.points};
-  const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
-  naming(cloud, [&] { add_pictures(written, outputs, scene, drawing, writing); });
+  naming(cloud, [&] { add_pictures(written, outputs, scene, drawing, without_stop(run)); });
 }
 
 void ExtractCommand::report(Extracted extracted, std::vector<ReportDownload> downloads, const RunContext& run,
@@ -128,8 +127,7 @@ void ExtractCommand::report(Extracted extracted, std::vector<ReportDownload> dow
                 .downloads = std::move(downloads)};
   const std::vector<ReportParameter> in_force = parameters_of(arguments.options());
   report.parameters.insert(report.parameters.end(), in_force.begin(), in_force.end());
-  const RunContext writing{.stop = {}, .on_progress = run.on_progress, .threads = run.threads};
-  naming(cloud, [&] { add_reports(written, outputs, report, writing); });
+  naming(cloud, [&] { add_reports(written, outputs, report, without_stop(run)); });
 }
 
 Extracted ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -25,12 +24,6 @@ constexpr std::array<std::string_view, 6> k_cloud_endings{".ply", ".pcd", ".xyz"
 constexpr std::array<std::string_view, 14> k_model_endings{".json", ".scad", ".csg",  ".FCMacro", ".py",
                                                            ".step", ".stp",  ".brep", ".stl",     ".off",
                                                            ".obj",  ".dot",  ".html", ".png"};
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// What reads as well on a page as in a file of its own.
 bool is_text_model(const std::filesystem::path& file) {
@@ -67,10 +60,6 @@ ExportOptions named_for(const std::string& file, ExportOptions options) {
 }
 
 }  // namespace
-
-std::string lower_ending(const std::filesystem::path& file) {
-  return lower_case(file.extension().string());
-}
 
 std::span<const std::string_view> cloud_endings() {
   return k_cloud_endings;

@@ -7,15 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "base/file_ending.hpp"
 #include "base/output_set.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/picture.hpp"
 #include "cloud2csg/report.hpp"
 
 namespace cloud2csg::app {
-
-/// The ending of a file's name in lower case, with its dot.
-[[nodiscard]] std::string lower_ending(const std::filesystem::path& file);
 
 /// What write_point_cloud() takes; what export_model() and write_report() take.
 [[nodiscard]] std::span<const std::string_view> cloud_endings();

@@ -6,29 +6,12 @@
 #include <cstdint>
 #include <system_error>
 
+#include "base/utf8.hpp"
+
 namespace cloud2csg::brep {
 namespace {
 
 constexpr std::string_view k_token_start = "cloud2csg-name-";
-
-struct Character {
-  std::uint32_t code;
-  std::size_t bytes;
-};
-
-/// The character at the start of a text that is not empty.
-Character first_character(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
-  const Character latin{.code = byte(0), .bytes = 1};
-  const std::size_t bytes = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : byte(0) >= 0xC2 ? 2 : 1;
-  if (bytes == 1 || byte(0) > 0xF4 || text.size() < bytes) return latin;
-  std::uint32_t code = byte(0) & (0x7FU >> bytes);
-  for (std::size_t i = 1; i < bytes; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return latin;
-    code = code << 6U | (byte(i) & 0x3FU);
-  }
-  return {.code = code, .bytes = bytes};
-}
 
 bool is_printable_ascii(std::uint32_t code) {
   return code >= 0x20 && code < 0x7F;
@@ -49,7 +32,9 @@ std::string name_token(std::size_t number) {
 std::string step_string(std::string_view utf8) {
   std::string out = "'";
   while (!utf8.empty()) {
-    const Character character = first_character(utf8);
+    // What is no UTF-8 is taken for Latin 1.
+    const Utf8Character character =
+        first_character(utf8).value_or(Utf8Character{.code = static_cast<unsigned char>(utf8[0]), .bytes = 1});
     utf8.remove_prefix(character.bytes);
     if (!is_printable_ascii(character.code)) {
       out += escaped(character.code);

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cctype>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/atomic_file.hpp"
+#include "base/file_ending.hpp"
 #include "cloud/file_content.hpp"
 #include "cloud/formats.hpp"
 #include "cloud2csg/error.hpp"
@@ -36,8 +36,7 @@ constexpr std::array<CloudFormat, 6> k_formats{{
 }};
 
 const CloudFormat& format_of(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_ending(file);
   const auto* const found = std::ranges::find(k_formats, ending, &CloudFormat::ending);
   if (found != k_formats.end()) return *found;
   throw Error({.file = file.string(),

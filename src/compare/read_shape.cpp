@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cctype>
 #include <string>
 
+#include "base/file_ending.hpp"
 #include "cloud/ply_header.hpp"
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/error.hpp"
@@ -9,8 +9,7 @@
 namespace cloud2csg {
 
 Shape3d read_shape(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_ending(file);
   const auto is_one_of = [&ending](std::initializer_list<const char*> endings) {
     return std::ranges::find(endings, ending) != endings.end();
   };

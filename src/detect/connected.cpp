@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+#include "base/disjoint_sets.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -21,26 +22,16 @@ std::uint64_t cube_of(const Eigen::Vector3d& p, double edge) {
   return key;
 }
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /// The cubes by the group that they belong to.
-std::vector<std::uint32_t> join_cubes(const std::vector<std::uint64_t>& cubes) {
-  std::vector<std::uint32_t> parent(cubes.size());
-  std::iota(parent.begin(), parent.end(), 0U);
+DisjointSets join_cubes(const std::vector<std::uint64_t>& cubes) {
+  DisjointSets groups(cubes.size());
   // Half of the 26 neighbours, as rows along x: the others meet when it is the neighbour's turn.
   constexpr std::uint64_t k_row = std::uint64_t{1} << k_bits;
   constexpr std::uint64_t k_slice = k_row << k_bits;
-  for (std::uint32_t i = 0; i < cubes.size(); ++i) {
+  for (std::size_t i = 0; i < cubes.size(); ++i) {
     const auto join = [&](std::uint64_t first, std::uint64_t last) {
-      auto at = std::lower_bound(cubes.begin() + i + 1, cubes.end(), first);
-      for (; at != cubes.end() && *at <= last; ++at) {
-        const std::uint32_t a = root_of(parent, i);
-        const std::uint32_t b = root_of(parent, static_cast<std::uint32_t>(at - cubes.begin()));
-        parent[std::max(a, b)] = std::min(a, b);
-      }
+      auto at = std::lower_bound(cubes.begin() + static_cast<std::ptrdiff_t>(i) + 1, cubes.end(), first);
+      for (; at != cubes.end() && *at <= last; ++at) groups.join(i, static_cast<std::size_t>(at - cubes.begin()));
     };
     const std::uint64_t c = cubes[i];
     join(c + 1, c + 1);
@@ -48,8 +39,7 @@ std::vector<std::uint32_t> join_cubes(const std::vector<std::uint64_t>& cubes) {
     for (const std::uint64_t slice : {c + k_slice - k_row, c + k_slice, c + k_slice + k_row})
       join(slice - 1, slice + 1);
   }
-  for (std::uint32_t i = 0; i < cubes.size(); ++i) parent[i] = root_of(parent, i);
-  return parent;
+  return groups;
 }
 
 }  // namespace
@@ -62,12 +52,12 @@ std::vector<std::vector<std::uint32_t>> connected_groups(std::span<const Oriente
   std::vector<std::uint64_t> cubes = keys;
   std::sort(cubes.begin(), cubes.end());
   cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
-  const std::vector<std::uint32_t> group_of_cube = join_cubes(cubes);
+  DisjointSets group_of_cube = join_cubes(cubes);
 
   std::vector<std::vector<std::uint32_t>> groups(cubes.size());
   for (std::size_t k = 0; k < indices.size(); ++k) {
     const auto cube = std::lower_bound(cubes.begin(), cubes.end(), keys[k]) - cubes.begin();
-    groups[group_of_cube[static_cast<std::size_t>(cube)]].push_back(indices[k]);
+    groups[group_of_cube.root(static_cast<std::size_t>(cube))].push_back(indices[k]);
   }
   std::erase_if(groups, [](const auto& group) { return group.empty(); });
   std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "cloud2csg/export.hpp"
@@ -88,11 +87,6 @@ std::set<std::string> reserved_names() {
 }
 
 /// Angles of a quaternion carry its rounding; what is meant is the round number.
-double round_degrees(double radians) {
-  const double angle = radians * 180.0 / std::numbers::pi;
-  return std::abs(angle - std::round(angle)) < 1e-9 ? std::round(angle) : angle;
-}
-
 /// The turn of least angle that places a solid: of one of revolution, that of its axis; of a sphere, none.
 Eigen::AngleAxisd turn_of(const brep::KernelSolid& solid) {
   const Eigen::Quaterniond& q = solid.pose.orientation;
@@ -116,7 +110,7 @@ class SolidWriter {
     const std::string function = std::visit(*this, solid.shape);
     add("position", vector(solid.pose.position));
     const Eigen::AngleAxisd turn = turn_of(solid);
-    if (const double degrees = round_degrees(turn.angle()); std::abs(degrees) > 1e-10) {
+    if (const double degrees = script::degrees_of(turn.angle()); std::abs(degrees) > 1e-10) {
       const script::NumberFormat plain(1.0);
       add("axis", fmt::format("({})", plain(Eigen::Vector3d(turn.axis()))));
       add("degrees", plain(degrees));

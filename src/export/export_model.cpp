@@ -1,24 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 #include <utility>
 
 #include "base/atomic_file.hpp"
+#include "base/file_ending.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "mesh/model_extent.hpp"
 
 namespace cloud2csg {
 namespace {
-
-std::string lower_ending(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 const CsgTree& tree_of(const Model& model, const std::filesystem::path& file) {
   if (model.tree) return *model.tree;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <variant>
 
 #include "cloud2csg/error.hpp"
@@ -11,12 +10,7 @@
 namespace cloud2csg::openscad {
 namespace {
 
-double degrees(double radians) {
-  const double angle = radians * 180.0 / std::numbers::pi;
-  // Angles of a quaternion carry its rounding; what is meant is the round number.
-  const double rounded = std::round(angle);
-  return std::abs(angle - rounded) < 1e-9 ? rounded + 0.0 : angle;
-}
+using script::degrees_of;
 
 /// Angles for OpenSCAD's rotate([x, y, z]): about x first, z last, in the fixed frame.
 Eigen::Vector3d euler_angles(const Eigen::Matrix3d& m) {
@@ -24,17 +18,17 @@ Eigen::Vector3d euler_angles(const Eigen::Matrix3d& m) {
   constexpr double k_pole = 1e-9;
   if (std::hypot(m(0, 0), m(1, 0)) < k_pole) {
     // Looking along z: turning about x and about z is the same.
-    return {degrees(std::atan2(-m(1, 2), m(1, 1))), degrees(y), 0.0};
+    return {degrees_of(std::atan2(-m(1, 2), m(1, 1))), degrees_of(y), 0.0};
   }
-  return {degrees(std::atan2(m(2, 1), m(2, 2))), degrees(y), degrees(std::atan2(m(1, 0), m(0, 0)))};
+  return {degrees_of(std::atan2(m(2, 1), m(2, 2))), degrees_of(y), degrees_of(std::atan2(m(1, 0), m(0, 0)))};
 }
 
 /// Angles that turn the z axis into `axis`: about x alone if that does it, else about y, then z.
 Eigen::Vector3d axis_angles(const Eigen::Vector3d& axis) {
   constexpr double k_flat = 1e-12;
-  if (std::abs(axis.x()) < k_flat) return {degrees(std::atan2(-axis.y(), axis.z())), 0.0, 0.0};
+  if (std::abs(axis.x()) < k_flat) return {degrees_of(std::atan2(-axis.y(), axis.z())), 0.0, 0.0};
   const double off_axis = std::hypot(axis.x(), axis.y());
-  return {0.0, degrees(std::atan2(off_axis, axis.z())), degrees(std::atan2(axis.y(), axis.x()))};
+  return {0.0, degrees_of(std::atan2(off_axis, axis.z())), degrees_of(std::atan2(axis.y(), axis.x()))};
 }
 
 }  // namespace

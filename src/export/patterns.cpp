@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "primitive/overloaded.hpp"
+#include "primitive/lengths.hpp"
 
 namespace cloud2csg::script {
 namespace {
@@ -25,30 +25,12 @@ bool can_repeat(const Primitive& primitive) {
 }
 
 double size_difference(const Shape& a, const Shape& b) {
-  if (a.index() != b.index()) return k_infinite;
-  const auto between = [](std::initializer_list<double> differences) {
-    double most = 0;
-    for (const double difference : differences) most = std::max(most, std::abs(difference));
-    return most;
-  };
-  return std::visit(
-      Overloaded{[&](const Box& box) { return (box.size - std::get<Box>(b).size).cwiseAbs().maxCoeff(); },
-                 [&](const Sphere& sphere) { return between({sphere.radius - std::get<Sphere>(b).radius}); },
-                 [&](const Cylinder& cylinder) {
-                   const auto& other = std::get<Cylinder>(b);
-                   return between({cylinder.radius - other.radius, cylinder.height - other.height});
-                 },
-                 [&](const Cone& cone) {
-                   const auto& other = std::get<Cone>(b);
-                   return between({cone.radius_bottom - other.radius_bottom, cone.radius_top - other.radius_top,
-                                   cone.height - other.height});
-                 },
-                 [&](const Torus& torus) {
-                   const auto& other = std::get<Torus>(b);
-                   return between({torus.major_radius - other.major_radius, torus.minor_radius - other.minor_radius});
-                 },
-                 [](const auto&) { return k_infinite; }},
-      a);
+  const std::vector<double> lengths = lengths_of(a);
+  if (a.index() != b.index() || lengths.empty()) return k_infinite;
+  const std::vector<double> others = lengths_of(b);
+  double most = 0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) most = std::max(most, std::abs(lengths[i] - others[i]));
+  return most;
 }
 
 /// How far directions of unit length are apart where a solid looks the same turned; its symmetries do not count.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "base/disjoint_sets.hpp"
 #include "brep/balance_facets.hpp"
 #include "brep/kernel_solids.hpp"
 #include "cloud2csg/mesh.hpp"
@@ -12,19 +12,13 @@
 namespace cloud2csg::script {
 namespace {
 
-/// For each corner, one corner of its connected piece.
-std::vector<std::uint32_t> pieces_of(const brep::Facets& facets) {
-  std::vector<std::uint32_t> parent(facets.corners.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&parent](std::uint32_t corner) {
-    while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
-    return corner;
-  };
+/// The corners by the piece that their faces hang together in.
+DisjointSets pieces_of(const brep::Facets& facets) {
+  DisjointSets pieces(facets.corners.size());
   for (const auto& face : facets.faces) {
-    for (const std::uint32_t corner : face) parent[root(corner)] = root(face.front());
+    for (const std::uint32_t corner : face) pieces.join(corner, face.front());
   }
-  for (std::uint32_t corner = 0; corner < parent.size(); ++corner) parent[corner] = root(corner);
-  return parent;
+  return pieces;
 }
 
 }  // namespace
@@ -57,18 +51,18 @@ brep::Facets facets_of(Primitive primitive, const AlignedBox& everything, int re
 }
 
 std::vector<brep::Facets> shells_of(const brep::Facets& facets) {
-  const std::vector<std::uint32_t> piece = pieces_of(facets);
-  std::map<std::uint32_t, brep::Facets> shells;
+  DisjointSets pieces = pieces_of(facets);
+  std::map<std::size_t, brep::Facets> shells;
   std::vector<std::uint32_t> place(facets.corners.size(), 0);
   for (std::size_t i = 0; i < facets.corners.size(); ++i) {
-    std::vector<Eigen::Vector3d>& corners = shells[piece[i]].corners;
+    std::vector<Eigen::Vector3d>& corners = shells[pieces.root(i)].corners;
     place[i] = static_cast<std::uint32_t>(corners.size());
     corners.push_back(facets.corners[i]);
   }
   for (const auto& face : facets.faces) {
     std::vector<std::uint32_t> moved(face.size());
     std::transform(face.begin(), face.end(), moved.begin(), [&place](std::uint32_t corner) { return place[corner]; });
-    shells[piece[face.front()]].faces.push_back(std::move(moved));
+    shells[pieces.root(face.front())].faces.push_back(std::move(moved));
   }
   std::vector<brep::Facets> sorted;
   for (auto& [corner, shell] : shells) {

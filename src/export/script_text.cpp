@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <utility>
+
+#include "base/utf8.hpp"
 
 namespace cloud2csg::script {
 namespace {
@@ -32,31 +34,14 @@ struct Character {
 };
 constexpr std::uint32_t k_no_character = 0xFFFD;
 
-/// The first character of a text that is not empty; a byte that begins none is one of code k_no_character.
-Character first_character(std::string_view text) {
-  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned lead = byte(0);
-  if (lead < 0x80U) return {.code = lead, .bytes = text.substr(0, 1)};
-  const std::size_t length = lead >= 0xF0U ? 4 : lead >= 0xE0U ? 3 : 2;
-  constexpr std::array<std::uint32_t, 5> k_least{0, 0, 0x80, 0x800, 0x10000};
-  const Character none{.code = k_no_character, .bytes = text.substr(0, 1)};
-  if (lead < 0xC2U || lead > 0xF4U || text.size() < length) return none;
-  std::uint32_t code = lead & (0x7FU >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return none;
-    code = (code << 6U) | (byte(i) & 0x3FU);
-  }
-  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-  if (code < k_least[length] || code > 0x10FFFF || is_surrogate) return none;
-  return {.code = code, .bytes = text.substr(0, length)};
-}
-
+/// A byte that begins no character is one of code k_no_character.
 std::vector<Character> characters_of(std::string_view text) {
   std::vector<Character> characters;
   characters.reserve(text.size());
   while (!text.empty()) {
-    characters.push_back(first_character(text));
-    text.remove_prefix(characters.back().bytes.size());
+    const Utf8Character first = first_character(text).value_or(Utf8Character{.code = k_no_character, .bytes = 1});
+    characters.push_back({.code = first.code, .bytes = text.substr(0, first.bytes)});
+    text.remove_prefix(first.bytes);
   }
   return characters;
 }
@@ -77,6 +62,12 @@ std::string NumberFormat::operator()(double number) const {
 
 std::string NumberFormat::operator()(const Eigen::Vector3d& vector) const {
   return fmt::format("{}, {}, {}", (*this)(vector.x()), (*this)(vector.y()), (*this)(vector.z()));
+}
+
+double degrees_of(double radians) {
+  const double angle = radians * 180.0 / std::numbers::pi;
+  const double rounded = std::round(angle);
+  return std::abs(angle - rounded) < 1e-9 ? rounded + 0.0 : angle;
 }
 
 std::string UniqueNames::take(const std::string& wanted) {

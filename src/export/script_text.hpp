@@ -24,6 +24,9 @@ class NumberFormat {
   double smallest_;
 };
 
+/// Angles of a quaternion carry its rounding: one that is within 1e-9 degrees of a whole number is that number.
+[[nodiscard]] double degrees_of(double radians);
+
 /// Gives out names of letters, digits and underlines, each once.
 class UniqueNames {
  public:

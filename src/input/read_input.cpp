@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "base/file_ending.hpp"
 #include "base/parallel.hpp"
 #include "cloud/ply_header.hpp"
 #include "cloud2csg/error.hpp"
@@ -18,12 +18,6 @@ namespace {
 
 constexpr std::size_t k_chunk_points = 4096;
 constexpr std::uint64_t k_sampling_stage = 0x696e'7075'74;  // names its stream of random numbers
-
-std::string ending_of(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 bool is_one_of(std::string_view ending, std::initializer_list<std::string_view> endings) {
   return std::ranges::find(endings, ending) != endings.end();
@@ -88,7 +82,7 @@ PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, co
 }
 
 Input read_cloud_or_mesh(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
-  const std::string ending = ending_of(file);
+  const std::string ending = lower_ending(file);
   if (is_one_of(ending, {".stl", ".off", ".obj", ".3mf", ".glb"})) return read_and_sample(file, options, run);
   if (ending == ".ply" && ply_has_faces(file)) return read_and_sample(file, options, run);
   if (is_one_of(ending, {".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"})) return read_cloud(file, run);

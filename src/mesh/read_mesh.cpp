@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <string_view>
 #include <tuple>
 
+#include "base/file_ending.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 
@@ -23,9 +23,7 @@ namespace {
 }
 
 void require_readable(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_ending(file);
   constexpr std::array<std::string_view, 6> k_endings{".stl", ".off", ".obj", ".ply", ".3mf", ".glb"};
   if (std::find(k_endings.begin(), k_endings.end(), ending) == k_endings.end()) {
     fail(file, fmt::format("expected a file ending in .stl, .off, .obj, .ply, .3mf or .glb, found \"{}\"", ending));

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
-#include <cctype>
 #include <iterator>
 #include <string>
 
 #include "base/atomic_file.hpp"
+#include "base/file_ending.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 
@@ -63,9 +62,7 @@ std::string to_obj(const TriangleMesh& mesh) {
 }  // namespace
 
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_ending(file);
   if (ending == ".stl") return write_text_file(file, to_stl(mesh));
   if (ending == ".off") return write_text_file(file, to_off(mesh));
   if (ending == ".obj") return write_text_file(file, to_obj(mesh));

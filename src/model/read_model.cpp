@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/atomic_file.hpp"
+#include "base/file_ending.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
 #include "model/json_text.hpp"
@@ -178,8 +177,7 @@ Model parse_model(std::string_view json, const std::string& name) {
 }
 
 bool is_openscad(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_ending(file);
   return ending == ".scad" || ending == ".csg";
 }
 

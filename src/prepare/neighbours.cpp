@@ -6,7 +6,6 @@
 #include "base/parallel.hpp"
 
 namespace cloud2csg {
-namespace {}  // namespace
 
 CentredPoints centred(PointsView points) {
   const AlignedBox box = bounds_of(points);

@@ -10,6 +10,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
+#include "primitive/lengths.hpp"
 #include "scad/leaf_solids.hpp"
 #include "scad/place_solid.hpp"
 #include "scad/syntax.hpp"
@@ -38,17 +39,8 @@ std::vector<double> numbers_of(const Primitive& primitive) {
   };
   add(primitive.pose.position);
   add(primitive.pose.orientation.coeffs());
-  if (const auto* box = std::get_if<Box>(&primitive.shape)) add(box->size);
-  if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) numbers.push_back(sphere->radius);
-  if (const auto* cylinder = std::get_if<Cylinder>(&primitive.shape)) {
-    add(Eigen::Vector2d(cylinder->radius, cylinder->height));
-  }
-  if (const auto* cone = std::get_if<Cone>(&primitive.shape)) {
-    add(Eigen::Vector3d(cone->radius_bottom, cone->radius_top, cone->height));
-  }
-  if (const auto* torus = std::get_if<Torus>(&primitive.shape)) {
-    add(Eigen::Vector2d(torus->major_radius, torus->minor_radius));
-  }
+  const std::vector<double> lengths = lengths_of(primitive.shape);
+  numbers.insert(numbers.end(), lengths.begin(), lengths.end());
   if (const auto* polytope = std::get_if<Polytope>(&primitive.shape)) {
     for (const Plane& plane : polytope->planes) {
       add(plane.normal);

@@ -127,11 +127,10 @@ class FreeEnds {
     const BinRange range = exact.ranges[side];
     if (end == 0 ? range.first == 0 : range.last + 1 == bins_of(space_, exact, side).count()) return false;
     TermPart moved = exact;
-    (end == 0 ? moved.ranges[side].first : moved.ranges[side].last) += end == 0 ? -1U : 1U;
+    lengthen(moved.ranges[side], end);
     if (!reaches_other_places(exact, moved)) return false;
     Term longer = longest_[rule];
-    BinRange& longest = longer.parts[part].ranges[side];
-    (end == 0 ? longest.first : longest.last) += end == 0 ? -1U : 1U;
+    lengthen(longer.parts[part].ranges[side], end);
     const std::vector<std::uint32_t> changing = places_that_change(list_[rule].term, longer);
     for (const std::uint32_t i : changing) {
       if (is_free[i] == 0 || (owners_[i] != 0 && owners_[i] != rule + 1)) return false;
@@ -139,6 +138,13 @@ class FreeEnds {
     for (const std::uint32_t i : changing) owners_[i] = static_cast<std::uint32_t>(rule + 1);
     longest_[rule] = std::move(longer);
     return true;
+  }
+
+  static void lengthen(BinRange& range, std::size_t end) {
+    if (end == 0)
+      --range.first;
+    else
+      ++range.last;
   }
 
   /// Those that are in the term for some lengths of its parts, and for others not.

@@ -13,8 +13,9 @@
 #include <TopoDS_Wire.hxx>
 #include <gp_Pln.hxx>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "base/disjoint_sets.hpp"
 
 namespace cloud2csg::brep {
 namespace {
@@ -42,22 +43,17 @@ Eigen::Vector3d area_of(const Facets& facets, const Face& face) {
 
 /// Faces that hang together by edges, numbered from 0.
 std::vector<std::vector<std::size_t>> pieces_of(const Facets& facets) {
-  std::vector<std::size_t> parent(facets.faces.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&](std::size_t face) {
-    while (parent[face] != face) face = parent[face] = parent[parent[face]];
-    return face;
-  };
+  DisjointSets sets(facets.faces.size());
   std::map<EdgeKey, std::size_t> first_face;
   for (std::size_t f = 0; f < facets.faces.size(); ++f) {
     const Face& face = facets.faces[f];
     for (std::size_t i = 0; i < face.size(); ++i) {
       const auto [entry, is_new] = first_face.try_emplace(key_of(face[i], face[(i + 1) % face.size()]), f);
-      if (!is_new) parent[root(f)] = root(entry->second);
+      if (!is_new) sets.join(f, entry->second);
     }
   }
   std::map<std::size_t, std::vector<std::size_t>> by_root;
-  for (std::size_t f = 0; f < facets.faces.size(); ++f) by_root[root(f)].push_back(f);
+  for (std::size_t f = 0; f < facets.faces.size(); ++f) by_root[sets.root(f)].push_back(f);
   std::vector<std::vector<std::size_t>> pieces;
   pieces.reserve(by_root.size());
   for (auto& [_, faces] : by_root) pieces.push_back(std::move(faces));

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace cloud2csg {
+
+/// The code of a text's first character.
+struct Utf8Character {
+  std::uint32_t code = 0;
+  std::size_t bytes = 0;
+};
+
+/// Absent where the first byte begins no character of UTF-8: one that is cut off, longer than it need be, beyond
+/// Unicode or half of a pair. Precondition: the text is not empty.
+[[nodiscard]] inline std::optional<Utf8Character> first_character(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
+  const std::uint32_t lead = byte(0);
+  if (lead < 0x80U) return Utf8Character{.code = lead, .bytes = 1};
+  const std::size_t bytes = lead >= 0xF0U ? 4 : lead >= 0xE0U ? 3 : 2;
+  if (lead < 0xC2U || lead > 0xF4U || text.size() < bytes) return std::nullopt;
+  std::uint32_t code = lead & (0x7FU >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80U) return std::nullopt;
+    code = (code << 6U) | (byte(i) & 0x3FU);
+  }
+  constexpr std::array<std::uint32_t, 5> k_least{0, 0, 0x80, 0x800, 0x10000};
+  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+  if (code < k_least[bytes] || code > 0x10FFFF || is_surrogate) return std::nullopt;
+  return Utf8Character{.code = code, .bytes = bytes};
+}
+
+}  // namespace cloud2csg
