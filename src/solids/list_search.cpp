@@ -15,7 +15,7 @@ namespace {
 constexpr std::array k_starts{1.0, 0.5, 0.2};
 constexpr double k_hope = 0.3;         // the same for the first of two rules that only gain together
 constexpr double k_least_gain = 1e-7;  // less is rounding
-constexpr std::size_t k_most_sweeps = 6;
+constexpr std::size_t k_most_sweeps = 20;
 constexpr std::size_t k_most_pairs = 40;
 constexpr std::size_t k_large_work = 500'000;
 /// Pricings times the work of each, after which a list is no longer improved. Counted, so that the result does not
@@ -42,9 +42,14 @@ class ListSearch {
   DecisionList run() {
     DecisionList best;
     double best_cost = cost(best);
+    std::vector<Term> tried;
     for (const double hope : k_starts) {
       if (run_.stop.stop_requested() || (!best.empty() && is_over())) break;
-      DecisionList list = pruned(grown(start(hope), most_rules_));
+      DecisionList list = start(hope);
+      const Term first = list.empty() ? Term{} : list[0].term;
+      if (std::ranges::find(tried, first) != tried.end()) continue;
+      tried.push_back(first);
+      list = pruned(grown(std::move(list), most_rules_));
       if (!is_large_) list = improved(std::move(list));
       const double list_cost = cost(list);
       if (list_cost < best_cost - k_least_gain) {
@@ -85,15 +90,28 @@ class ListSearch {
     }
   }
 
+  /// By position, no rule that is put in there gains more.
+  [[nodiscard]] std::vector<double> most_gains(const DecisionList& list, std::span<const std::uint16_t> deciding,
+                                               bool is_in, const Focus& focus) const {
+    std::vector<double> gains = insertion_gains(list, deciding, space_.pulls, 0, is_in);
+    apply(focus, gains);
+    std::vector<double> most(list.size() + 1, 0.0);
+    for (std::size_t i = 0; i < gains.size(); ++i) most[deciding[i]] += std::max(gains[i], 0.0);
+    for (std::size_t position = list.size(); position-- > 0;) most[position] += most[position + 1];
+    return most;
+  }
+
   /// The best rule to put in.
   [[nodiscard]] Insertion best_insertion(const DecisionList& list, const Focus& focus) {
+    const std::vector<std::uint16_t> deciding = deciding_rules(list, space_.size());
     std::vector<Insertion> candidates;
     for (const bool is_in : {true, false}) {
+      const std::vector<double> most = most_gains(list, deciding, is_in, focus);
       for (const std::size_t position : insertion_positions(list, is_in)) {
-        candidates.push_back({.position = position, .is_in = is_in, .found = {}});
+        if (most[position] > k_least_gain) candidates.push_back({.position = position, .is_in = is_in, .found = {}});
       }
     }
-    const std::vector<std::uint16_t> deciding = deciding_rules(list, space_.size());
+    if (candidates.empty()) return {};
     spent_ += static_cast<double>(candidates.size() * work_of(space_));
     for_each_index(candidates.size(), without_stop(run_), [&](std::size_t c) {
       Insertion& candidate = candidates[c];
@@ -157,9 +175,20 @@ class ListSearch {
     return list;
   }
 
-  /// The one that leaves the least cost, absent where all make the list dearer. The list is as before afterwards: rules
-  /// are large, and so they are exchanged in place instead of in copies of it.
-  [[nodiscard]] std::optional<Reduction> best_reduction(DecisionList& list, double now) const {
+  /// What there is to gain when a rule has more members than it has.
+  [[nodiscard]] double gain_of_more(const DecisionList& list, std::span<const std::uint16_t> deciding, std::size_t rule,
+                                    const std::vector<std::uint8_t>& members) const {
+    double gain = 0;
+    for (std::size_t i = 0; i < deciding.size(); ++i) {
+      if (members[i] == 0 || deciding[i] <= rule) continue;
+      const bool is_in = deciding[i] < list.size() && list[deciding[i]].is_in;
+      if (is_in != list[rule].is_in) gain += is_in ? -space_.pulls[i] : space_.pulls[i];
+    }
+    return gain;
+  }
+
+  /// The one that leaves the least cost, absent where all make the list dearer.
+  [[nodiscard]] std::optional<Reduction> best_reduction(const DecisionList& list, double now) const {
     std::optional<Reduction> best;
     double best_cost = now + k_least_gain;
     const auto consider = [&](const Reduction& reduction) {
@@ -168,13 +197,14 @@ class ListSearch {
       best_cost = reduction.cost;
     };
     const std::vector<double> savings = removal_savings(list, space_.pulls, costs_);
+    const std::vector<std::uint16_t> deciding = deciding_rules(list, space_.size());
     const auto useless = static_cast<std::size_t>(std::ranges::max_element(savings) - savings.begin());
     if (!list.empty()) consider({.rule = useless, .part = {}, .cost = now - savings[useless]});
     for (std::size_t r = 0; r < list.size(); ++r) {
       for (const std::size_t p : parts_that_can_stand_alone(list[r].term)) {
-        Rule whole = std::exchange(list[r], with_part_alone(list[r], p));
-        consider({.rule = r, .part = p, .cost = cost(list)});
-        list[r] = std::move(whole);
+        const Rule alone = with_part_alone(list[r], p);
+        const double saved = cost_of(list[r].term, costs_) - cost_of(alone.term, costs_);
+        consider({.rule = r, .part = p, .cost = now - saved - gain_of_more(list, deciding, r, alone.members)});
       }
     }
     return best;

@@ -26,19 +26,15 @@ struct PricedTerm {
 /// What a term's leaves cost.
 [[nodiscard]] double cost_of(const Term& term, const TermCosts& costs);
 
-/// The term that gains most: over the boxes of all frames, the curved surfaces and their intervals, what a curved
-/// surface's inside or outside has in common with a box or a known solid, exactly; over polytopes by greedy cuts around
-/// the places that gain most. `gains` has one a place: what is gained by having it in the term. Only terms whose net is
+/// The term that gains most: over the boxes of all frames, the curved surfaces and their intervals, what a box or an
+/// interval has in common with the inside or outside of a curved surface or known solid, exactly; over polytopes by greedy cuts around the places
+/// that gain most. `gains` has one a place: what is gained by having it in the term. Only terms whose net is
 /// above `least`.
 [[nodiscard]] PricedTerm best_term(const TermSpace& space, std::span<const double> gains, const TermCosts& costs,
                                    double least = 0, TermKinds kinds = TermKinds::all);
 
-/// The parts of best_term(), for tests.
+/// The best of one family's boxes alone, for tests.
 [[nodiscard]] PricedTerm best_box(const TermSpace& space, std::uint32_t family, std::span<const double> gains,
                                   const TermCosts& costs, double least);
-[[nodiscard]] PricedTerm best_revolved(const TermSpace& space, std::uint32_t family, std::span<const double> gains,
-                                       const TermCosts& costs, double least);
-[[nodiscard]] PricedTerm best_polytope(const TermSpace& space, std::span<const double> gains, const TermCosts& costs,
-                                       double least);
 
 }  // namespace cloud2csg

@@ -52,6 +52,7 @@ struct TermSpace {
   std::vector<double> pulls = {};  ///< by place: what there is to gain by having it in the solid
   std::vector<BoxFamily> boxes = {};
   std::vector<RevolvedFamily> revolved = {};
+  std::vector<std::uint8_t> is_inside = {};  ///< a row for each place: of which curved surfaces it is inside
   std::vector<PlaneFamily> planes = {};
   bool has_oblique_planes = false;  ///< some that are not those of one box family
   AlignedBox part_bounds = {};      ///< a little beyond the part: what adds to it ends here at the latest
