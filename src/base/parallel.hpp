@@ -5,8 +5,11 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <mutex>
 
+#include "base/stage_share.hpp"
 #include "cloud2csg/run_context.hpp"
 
 #if defined(__SANITIZE_THREAD__)
@@ -61,12 +64,25 @@ void for_each_index(std::size_t count, const RunContext& run, const Work& work) 
 }
 
 /// The same for calls that are so short that handing them out one by one would take longer: `chunk` of them at a time.
+/// Reports how far it is as `share` of a stage, from one thread at a time.
 template <typename Work>
-void for_each_index_by_chunks(std::size_t count, std::size_t chunk, const RunContext& run, const Work& work) {
-  for_each_index((count + chunk - 1) / chunk, run, [&](std::size_t c) {
+void for_each_index_by_chunks(std::size_t count, std::size_t chunk, const RunContext& run, const StageShare& share,
+                              const Work& work) {
+  const std::size_t chunks = (count + chunk - 1) / chunk;
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  for_each_index(chunks, run, [&](std::size_t c) {
     const std::size_t end = std::min(count, (c + 1) * chunk);
     for (std::size_t i = c * chunk; i < end; ++i) work(i);
+    ++done;
+    const std::unique_lock lock(telling, std::try_to_lock);
+    if (lock) share.report(run, static_cast<double>(done) / static_cast<double>(chunks));
   });
+}
+
+template <typename Work>
+void for_each_index_by_chunks(std::size_t count, std::size_t chunk, const RunContext& run, const Work& work) {
+  for_each_index_by_chunks(count, chunk, run, StageShare(), work);
 }
 
 }  // namespace cloud2csg

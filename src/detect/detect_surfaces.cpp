@@ -71,7 +71,7 @@ std::vector<GrownSurface> find_all(const WorkCloud& cloud, const SearchLimits& l
   std::size_t draws = k_draws;
   for (std::uint64_t round = 0; draws <= k_most_draws && points.list().size() >= limits.least_points; ++round) {
     run.throw_if_stopped();
-    run.report("detect", cloud.size() - points.list().size(), cloud.size());
+    run.report("detect", cloud.size() - points.list().size(), cloud.size(), "points");
     std::optional<GrownSurface> surface = find_one(points, limits, draws, seed, round, run);
     draws = surface ? k_draws : 2 * draws;
     if (!surface) continue;
@@ -185,6 +185,7 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
     result.surfaces.push_back(detected(grown, work));
     result.unexplained -= grown.points.size();
   }
+  run.report("detect", cloud.size(), cloud.size(), "points");
   return result;
 }
 

@@ -194,7 +194,7 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   if (options.close_unseen_side && options.known.empty()) close_unseen_side(found, run);
   found.detect_seconds = watch.lap();
 
-  run.report("solids", 0, 1);
+  run.report("solids", 0, 0);
   std::vector<KnownSolid> known;
   for (std::size_t k = 0; k < options.known.size(); ++k) {
     known.push_back({.solid = options.known[k], .own = std::move(rest.known[k])});
@@ -202,7 +202,6 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   SolidOptions solids = options.solids;
   if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
   found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
-  run.report("solids", 1, 1);
   if (found.choice.solids.empty()) {
     throw Error({.file = {},
                  .where = {},

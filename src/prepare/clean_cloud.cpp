@@ -40,17 +40,22 @@ Indices without_duplicates(const Points& points) {
   return order;
 }
 
+/// Of the time that a pass takes, what it fits planes for.
+constexpr double k_fitting = 0.9;
+
 /// Where outliers are many they bend the planes that judge them, so it takes some passes.
 Indices without_outliers(const Points& points, Indices kept, Scale scale, CleanReport& report, const RunContext& run) {
   Strictness strictness = Strictness::trusting;
+  const StageShare cleaning("clean", points.size(), "points");
   for (int pass = 0; pass < k_passes && kept.size() > k_judges; ++pass) {
     PointCloud remaining{.positions = Points(kept.size())};
     for (std::size_t i = 0; i < kept.size(); ++i) remaining.positions.set(i, points[kept[i]]);
     // Outliers pass for noise, in part: the fewer are left, the less.
     if (pass > 0) scale = estimate_scale(remaining, run);
-    const LocalFits fits = fit_locally(
-        remaining, strictness == Strictness::trusting ? k_judges : k_suspicious_neighbours, scale.noise, run);
-    const std::vector<Verdict> verdicts = judge_points(fits, scale, strictness, run);
+    const StageShare of_pass = cleaning.part(pass / double{k_passes}, (pass + 1) / double{k_passes});
+    const std::size_t width = strictness == Strictness::trusting ? k_judges : k_suspicious_neighbours;
+    const LocalFits fits = fit_locally(remaining, width, scale.noise, run, of_pass.part(0, k_fitting));
+    const std::vector<Verdict> verdicts = judge_points(fits, scale, strictness, run, of_pass.part(k_fitting, 1));
     Indices next;
     for (std::size_t i = 0; i < kept.size(); ++i) {
       if (verdicts[i] == Verdict::stays) next.push_back(kept[fits.order[i]]);
@@ -62,9 +67,9 @@ Indices without_outliers(const Points& points, Indices kept, Scale scale, CleanR
     if (static_cast<double>(gone) >= k_many * static_cast<double>(kept.size())) strictness = Strictness::suspicious;
     const bool is_settled = static_cast<double>(gone) < k_settled * static_cast<double>(kept.size());
     kept = std::move(next);
-    run.report("clean", static_cast<std::size_t>(pass) + 1, k_passes);
     if (is_settled) break;
   }
+  cleaning.report(run, 1);
   return kept;
 }
 

@@ -56,14 +56,14 @@ void count_doubtful(EstimatedNormals& result, const Points& places, const Points
 
 /// Sensors know the side; without them the whole of the cloud tells.
 Orientation orientation_of(const PointCloud& cloud, const LocalFits& fits, const Points& places, const Points& normals,
-                           const Scale& scale, const RunContext& run) {
+                           const Scale& scale, const RunContext& run, const StageShare& share) {
   if (!cloud.has_sensor_positions()) {
     const std::vector<double> areas = surface_areas(places, normals, fits.neighbours, scale.noise);
-    return find_orientation(places, normals, fits.neighbours, areas, scale.noise, run);
+    return find_orientation(places, normals, fits.neighbours, areas, scale.noise, run, share);
   }
   Points sensors(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) sensors.set(i, cloud.sensor_positions[fits.order[i]] - fits.centre);
-  return {.flipped = orient_to_sensors(places, normals, sensors, fits.neighbours, run)};
+  return {.flipped = orient_to_sensors(places, normals, sensors, fits.neighbours, run, share)};
 }
 
 /// One point of every few, which one by chance: scans come in rows.
@@ -88,8 +88,8 @@ bool look_away(const PointCloud& cloud, std::span<const std::uint32_t> points) {
 
 }  // namespace
 
-EstimatedNormals orient_fits(const PointCloud& cloud, const LocalFits& fits, const Scale& scale,
-                             const RunContext& run) {
+EstimatedNormals orient_fits(const PointCloud& cloud, const LocalFits& fits, const Scale& scale, const RunContext& run,
+                             const StageShare& share) {
   EstimatedNormals result{.normals = Points(cloud.size())};
   Points normals(cloud.size());
   Points places(cloud.size());
@@ -97,7 +97,7 @@ EstimatedNormals orient_fits(const PointCloud& cloud, const LocalFits& fits, con
     normals.set(i, fits.planes[i].normal);
     places.set(i, fits.points[i] - fits.planes[i].offset * fits.planes[i].normal);
   }
-  const Orientation orientation = orientation_of(cloud, fits, places, normals, scale, run);
+  const Orientation orientation = orientation_of(cloud, fits, places, normals, scale, run, share.part(0, 0.9));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (orientation.flipped[i] != 0) normals.set(i, -normals[i]);
   }
@@ -105,14 +105,14 @@ EstimatedNormals orient_fits(const PointCloud& cloud, const LocalFits& fits, con
   count_doubtful(result, places, normals, fits.neighbours, orientation.is_doubtful);
   result.doubtful_at += fits.centre;
   for (std::size_t i = 0; i < cloud.size(); ++i) result.normals.set(fits.order[i], normals[i]);
-  run.report("normals", 2, 2);
+  share.report(run, 1);
   return result;
 }
 
 EstimatedNormals estimate_normals(const PointCloud& cloud, const Scale& scale, const RunContext& run) {
-  const LocalFits fits = fit_locally(cloud, plane_neighbours(scale), scale.noise, run);
-  run.report("normals", 1, 2);
-  return orient_fits(cloud, fits, scale, run);
+  const StageShare share("normals", cloud.size(), "points");
+  const LocalFits fits = fit_locally(cloud, plane_neighbours(scale), scale.noise, run, share.part(0, 0.6));
+  return orient_fits(cloud, fits, scale, run, share.part(0.6, 1));
 }
 
 NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const RunContext& run) {

@@ -162,10 +162,10 @@ LocalPlane fit_local_plane(const Points& points, std::size_t point, std::span<co
 }
 
 std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours, double noise,
-                                         const RunContext& run) {
+                                         const RunContext& run, const StageShare& share) {
   std::vector<LocalPlane> planes(points.size());
   if (neighbours.width < 3) return planes;
-  for_each_index_by_chunks(points.size(), k_chunk_points, run, [&](std::size_t i) {
+  for_each_index_by_chunks(points.size(), k_chunk_points, run, share, [&](std::size_t i) {
     const double radius = neighbours.distances_of(i).back();
     planes[i] =
         fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, k_bend_tolerance * radius));
@@ -178,15 +178,16 @@ std::size_t plane_neighbours(const Scale& scale) {
   return static_cast<std::size_t>(std::min(wanted, k_most_neighbours));
 }
 
-LocalFits fit_locally(const PointCloud& cloud, std::size_t width, double noise, const RunContext& run) {
+LocalFits fit_locally(const PointCloud& cloud, std::size_t width, double noise, const RunContext& run,
+                      const StageShare& share) {
   const CentredPoints local = centred(cloud.positions);
   LocalFits fits{.order = {}, .points = Points(cloud.size()), .centre = local.centre, .neighbours = {}, .planes = {}};
   const NeighbourTree first(local.points);
   fits.order.assign(first.order().begin(), first.order().end());
   for (std::size_t i = 0; i < fits.order.size(); ++i) fits.points.set(i, local.points[fits.order[i]]);
   const NeighbourTree tree(fits.points);
-  fits.neighbours = find_neighbours(fits.points, tree, width, run);
-  fits.planes = fit_local_planes(fits.points, fits.neighbours, noise, run);
+  fits.neighbours = find_neighbours(fits.points, tree, width, run, share.part(0, 0.5));
+  fits.planes = fit_local_planes(fits.points, fits.neighbours, noise, run, share.part(0.5, 1));
   return fits;
 }
 

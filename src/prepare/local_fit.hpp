@@ -31,7 +31,8 @@ struct LocalPlane {
 /// The planes of all points. The tolerance is that of the noise, or a small share of the neighbourhood's radius where
 /// that is more: curved surfaces leave their planes. O(n k) @throws Cancelled
 [[nodiscard]] std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours,
-                                                       double noise, const RunContext& run);
+                                                       double noise, const RunContext& run,
+                                                       const StageShare& share = {});
 
 /// The planes of all points of a cloud, with what they were fitted to: cleaning and normals both live off these.
 struct LocalFits {
@@ -44,7 +45,8 @@ struct LocalFits {
 };
 
 /// Planes of `width` neighbours each. O(n width log n) @throws Cancelled
-[[nodiscard]] LocalFits fit_locally(const PointCloud& cloud, std::size_t width, double noise, const RunContext& run);
+[[nodiscard]] LocalFits fit_locally(const PointCloud& cloud, std::size_t width, double noise, const RunContext& run,
+                                    const StageShare& share);
 
 /// How many neighbours a plane needs for its normal to be right to about three degrees.
 [[nodiscard]] std::size_t plane_neighbours(const Scale& scale);

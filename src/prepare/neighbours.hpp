@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/stage_share.hpp"
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/run_context.hpp"
 #include "geometry/neighbour_tree.hpp"
@@ -38,6 +39,6 @@ struct NeighbourTable {
 
 /// The table of all points; its width is at most one less than there are points. O(n k log n) @throws Cancelled
 [[nodiscard]] NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
-                                             const RunContext& run);
+                                             const RunContext& run, const StageShare& share = {});
 
 }  // namespace cloud2csg

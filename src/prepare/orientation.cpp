@@ -116,14 +116,14 @@ PatchSource source_of(const Cloud& cloud, const Patches& patches, std::span<cons
 }
 
 /// The field of each patch at the middles of all. Its own is none: it lies in its plane.
-PatchFields fields_of(const Cloud& cloud, const Patches& patches, const RunContext& run) {
+PatchFields fields_of(const Cloud& cloud, const Patches& patches, const RunContext& run, const StageShare& share) {
   std::vector<PatchSource> sources;
   for (const std::vector<std::uint32_t>& points : patches.points) {
     sources.push_back(source_of(cloud, patches, points));
   }
   const std::size_t count = sources.size();
   PatchFields fields{.count = count, .values = std::vector<float>(count * count, 0.0F)};
-  for_each_index(count, run, [&](std::size_t source) {
+  for_each_index_by_chunks(count, 1, run, share, [&](std::size_t source) {
     for (std::size_t i = 0; i < count; ++i) {
       if (i != source) fields.values[source * count + i] = static_cast<float>(sources[source].at(sources[i].all.place));
     }
@@ -204,7 +204,8 @@ double agreement(const Vector3d& step, const Vector3d& normal, const Vector3d& o
 }
 
 Orientation find_orientation(const Points& places, const Points& normals, const NeighbourTable& neighbours,
-                             const std::vector<double>& areas, double noise, const RunContext& run) {
+                             const std::vector<double>& areas, double noise, const RunContext& run,
+                             const StageShare& share) {
   const Cloud cloud{places, normals, neighbours, areas};
   const std::size_t most = std::max(k_smallest_largest_patch, cloud.size() / k_wanted_patches);
   const Patches patches = largest_of(grow_patches(places, normals, neighbours, noise, k_least_patch, most));
@@ -214,7 +215,7 @@ Orientation find_orientation(const Points& places, const Points& normals, const 
     weights.push_back(static_cast<double>(points.size()));
   }
   const PatchSigns signs =
-      find_patch_signs(fields_of(cloud, patches, run), weights, votes_between(cloud, patches), run);
+      find_patch_signs(fields_of(cloud, patches, run, share), weights, votes_between(cloud, patches), run);
   Orientation result{.flipped = patches.flipped,
                      .is_doubtful = std::vector<char>(cloud.size(), 0),
                      .bodies = count_bodies(patches, signs, cloud.size())};

@@ -26,12 +26,13 @@ struct Orientation {
 /// @throws Cancelled
 [[nodiscard]] Orientation find_orientation(const Points& places, const Points& normals,
                                            const NeighbourTable& neighbours, const std::vector<double>& areas,
-                                           double spacing, const RunContext& run);
+                                           double noise, const RunContext& run, const StageShare& share);
 
 /// Which normals to turn so that all look towards the sensors that saw their points. Where the line of sight grazes the
 /// surface, an error of the normal would decide: there the neighbours have the say, those seen squarely the most. O(n)
 /// @throws Cancelled
 [[nodiscard]] std::vector<char> orient_to_sensors(const Points& places, const Points& normals, const Points& sensors,
-                                                  const NeighbourTable& neighbours, const RunContext& run);
+                                                  const NeighbourTable& neighbours, const RunContext& run,
+                                                  const StageShare& share);
 
 }  // namespace cloud2csg

@@ -80,11 +80,11 @@ bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Stric
 }  // namespace
 
 std::vector<Verdict> judge_points(const LocalFits& fits, const Scale& scale, Strictness strictness,
-                                  const RunContext& run) {
+                                  const RunContext& run, const StageShare& share) {
   const std::size_t count = fits.points.size();
   std::vector<Verdict> verdicts(count, Verdict::stays);
   if (fits.neighbours.width < k_least_witnesses) return verdicts;
-  for_each_index_by_chunks(count, k_chunk_points, run, [&](std::size_t i) {
+  for_each_index_by_chunks(count, k_chunk_points, run, share, [&](std::size_t i) {
     if (is_on_surface(fits, i, scale.noise, strictness)) return;
     const bool is_far = fits.neighbours.distances_of(i)[k_least_witnesses - 1] > k_isolated_spacings * scale.spacing;
     verdicts[i] = is_far ? Verdict::isolated : Verdict::off_surface;

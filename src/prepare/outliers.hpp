@@ -18,7 +18,7 @@ enum class Verdict : std::uint8_t { stays, isolated, off_surface };
 /// Which points lie on a surface: through them go enough of the planes of their neighbours. By entry of the fits.
 /// O(n) @throws Cancelled
 [[nodiscard]] std::vector<Verdict> judge_points(const LocalFits& fits, const Scale& scale, Strictness strictness,
-                                                const RunContext& run);
+                                                const RunContext& run, const StageShare& share);
 
 /// Neighbours whose planes judge a point.
 constexpr std::size_t k_judges = 24;

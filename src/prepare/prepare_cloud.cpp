@@ -81,9 +81,14 @@ bool has_duplicates(const LocalFits& fits) {
 bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options, PreparedCloud& prepared,
                          const RunContext& run) {
   if (!options.clean.remove_outliers || cloud.size() > options.clean.point_budget) return false;
-  const LocalFits fits = fit_locally(cloud, plane_neighbours(prepared.scale), prepared.scale.noise, run);
+  // Where this does not do, cleaning begins anew: it counts as the first of its passes.
+  const StageShare cleaning("clean", cloud.size(), "points");
+  const StageShare trial = cleaning.part(0, 0.25);
+  const LocalFits fits =
+      fit_locally(cloud, plane_neighbours(prepared.scale), prepared.scale.noise, run, trial.part(0, 0.9));
   if (has_duplicates(fits)) return false;
-  const std::vector<Verdict> verdicts = judge_points(fits, prepared.scale, Strictness::trusting, run);
+  const std::vector<Verdict> verdicts =
+      judge_points(fits, prepared.scale, Strictness::trusting, run, trial.part(0.9, 1));
   std::vector<std::uint32_t> kept;
   CleanReport report;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
@@ -92,9 +97,10 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
     report.off_surface += verdicts[i] == Verdict::off_surface ? 1 : 0;
   }
   if (is_much(cloud.size() - kept.size(), cloud.size())) return false;
-  run.report("clean", 1, 1);
+  cleaning.report(run, 1);
   std::sort(kept.begin(), kept.end());
-  EstimatedNormals estimated = orient_fits(cloud, fits, prepared.scale, run);
+  EstimatedNormals estimated =
+      orient_fits(cloud, fits, prepared.scale, run, StageShare("normals", cloud.size(), "points"));
   PointCloud oriented = cloud;
   oriented.normals = std::move(estimated.normals);
   prepared.cloud = select_points(oriented, kept);

@@ -30,7 +30,7 @@ double sight_cosine(const Vector3d& place, const Vector3d& normal, const Vector3
 }  // namespace
 
 std::vector<char> orient_to_sensors(const Points& places, const Points& normals, const Points& sensors,
-                                    const NeighbourTable& neighbours, const RunContext& run) {
+                                    const NeighbourTable& neighbours, const RunContext& run, const StageShare& share) {
   // How surely each normal is the right way round: its cosine, negative to turn it.
   std::vector<double> signs(places.size());
   std::vector<char> is_grazing(places.size());
@@ -53,6 +53,7 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
       if (std::abs(votes) > majority * weight) next[i] = votes / static_cast<double>(links);
     });
     signs = std::move(next);
+    share.report(run, (round + 1) / double{k_rounds});
   }
   std::vector<char> flipped(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) flipped[i] = signs[i] < 0.0 ? 1 : 0;

@@ -56,7 +56,6 @@ class ListSearch {
         best = std::move(list);
         best_cost = list_cost;
       }
-      run_.report("solids", best.size(), 0);
     }
     return is_large_ ? improved(std::move(best)) : best;
   }
@@ -254,12 +253,13 @@ class ListSearch {
   }
 
   /// Prunes another list and takes it if it costs less.
-  bool take(DecisionList&& other, DecisionList& list, double& now) const {
+  bool take(DecisionList&& other, DecisionList& list, double& now) {
     other = pruned(std::move(other));
     const double other_cost = cost(other);
     if (other_cost >= now - k_least_gain) return false;
     list = std::move(other);
     now = other_cost;
+    run_.report("solids", ++improvements_, 0, "improvements");
     return true;
   }
 
@@ -300,7 +300,8 @@ class ListSearch {
   const TermCosts& costs_;
   std::size_t most_rules_;
   double spent_ = 0;  ///< work of all pricings so far
-  bool is_large_;     ///< simple terms are tried first, and only the best start is improved
+  std::size_t improvements_ = 0;
+  bool is_large_;  ///< simple terms are tried first, and only the best start is improved
   const RunContext& run_;
 };
 

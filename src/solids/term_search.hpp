@@ -27,9 +27,9 @@ struct PricedTerm {
 [[nodiscard]] double cost_of(const Term& term, const TermCosts& costs);
 
 /// The term that gains most: over the boxes of all frames, the curved surfaces and their intervals, what a box or an
-/// interval has in common with the inside or outside of a curved surface or known solid, exactly; over polytopes by greedy cuts around the places
-/// that gain most. `gains` has one a place: what is gained by having it in the term. Only terms whose net is
-/// above `least`.
+/// interval has in common with the inside or outside of a curved surface or known solid, exactly; over polytopes by
+/// greedy cuts around the places that gain most. `gains` has one a place: what is gained by having it in the term. Only
+/// terms whose net is above `least`.
 [[nodiscard]] PricedTerm best_term(const TermSpace& space, std::span<const double> gains, const TermCosts& costs,
                                    double least = 0, TermKinds kinds = TermKinds::all);
 

@@ -143,6 +143,20 @@ TEST(DetectSurfaces, GivesTheSameOnAnyNumberOfThreads) {
   }
 }
 
+TEST(DetectSurfaces, TellsHowManyPointsAreExplained) {
+  const PointCloud cloud = cloud_of(test::plate_with_holes(), 0.01);
+  std::vector<std::size_t> done;
+  const RunContext run{.on_progress = [&](const Progress& progress) {
+    EXPECT_EQ(progress.unit, "points");
+    EXPECT_EQ(progress.total, cloud.size());
+    done.push_back(progress.done);
+  }};
+  EXPECT_EQ(detect(cloud, 0.01, {}, run).surfaces.size(), 9U);
+  EXPECT_GT(done.size(), 9U);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_EQ(done.back(), cloud.size());
+}
+
 TEST(DetectSurfaces, SharesThePointsOut) {
   const PointCloud cloud = cloud_of(test::block_with_pockets(), 0.02);
   const Detection detection = detect(cloud, 0.02);
