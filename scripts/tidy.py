@@ -124,6 +124,9 @@ class Lint:
         if len(parts) > 1:
             return tuple(first + second for first, second in zip(*map(self.check, parts)))
         flags = [*unit.flags, "-Wno-unknown-warning-option"]
+        # What sources that are looked at together hide of each other, none of them hides alone; the compiler tells that.
+        if len(unit.sources) > 1:
+            flags.append("-Wno-shadow")
         config = f"--config-file={self.root}/.clang-tidy"
         result = run(["clang-tidy", "-quiet", config, *self.checks, main, "--", *flags], cwd=unit.directory)
         if result.returncode == 0 and key:
