@@ -7,10 +7,12 @@ is not looked at again until something that it is made of changes: any file that
 checks or clang-tidy itself. What passed is kept in ~/.cache/cloud2csg-tidy (or under XDG_CACHE_HOME), a file of size
 zero each.
 
-tidy.py [--each] BUILD_FOLDER SOURCE...    exit status 1 when anything was found
-  --each  every source by itself, with the checks that follow paths through functions (clang-analyzer-*), which look at
-          nothing but main files: about five times slower
+tidy.py [--each] [--seconds N] BUILD_FOLDER SOURCE...    exit status 1 when anything was found
+  --each       every source by itself, with the checks that follow paths through functions (clang-analyzer-*), which look
+               at nothing but main files: about five times slower
+  --seconds N  begin nothing after so long; what is named first is looked at first
 """
+import argparse
 import collections
 import concurrent.futures
 import hashlib
@@ -74,7 +76,7 @@ class Lint:
         for (_, flags, directory), sources in together.items():
             parts = -(-len(sources) // self.most_sources)
             units += [Unit(sorted(sources)[part::parts], list(flags), directory) for part in range(parts)]
-        return sorted(units, key=lambda unit: -len(unit.sources))
+        return units
 
     def main_source(self, unit):
         """The one source of a unit, or a new one that includes all."""
@@ -134,24 +136,41 @@ class Lint:
         return int(result.returncode != 0), 0, (result.stdout + result.stderr).decode()
 
 
-def main(build, sources, each):
-    wanted = {str(pathlib.Path(source).resolve()) for source in sources}
+def main(build, sources, each, seconds):
+    wanted = {str(pathlib.Path(source).resolve()): place for place, source in enumerate(sources)}
     commands = json.loads(pathlib.Path(build, "compile_commands.json").read_text())
     entries = {entry["file"]: entry for entry in commands if entry["file"] in wanted}
-    for missing in sorted(wanted - entries.keys()):
-        print(f"tidy: {missing} is not compiled in {build}", file=sys.stderr)
+    missing = sorted(wanted.keys() - entries.keys())
+    for source in missing:
+        print(f"tidy: {source} is not compiled in {build}", file=sys.stderr)
     lint = Lint(build, each)
-    known, failed = 0, len(wanted - entries.keys())
+    units = sorted(lint.units_of(entries.values()), key=lambda unit: min(wanted[source] for source in unit.sources))
+    end = time.monotonic() + seconds
+
+    def check_in_time(unit):
+        return lint.check(unit) if time.monotonic() < end else None
+
+    known, left_out, failed = 0, 0, len(missing)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for with_findings, were_known, words in pool.map(lint.check, lint.units_of(entries.values())):
+        for unit, outcome in zip(units, pool.map(check_in_time, units)):
+            if outcome is None:
+                left_out += len(unit.sources)
+                continue
+            with_findings, were_known, words = outcome
             known += were_known
             failed += with_findings
             if with_findings:
                 print(words, flush=True)
-    print(f"tidy: {len(entries)} sources, {known} of them known to pass, {failed} groups with findings")
+    print(f"tidy: {len(entries)} sources, {known} of them known to pass, {left_out} left out for lack of time, "
+          f"{failed} groups with findings")
     return 1 if failed else 0
 
 
 if __name__ == "__main__":
-    each = sys.argv[1:2] == ["--each"]
-    sys.exit(main(sys.argv[1 + each], sys.argv[2 + each:], each))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--each", action="store_true", help="see above")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="see above")
+    parser.add_argument("build")
+    parser.add_argument("sources", nargs="+")
+    arguments = parser.parse_args()
+    sys.exit(main(arguments.build, arguments.sources, arguments.each, arguments.seconds))
