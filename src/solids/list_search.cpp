@@ -20,7 +20,7 @@ constexpr std::size_t k_most_pairs = 40;
 constexpr std::size_t k_large_work = 500'000;
 /// Pricings times the work of each, after which a list is no longer improved. Counted, so that the result does not
 /// depend on the machine: some ten seconds on one core.
-constexpr double k_most_work = 1e10;
+constexpr double k_most_work = 3e9;
 
 /// About what it takes to price all terms once.
 std::size_t work_of(const TermSpace& space) {
