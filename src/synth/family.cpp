@@ -56,6 +56,7 @@ Family family_of(std::string_view name) {
   const auto* const found = std::ranges::find(k_families, name, [](Family family) { return to_string(family); });
   if (found != k_families.end()) return *found;
   std::vector<std::string_view> names;
+  names.reserve(k_families.size());
   for (const Family family : k_families) names.push_back(to_string(family));
   throw Error({.file = {},
                .where = "family",
