@@ -86,7 +86,6 @@ std::set<std::string> reserved_names() {
   return names;
 }
 
-/// Angles of a quaternion carry its rounding; what is meant is the round number.
 /// The turn of least angle that places a solid: of one of revolution, that of its axis; of a sphere, none.
 Eigen::AngleAxisd turn_of(const brep::KernelSolid& solid) {
   const Eigen::Quaterniond& q = solid.pose.orientation;

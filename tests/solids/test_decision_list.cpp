@@ -162,14 +162,14 @@ std::vector<Term> all_pairs(const TermSpace& space) {
       TermPart a{.kind = PartKind::revolved, .family = first};
       TermPart b{.kind = PartKind::revolved, .family = second};
       b.ranges[0] = {0, space.revolved[second].bins.count() - 1};
-      for (b.is_inverted = false;; b.is_inverted = true) {
+      for (const bool is_inverted : {false, true}) {
+        b.is_inverted = is_inverted;
         for (std::uint32_t from = 0; from < space.revolved[first].bins.count(); ++from) {
           for (std::uint32_t to = from; to < space.revolved[first].bins.count(); ++to) {
             a.ranges[0] = {from, to};
             pairs.push_back({.parts = {a, b}});
           }
         }
-        if (b.is_inverted) break;
       }
     }
   }
