@@ -39,7 +39,8 @@ lint: configure ## clang-format and clang-tidy; any finding is an error
 
 analyze: configure ## Follow the paths through every source with clang's analyzer: half an hour
 	@scripts/install_dependencies.sh lint
-	@git ls-files 'src/*.cpp' 'apps/*.cpp' 'bench/*.cpp' 'python/*.cpp' | xargs scripts/tidy.py --each build/release
+	@test -f build/debug/build.ninja || cmake --preset debug >/dev/null
+	@git ls-files 'src/*.cpp' 'apps/*.cpp' 'bench/*.cpp' 'python/*.cpp' | xargs scripts/tidy.py --each build/debug
 
 install: configure ## Install program, library and headers under PREFIX
 	@cmake --build --preset release --target all

@@ -24,7 +24,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   arguments.settings = names;
   QualityOptions& options = arguments.options;
   app.add_option("--part", arguments.part, "What to measure")
-      ->check(CLI::IsMember({"judge", "models", "random", "defects", "refine", "scans", "ablation", "all"}))
+      ->check(CLI::IsMember(
+          {"judge", "models", "random", "clusters", "repeats", "defects", "refine", "scans", "ablation", "all"}))
       ->capture_default_str();
   app.add_option("--strategies", arguments.settings, "Settings of the extraction, separated by commas")
       ->delimiter(',')
@@ -32,10 +33,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--seeds", options.seeds, "Runs a shipped model")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--models", arguments.models,
-                 "Random models [500; 50 with defects, 100 scanned, 200 for the ablation]")
+                 "Random models [500; 20 clusters of each size, 50 with defects, 100 scanned, 200 for the ablation]")
       ->check(CLI::PositiveNumber);
   app.add_option("--first-seed", options.first_seed, "Seed of the first random model")->capture_default_str();
-  app.add_option("--noise", options.noise, "Noise of random models")
+  app.add_option("--noise", options.noise, "Noise of shipped and random models")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--keep", options.run.keep, "A folder for the worst of each part: truth, result and cloud");
@@ -49,6 +50,8 @@ void print_part(const std::string& part, const QualityOptions& options) {
   if (is_wanted("judge")) print_judge_check();
   if (is_wanted("models")) print_models(options);
   if (is_wanted("random")) print_random(options);
+  if (is_wanted("clusters")) print_clusters(options);
+  if (is_wanted("repeats")) print_repeats(options);
   if (is_wanted("defects")) print_defects(options);
   if (is_wanted("refine")) print_refinement(options);
   if (is_wanted("scans")) print_scans(options);
@@ -62,7 +65,8 @@ int run(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   QualityOptions& options = arguments.options;
   if (arguments.models > 0) {
-    options.random_models = options.defect_models = options.ablation_models = options.scan_models = arguments.models;
+    options.random_models = options.cluster_models = options.defect_models = arguments.models;
+    options.ablation_models = options.scan_models = arguments.models;
   }
   for (const Setting& setting : all_settings()) {
     if (std::ranges::count(arguments.settings, setting.name) > 0) options.run.settings.push_back(setting);

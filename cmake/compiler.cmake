@@ -14,6 +14,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(cloud2csg_compiler INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds
                                                       -Wno-stringop-overflow -Wno-stringop-overread
                                                       -Wno-restrict)
+  # It takes sources that are compiled together (CMAKE_UNITY_BUILD) for headers.
+  target_compile_options(cloud2csg_compiler INTERFACE -Wno-subobject-linkage)
 endif()
 if(CLOUD2CSG_SANITIZERS)
   target_compile_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS}

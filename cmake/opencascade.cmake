@@ -9,7 +9,7 @@ if(NOT CLOUD2CSG_OPENCASCADE STREQUAL "OFF")
   set(opencascade_libraries)
   foreach(
     name IN
-    ITEMS TKXDESTEP TKSTEP TKSTEPBase TKXSBase TKXCAF TKLCAF TKCDF TKShHealing TKBO TKPrim TKTopAlgo TKGeomAlgo TKBRep
+    ITEMS TKMesh TKXDESTEP TKSTEP TKSTEPBase TKXSBase TKXCAF TKLCAF TKCDF TKShHealing TKBO TKPrim TKTopAlgo TKGeomAlgo TKBRep
           TKGeomBase TKG3d TKG2d TKMath TKernel)
     find_library(opencascade_${name} ${name})
     if(opencascade_${name})

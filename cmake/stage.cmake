@@ -1,3 +1,16 @@
+# cloud2csg_sources(VARIABLE folder): the sources of a folder, as found when building. Several are compiled as one
+# (CMAKE_UNITY_BUILD, see the presets), but those that include themselves once for every instruction set.
+function(cloud2csg_sources variable folder)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  foreach(source IN LISTS sources)
+    file(STRINGS ${source} for_each_target REGEX "define HWY_TARGET_INCLUDE" LIMIT_COUNT 1)
+    if(for_each_target)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+  set(${variable} ${sources} PARENT_SCOPE)
+endfunction()
+
 # cloud2csg_stage(NAME stage [DEPENDS stages...] [LINK libraries...])
 #
 # One library target a folder of src/: a stage that includes a header of a stage it does not name
@@ -5,11 +18,10 @@
 # All stages together are installed as one library (cmake/package.cmake).
 function(cloud2csg_stage)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "DEPENDS;LINK")
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${arg_NAME}/*.cpp)
+  cloud2csg_sources(sources ${arg_NAME})
   set(target cloud2csg_${arg_NAME})
   add_library(${target} STATIC ${sources})
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
-  cloud2csg_precompile(${target} stage)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   # Third-party headers count as system headers, so that our warnings are about our code.
   target_link_libraries(${target} PUBLIC cloud2csg_compiler Eigen3::Eigen)
@@ -24,7 +36,7 @@ endfunction()
 # cloud2csg_test(NAME stage [LINK libraries...]): one test program a stage, from tests/<stage>/*.cpp.
 function(cloud2csg_test)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "LINK")
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${arg_NAME}/*.cpp)
+  cloud2csg_sources(sources ${arg_NAME})
   if(NOT sources)
     return()
   endif()
@@ -33,7 +45,6 @@ function(cloud2csg_test)
   target_link_libraries(${target} PRIVATE cloud2csg_compiler ${arg_LINK} GTest::gtest_main rapidcheck rapidcheck_gtest)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_options(${target} PRIVATE ${CLOUD2CSG_BRIEFLY_OPTIMISED})
-  cloud2csg_precompile(${target} test)
   target_compile_definitions(${target} PRIVATE CLOUD2CSG_DATA_DIR="${PROJECT_SOURCE_DIR}/data")
   gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_PREFIX "${arg_NAME}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
 endfunction()

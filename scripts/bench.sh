@@ -7,7 +7,7 @@ program=build/release/cloud2csg
 step() { printf '\n== %s (%d s)\n' "$1" "$SECONDS" >&2; }
 
 mkdir -p out/bench
-for name in micro overlap evaluation extraction recovery brep; do
+for name in micro overlap evaluation extraction recovery preparation orientation brep; do
   step "bench_$name, to out/bench/$name.md"
   "build/release/bench/bench_$name" | tee "out/bench/$name.md"
 done

@@ -53,13 +53,13 @@ void add_sizes(CLI::App& app, const std::string& name, std::vector<std::size_t>&
 void add_options(CLI::App& app, ScalingCommand& command) {
   constexpr std::uint64_t k_most_primitives = 1'000'000;
   constexpr std::uint64_t k_most_points = 1'000'000'000;
-  constexpr std::uint64_t k_most_clique = 12;
+  constexpr std::uint64_t k_most_clique = 20;
   add_results_folder(app, command.folder);
   std::vector<std::string> names;
   names.reserve(all_families().size());
   for (const Family family : all_families()) names.emplace_back(to_string(family));
   app.add_option("--family", command.families,
-                 fmt::format("Models of this family: {}\n(default: all)", fmt::join(names, ", ")))
+                 fmt::format("Models of this family: {}\n(default: all but panel)", fmt::join(names, ", ")))
       ->check(one_of(names))
       ->type_name("NAME ...")
       ->group("Experiment");

@@ -39,19 +39,19 @@ end
 complete -c cloud2csg -f
 )";
 
-std::string word(const std::string& text) {
+std::string fish_word(const std::string& text) {
   return quoted(replaced(text, "\\", "\\\\"), "\\'");
 }
 
 std::string begin_of(const CommandEntry& command) {
-  return fmt::format("complete -c cloud2csg -n {}", word("__cloud2csg_in " + word(path_text(command))));
+  return fmt::format("complete -c cloud2csg -n {}", fish_word("__cloud2csg_in " + fish_word(path_text(command))));
 }
 
 /// What completes a value: `-a ...`.
 std::string values_of(const OptionEntry& option, const std::vector<std::string>& endings) {
   if (option.is_file) return fmt::format(" -a '(__cloud2csg_files {})'", fmt::join(endings, " "));
   if (option.choices.empty()) return "";
-  return fmt::format(" -a {}", word(fmt::format("{}", fmt::join(option.choices, " "))));
+  return fmt::format(" -a {}", fish_word(fmt::format("{}", fmt::join(option.choices, " "))));
 }
 
 std::string option_line(const CommandEntry& command, const OptionEntry& option) {
@@ -60,7 +60,7 @@ std::string option_line(const CommandEntry& command, const OptionEntry& option) 
     line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   }
   if (!option.value.empty()) line += " -x" + values_of(option, option.endings);
-  return fmt::format("{} -d {}\n", line, word(option.help));
+  return fmt::format("{} -d {}\n", line, fish_word(option.help));
 }
 
 }  // namespace
@@ -69,9 +69,9 @@ std::string fish_completion(const CommandEntry& program) {
   std::vector<std::string> paths;
   std::string lines;
   for (const CommandEntry* command : all_commands(program)) {
-    if (command->path.size() > 1) paths.push_back(word(path_text(*command)));
+    if (command->path.size() > 1) paths.push_back(fish_word(path_text(*command)));
     for (const CommandEntry& inner : command->commands) {
-      lines += fmt::format("{} -a {} -d {}\n", begin_of(*command), inner.path.back(), word(inner.summary));
+      lines += fmt::format("{} -a {} -d {}\n", begin_of(*command), inner.path.back(), fish_word(inner.summary));
     }
     for (const OptionEntry& argument : command->arguments) {
       lines += begin_of(*command) + values_of(argument, argument_endings(*command)) + "\n";

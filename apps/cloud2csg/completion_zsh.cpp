@@ -6,7 +6,7 @@
 namespace cloud2csg::app {
 namespace {
 
-std::string word(const std::string& text) {
+std::string zsh_word(const std::string& text) {
   return quoted(text, R"('\'')");
 }
 
@@ -37,10 +37,10 @@ std::string option_spec(const OptionEntry& option) {
     names += (names.empty() ? "" : ",") + name + (has_value ? (name.starts_with("--") ? "=" : "+") : "");
   }
   if (option.names.size() > 1) names = "{" + names + "}";
-  const std::string before = option.is_repeatable ? "'*'" : option.names.size() > 1 ? word("(" + all + ")") : "";
+  const std::string before = option.is_repeatable ? "'*'" : option.names.size() > 1 ? zsh_word("(" + all + ")") : "";
   std::string after = "[" + plain(option.help) + "]";
   if (has_value) after += ":" + plain(option.value) + ":" + action_of(option, option.endings);
-  return before + names + word(after);
+  return before + names + zsh_word(after);
 }
 
 std::string function_name(const CommandEntry& command) {
@@ -52,7 +52,7 @@ std::string inner_text(const CommandEntry& command) {
   std::string names;
   std::string calls;
   for (const CommandEntry& inner : command.commands) {
-    names += fmt::format("        {}\n", word(inner.path.back() + ":" + plain(inner.summary)));
+    names += fmt::format("        {}\n", zsh_word(inner.path.back() + ":" + plain(inner.summary)));
     calls += fmt::format("        {}) {} ;;\n", inner.path.back(), function_name(inner));
   }
   return fmt::format(
@@ -68,8 +68,8 @@ std::string function_of(const CommandEntry& command) {
   const bool is_outer = !command.commands.empty();
   if (is_outer) specs += " \\\n    '1:command:->command' \\\n    '*::argument:->arguments'";
   for (const OptionEntry& argument : command.arguments) {
-    specs += " \\\n    " + word(fmt::format("{}:{}:{}", argument.is_repeatable ? "*" : "", plain(argument.value),
-                                            action_of(argument, argument.endings)));
+    specs += " \\\n    " + zsh_word(fmt::format("{}:{}:{}", argument.is_repeatable ? "*" : "", plain(argument.value),
+                                                action_of(argument, argument.endings)));
   }
   return fmt::format(
       "{}() {{\n  local curcontext=\"$curcontext\" state state_descr line\n  typeset -A opt_args\n"

@@ -49,12 +49,7 @@ void ConvertCommand::run(std::stop_token stop) const {
 void add_options(CLI::App& app, ConvertCommand& command) {
   add_file(app, "model", command.model, "Model file: .json, or of OpenSCAD: .scad .csg")->type_name("MODEL");
   add_outputs(app, command.outputs, join_endings(model_endings()));
-  app.add_option("--resolution", command.exporting.meshing.resolution,
-                 "Meshes (.stl .off .obj): cells along the longest side")
-      ->transform(whole_number(4, 4096))
-      ->type_name("N")
-      ->group("Output")
-      ->capture_default_str();
+  add_mesh_options(app, command.exporting);
   app.add_option("--facets", command.exporting.openscad.facets, "OpenSCAD (.scad .csg): facets of a full circle")
       ->transform(whole_number(3, 10'000))
       ->type_name("N")

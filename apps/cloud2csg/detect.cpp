@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 #include "base/output_set.hpp"
@@ -30,6 +31,7 @@ struct DetectCommand {
   std::vector<std::string> outputs;
   RawArguments raw;
   std::uint64_t seed = 1;
+  std::optional<double> time_limit_seconds;
   PictureOptions drawing;
   RunOptions running;
 
@@ -92,7 +94,7 @@ void DetectCommand::run(std::stop_token stop) const {
 
   PrimitiveSet known;
   if (!primitives.empty()) known = read_model(primitives).primitives;
-  const ExtractOptions options{.seed = seed};
+  const ExtractOptions options{.time_limit_seconds = time_limit_seconds, .seed = seed};
   const Input input = read_cloud_or_mesh(cloud, raw.input(options), session.run());
   ReconstructOptions from_raw = raw.options(options, input);
   from_raw.known = known;
@@ -132,12 +134,13 @@ void add_options(CLI::App& app, DetectCommand& command) {
   add_file(app, "cloud", command.cloud,
            "Point cloud: .ply .pcd .xyz .xyzn .txt .pts, or mesh: .stl .off .obj .ply .3mf .glb")
       ->type_name("CLOUD|MESH");
-  CLI::Option* primitives = app.add_option("--primitives", command.primitives,
-                                           "Model file with primitives that are known: they are kept as they are, and "
-                                           "only what they leave unexplained is looked for")
-                                ->check(file_name())
-                                ->type_name("MODEL.json")
-                                ->group("Input");
+  CLI::Option* primitives =
+      app.add_option("--primitives", command.primitives,
+                     "Model .json .scad .csg with primitives that are known: they are kept as they are, and "
+                     "only what they leave unexplained is looked for")
+          ->check(file_name())
+          ->type_name("MODEL")
+          ->group("Input");
   app.add_flag("--detect-rest", command.detect_rest, "As in extract; here it is so whenever --primitives is given")
       ->needs(primitives)
       ->group("Input");
@@ -147,6 +150,11 @@ void add_options(CLI::App& app, DetectCommand& command) {
       ->type_name("S")
       ->group("Finding primitives")
       ->capture_default_str();
+  app.add_option("--time-limit", command.time_limit_seconds,
+                 "Then take the best solids so far; reading and writing are not counted (default: none)")
+      ->check(number_positive())
+      ->type_name("SECONDS")
+      ->group("Finding primitives");
   add_raw_arguments(app, command.raw, "Finding primitives");
   add_picture_options(app, command.drawing);
   add_run_options(app, command.running);

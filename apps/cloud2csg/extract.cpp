@@ -48,6 +48,7 @@ struct ExtractCommand {
   bool refine = false;
   ExtractArguments arguments;
   RawArguments raw;
+  ExportOptions exporting;
   PictureOptions drawing;
   RunOptions running;
   std::vector<ReportParameter> parameters;  // options, for reports
@@ -56,6 +57,7 @@ struct ExtractCommand {
   /// `given` is empty when all primitives are to be found.
   [[nodiscard]] Extracted extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
   [[nodiscard]] Extracted extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
+  [[nodiscard]] RefineOptions refine_options() const;
   /// What is going to be written, after a look at whether it can be.
   [[nodiscard]] std::vector<std::string> check_files() const;
   [[nodiscard]] PointCloud unexplained_part(const Extracted& extracted, int threads) const;
@@ -88,22 +90,22 @@ PointCloud ExtractCommand::unexplained_part(const Extracted& extracted, int thre
 
 std::string headline(const ExtractStatistics& statistics, const std::string& cloud) {
   return fmt::format(
-      "{}extracted by cloud2csg {} from {} (seed {})\n{} nodes, {} leaves, depth {}; rms distance {:.4g}, rms angle "
+      "{}extracted by cloud2csg {} from {} (seed {})\n{} nodes, {} leaves, {} levels; rms distance {:.4g}, rms angle "
       "{:.3g} deg",
       statistics.complete ? "" : "INCOMPLETE: the search was stopped before its end\n", CLOUD2CSG_VERSION, cloud,
-      statistics.seed, statistics.tree.size, statistics.tree.leaves, statistics.tree.depth, statistics.fit.rms_distance,
-      statistics.fit.rms_angle_deg);
+      statistics.seed, statistics.tree.size, statistics.tree.leaves, statistics.tree.levels,
+      statistics.fit.rms_distance, statistics.fit.rms_angle_deg);
 }
 
 AddedModels ExtractCommand::write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run,
                                   OutputSet& written) const {
   const std::string comment = headline(result.statistics, cloud);
   const Model model{.primitives = solids, .tree = result.tree, .description = comment};
+  ExportOptions options = exporting;
+  options.openscad.comment = options.script.comment = comment;
   // Not to be stopped: what has been found is written also after an interrupt.
-  return naming(primitives.empty() ? cloud : primitives, [&] {
-    return add_models(written, outputs, model, {.openscad = {.comment = comment}, .script = {.comment = comment}},
-                      without_stop(run));
-  });
+  return naming(primitives.empty() ? cloud : primitives,
+                [&] { return add_models(written, outputs, model, options, without_stop(run)); });
 }
 
 void ExtractCommand::draw(const Extracted& extracted, const RunContext& run, OutputSet& written) const {
@@ -130,14 +132,16 @@ void ExtractCommand::report(Extracted extracted, std::vector<ReportDownload> dow
   naming(cloud, [&] { add_reports(written, outputs, report, without_stop(run)); });
 }
 
+RefineOptions ExtractCommand::refine_options() const {
+  return {.angle_tolerance_deg = arguments.options().segmentation.angle_tolerance_deg};
+}
+
 Extracted ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const {
-  const ExtractOptions options = arguments.options();
   if (!refine) {
-    Extraction result = extract_csg(points, solids, options, run);
+    Extraction result = extract_csg(points, solids, arguments.options(), run);
     return {.points = std::move(points), .solids = solids, .result = std::move(result)};
   }
-  RefinedExtraction refined = extract_refined_csg(
-      points, solids, options, {.angle_tolerance_deg = options.segmentation.angle_tolerance_deg}, run);
+  RefinedExtraction refined = extract_refined_csg(points, solids, arguments.options(), refine_options(), run);
   return {
       .points = std::move(points), .solids = std::move(refined.primitives), .result = std::move(refined.extraction)};
 }
@@ -150,12 +154,8 @@ Extracted ExtractCommand::extract(Input input, const PrimitiveSet& given, const 
   }
   ReconstructOptions from_raw = raw.options(arguments.options(), input);
   from_raw.known = given;
+  if (refine) from_raw.refine = refine_options();
   Reconstruction found = naming(files, [&] { return reconstruct(input.cloud, from_raw, run); });
-  if (refine) {
-    Extracted refined = extract_over(found.cloud, found.solids, run);
-    refined.snaps = found.snaps;
-    if (refined.result.statistics.fit.objective > found.statistics.fit.objective) return refined;
-  }
   return {.points = std::move(found.cloud),
           .solids = std::move(found.solids),
           .result = {.tree = std::move(found.tree), .statistics = std::move(found.statistics)},
@@ -226,9 +226,9 @@ void add_options(CLI::App& app, ExtractCommand& command) {
       ->type_name("CLOUD|MESH");
   CLI::Option* primitives =
       app.add_option("--primitives", command.primitives,
-                     "Model file with the primitives to combine; if not given, they are found in the cloud")
+                     "Model .json .scad .csg with the primitives to combine; if not given, they are found in the cloud")
           ->check(file_name())
-          ->type_name("MODEL.json")
+          ->type_name("MODEL")
           ->group("Input");
   CLI::Option* detect_rest =
       app.add_flag("--detect-rest", command.detect_rest,
@@ -236,6 +236,7 @@ void add_options(CLI::App& app, ExtractCommand& command) {
           ->needs(primitives)
           ->group("Input");
   add_outputs(app, command.outputs, join_endings(model_endings()));
+  add_mesh_options(app, command.exporting);
   app.add_option("--stats", command.statistics, "Statistics: times, search, merge, fit")
       ->check(file_name())
       ->type_name("STATS.json")

@@ -87,11 +87,12 @@ void add_search_arguments(CLI::App& app, ExtractArguments& arguments) {
       ->check(one_of(names_of(k_parallels)));
   group.add("--seed", arguments.seed, "S", "Same seed, same tree, whatever the threads (default: 1)")
       ->transform(whole_number_from(0));
-  group.add("--time-limit", arguments.time_limit_seconds, "SECONDS", "Then take the best tree so far (default: none)")
+  group
+      .add("--time-limit", arguments.time_limit_seconds, "SECONDS",
+           "Then take the best tree so far; reading and writing are not counted (default: none)")
       ->check(number_not_negative());
-  group.either("polish", arguments.polish,
-               "Take nodes out that the whole cloud does not need (default; of up to 24 in a component)",
-               "Leave them in (paper)");
+  group.either("polish", arguments.polish, "Improve the merged trees by the whole cloud (default)",
+               "Take them as they are (paper)");
   group.either("strangers", arguments.strangers,
                "Judge a partition's trees also by points inside primitives of others (paper)",
                "... without them: no tree of the partition explains them (default)");

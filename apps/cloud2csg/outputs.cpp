@@ -21,14 +21,15 @@ namespace cloud2csg::app {
 namespace {
 
 constexpr std::array<std::string_view, 6> k_cloud_endings{".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"};
-constexpr std::array<std::string_view, 14> k_model_endings{".json", ".scad", ".csg",  ".FCMacro", ".py",
+constexpr std::array<std::string_view, 15> k_model_endings{".json", ".scad", ".csg",  ".FCMacro", ".py",
                                                            ".step", ".stp",  ".brep", ".stl",     ".off",
-                                                           ".obj",  ".dot",  ".html", ".png"};
+                                                           ".obj",  ".3mf",  ".dot",  ".html",    ".png"};
 
-/// What reads as well on a page as in a file of its own.
+/// What can be downloaded from a page as well as it can be had in a file of its own.
 bool is_text_model(const std::filesystem::path& file) {
   const std::string ending = lower_ending(file);
-  return ending == ".scad" || ending == ".json" || ending == ".step" || ending == ".stp";
+  constexpr std::array<std::string_view, 7> k_texts{".scad", ".csg", ".fcmacro", ".py", ".json", ".step", ".stp"};
+  return std::ranges::find(k_texts, ending) != k_texts.end();
 }
 
 std::string corner(const Eigen::Vector3d& point) {
@@ -119,6 +120,19 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   add("--azimuth", options.azimuth_deg, "DEG", "Where the camera of a .png stands: turned from the x axis towards y")
       ->check(number_from_to(-360, 360));
   add("--elevation", options.elevation_deg, "DEG", "... and raised over the xy plane")->check(number_from_to(-90, 90));
+}
+
+void add_mesh_options(CLI::App& app, ExportOptions& options) {
+  app.add_option("--resolution", options.meshing.resolution,
+                 "Meshes (.stl .off .obj .3mf): cells along the longest side; of exact solids, to a fiftieth of these")
+      ->transform(whole_number(4, 4096))
+      ->type_name("N")
+      ->group("Output")
+      ->capture_default_str();
+  app.add_flag_callback(
+         "--contour", [&options] { options.exact_meshes = false; },
+         "Meshes by contouring in cells, also where OpenCASCADE could make the exact solid: faster for many primitives")
+      ->group("Output");
 }
 
 bool needs_tree(const std::filesystem::path& file) {

@@ -32,7 +32,7 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
 
 struct AddedModels {
   std::vector<std::string> warnings;  ///< what the formats cannot hold
-  std::vector<ReportDownload> texts;  ///< the .scad, .json and .step that were written, for a report
+  std::vector<ReportDownload> texts;  ///< what was written as text, for a report
 };
 
 /// Writes a model to those files of a set that are no reports. @throws Error, Cancelled
@@ -48,6 +48,9 @@ void add_pictures(OutputSet& set, std::span<const std::string> files, const Scen
 
 /// Size and view of pictures, as a group of a subcommand's help.
 void add_picture_options(CLI::App& app, PictureOptions& options);
+
+/// How meshes of solids are made, in the group of outputs.
+void add_mesh_options(CLI::App& app, ExportOptions& options);
 
 /// Refuses a list of inputs and outputs in which two name the same file.
 /// @throws Error

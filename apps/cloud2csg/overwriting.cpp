@@ -19,9 +19,8 @@ namespace {
 constexpr std::streamsize k_looked_at = 512;
 
 enum class Beginning : std::uint8_t {
-  is_it,       ///< the file begins so, letters in either case
-  within_it,   ///< it is near the file's beginning
-  after_space  ///< so begins what is not white space
+  is_it,     ///< the file begins so, letters in either case
+  within_it  ///< it is near the file's beginning
 };
 
 struct Kind {
@@ -31,16 +30,19 @@ struct Kind {
   Beginning beginning = Beginning::is_it;
 };
 
-/// Kinds of files that have a mark. Binary .stl begins with anything; all others are text.
-constexpr std::array<Kind, 9> k_marked{{{".html", "HTML page", "<!doctype html>"},
-                                        {".json", "JSON object", "{", Beginning::after_space},
-                                        {".png", "PNG picture", "\x89PNG"},
-                                        {".ply", "PLY file", "ply"},
-                                        {".pcd", "PCD file", "version ", Beginning::within_it},
-                                        {".off", "OFF file", "off", Beginning::within_it},
-                                        {".step", "STEP file", "ISO-10303-21"},
-                                        {".stp", "STEP file", "ISO-10303-21"},
-                                        {".brep", "BREP file", "CASCADE", Beginning::within_it}}};
+/// Kinds of files that have a mark, or one of several. Binary .stl begins with anything; all others are text.
+constexpr std::array<Kind, 11> k_marked{
+    {{".html", "HTML page", "<!doctype html>"},
+     {".json", "model or statistics of cloud2csg", "\"format\": \"cloud2csg\"", Beginning::within_it},
+     {".json", "", "\"unassigned_points\":", Beginning::within_it},
+     {".png", "PNG picture", "\x89PNG"},
+     {".ply", "PLY file", "ply"},
+     {".3mf", "3MF archive", "PK\x03\x04"},
+     {".pcd", "PCD file", "version ", Beginning::within_it},
+     {".off", "OFF file", "off", Beginning::within_it},
+     {".step", "STEP file", "ISO-10303-21"},
+     {".stp", "STEP file", "ISO-10303-21"},
+     {".brep", "BREP file", "CASCADE", Beginning::within_it}}};
 
 std::string beginning_of(const std::filesystem::path& file) {
   std::ifstream older(file, std::ios::binary);
@@ -55,9 +57,6 @@ bool is_same_letter(char a, char b) {
 }
 
 bool bears(std::string_view begin, const Kind& kind) {
-  if (kind.beginning == Beginning::after_space) {
-    begin.remove_prefix(std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));
-  }
   const auto at = std::search(begin.begin(), begin.end(), kind.mark.begin(), kind.mark.end(), is_same_letter);
   return kind.beginning == Beginning::within_it ? at != begin.end() : at == begin.begin();
 }
@@ -72,7 +71,9 @@ void check_overwriting(const std::filesystem::path& file) {
   const std::string ending = lower_ending(file);
   const auto kind = std::ranges::find(k_marked, ending, &Kind::ending);
   const bool is_marked = kind != k_marked.end();
-  const bool is_of_kind = is_marked ? bears(begin, *kind) : ending == ".stl" || begin.find('\0') == std::string::npos;
+  const bool bears_mark =
+      std::ranges::any_of(k_marked, [&](const Kind& one) { return one.ending == ending && bears(begin, one); });
+  const bool is_of_kind = is_marked ? bears_mark : ending == ".stl" || begin.find('\0') == std::string::npos;
   if (is_of_kind) return;
   throw Error({.file = file.string(),
                .where = {},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,7 @@ ReconstructOptions RawArguments::options(const ExtractOptions& extraction, const
   options.close_unseen_side = !leaves_open;
   options.preparation.keep_normals = !estimates_normals;
   // Points drawn from a mesh lie on it, and so do not have to be looked at.
-  options.preparation.is_exact = input.mesh.has_value();
+  options.preparation.is_exact = input.mesh.has_value() && !estimates_normals;
   options.detection.distance_tolerance = tolerance;
   if (normal_tolerance_deg) options.detection.angle_tolerance_deg = *normal_tolerance_deg;
   options.detection.least_points = least_points;
@@ -66,7 +67,7 @@ ReconstructOptions RawArguments::options(const ExtractOptions& extraction, const
 }
 
 InputOptions RawArguments::input(const ExtractOptions& extraction) const {
-  return {.mesh_points = mesh_points, .seed = extraction.seed};
+  return {.mesh_points = std::min(mesh_points, point_budget), .seed = extraction.seed};
 }
 
 void check_arguments(const RawArguments& arguments) {
@@ -115,7 +116,8 @@ void add_raw_arguments(CLI::App& app, RawArguments& arguments, const std::string
       ->type_name("N")
       ->group(group)
       ->capture_default_str();
-  app.add_option("--mesh-points", arguments.mesh_points, "How many points are drawn from a mesh")
+  app.add_option("--mesh-points", arguments.mesh_points,
+                 "How many points are drawn from a mesh; at most --point-budget")
       ->transform(whole_number_from(100))
       ->type_name("N")
       ->group(group)

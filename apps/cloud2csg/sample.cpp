@@ -79,7 +79,8 @@ void SampleCommand::run(std::stop_token stop) const {
 }
 
 void add_options(CLI::App& app, SampleCommand& command) {
-  add_file(app, "shape", command.shape, "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply")
+  add_file(app, "shape", command.shape,
+           "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply .3mf .glb")
       ->type_name("MODEL|MESH");
   add_outputs(app, command.outputs, join_endings(cloud_endings()));
   app.add_flag("--ascii", command.is_ascii, "Text instead of binary numbers in .ply and .pcd")->group("Output");

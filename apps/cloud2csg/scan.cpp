@@ -61,18 +61,18 @@ void add_scanner_options(CLI::App& app, ScanOptions& scanning) {
   CLI::Option* const count =
       add("-n,--count", scanning.count, "COUNT", "How many points in all")->transform(whole_number_from(1));
   app.add_option("--angular-step", scanning.angular_step_deg, "Degrees between neighbouring rays, instead of --count")
-      ->check(number_not_negative())
+      ->check(number_from_to(0, 170))
       ->type_name("DEG")
       ->excludes(count)
       ->group("Scanner");
   add("--views", scanning.views, "N", "Sensors, spread evenly around the part")->transform(whole_number(1, 1'000'000));
   add("--distance", scanning.distance, "R", "From the middle of the part, in radii of its bounding sphere")
-      ->check(number_not_negative());
+      ->check(number_from_to(1.001, 1e6));
   app.add_flag("--on-table", scanning.on_table, "Sensors above the part only: its underside, along z, is not seen")
       ->group("Scanner");
   app.add_option("--field-of-view", scanning.field_of_view_deg,
                  "Width and height of a view in degrees; if not given, just the bounding sphere")
-      ->check(number_not_negative())
+      ->check(number_from_to(0, 170))
       ->type_name("DEG")
       ->group("Scanner");
   add("--seed", scanning.seed, "S", "Same seed, same points")->transform(whole_number_from(0));
@@ -97,7 +97,7 @@ void add_defects(CLI::App& app, ScanCommand& command) {
   add("--quantisation", scanning.quantisation, "SHARE", "Step of the range, of the diagonal")
       ->check(number_not_negative());
   add("--grazing-angle", scanning.grazing_angle_deg, "DEG", "Incidence from which on returns are missing")
-      ->check(number_not_negative());
+      ->check(number_from_to(0, 89.999));
   add("--grazing-loss", scanning.grazing_loss, "P", "Probability that they are, at 90 degrees")->check(share());
   add("--outliers", scanning.outliers, "P", "Probability that a point is anywhere on its ray")->check(share());
   add("--mixed-pixels", scanning.mixed_pixels, "P", "Probability that a ray at an edge returns from in between")
@@ -109,7 +109,8 @@ void add_defects(CLI::App& app, ScanCommand& command) {
 }
 
 void add_options(CLI::App& app, ScanCommand& command) {
-  add_file(app, "shape", command.shape, "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply")
+  add_file(app, "shape", command.shape,
+           "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply .3mf .glb")
       ->type_name("MODEL|MESH");
   add_outputs(app, command.outputs, join_endings(cloud_endings()) + ", with sensor positions in .ply and .pcd");
   app.add_flag("--normals", command.scanning.with_normals, "With the true outward normals, which no scanner knows")

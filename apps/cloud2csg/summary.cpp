@@ -26,6 +26,13 @@ std::string cells_line(const CellStatistics& cells) {
                      cells.open_cells, 100 * cells.contradicted_share());
 }
 
+/// How the tree was found.
+std::string way_line(const ExtractStatistics& s) {
+  if (s.cells) return cells_line(*s.cells);
+  if (s.finding && s.finding->is_tree_of_choice) return "way          the tree that the solids were chosen with";
+  return partitions_line(s);
+}
+
 std::string refine_line(const RefineStatistics& s) {
   if (!s.is_taken) return "refined      nothing: the primitives are where the points are";
   double shift = 0;
@@ -48,8 +55,9 @@ std::vector<std::string> finding_lines(const FindingStatistics& s, const StageSe
                   spheres, cylinders, cones, tori, s.unexplained_points),
       fmt::format("regular      {} values snapped, by at most {:.2g} and {:.2g} deg", s.snaps, s.largest_shift,
                   s.largest_turn_deg),
-      fmt::format("found in     {:.2f} s: clean and normals {:.2f}, detect {:.2f}, solids {:.2f}",
-                  seconds.clean + seconds.detect + seconds.solids, seconds.clean, seconds.detect, seconds.solids)};
+      fmt::format("found in     {:.2f} s: clean {:.2f}, normals {:.2f}, detect {:.2f}, solids {:.2f}",
+                  seconds.clean + seconds.normals + seconds.detect + seconds.solids, seconds.clean, seconds.normals,
+                  seconds.detect, seconds.solids)};
   if (s.known > 0) {
     lines.insert(lines.begin() + 1, fmt::format("known        {} primitive{}, {} points on them", s.known,
                                                 s.known == 1 ? "" : "s", s.known_points));
@@ -80,8 +88,8 @@ std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const 
   std::vector<std::string> extraction{
       fmt::format("points       {}, {} of them on no primitive; noise {:.3g}", s.points, s.unassigned_points, s.noise),
       fmt::format("primitives   {}; cliques by size ({})", s.primitives, fmt::join(s.clique_histogram, ", ")),
-      s.cells ? cells_line(*s.cells) : partitions_line(s),
-      fmt::format("tree         {} nodes, {} leaves, depth {}{}", s.tree.size, s.tree.leaves, s.tree.depth,
+      way_line(s),
+      fmt::format("tree         {} nodes, {} leaves, {} levels{}", s.tree.size, s.tree.leaves, s.tree.levels,
                   s.cells && s.cells->is_minimal ? "; none smaller has these cells" : ""),
       fmt::format("fit          rms distance {:.3g}, 95 % below {:.3g}, rms angle {:.3g} deg", s.fit.rms_distance,
                   s.fit.p95_distance, s.fit.rms_angle_deg),

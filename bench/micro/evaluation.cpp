@@ -10,8 +10,6 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr std::size_t k_points = 150'000;
-
 /// What a tree takes at each class: a minimum or maximum for an inner node, one more operation for a sign change, and
 /// one look-up of a score; the bytes are a rank for each leaf, and the line of the table that holds the score.
 Work evaluation_work(const RankClasses& table, const CsgTree& tree) {

@@ -11,7 +11,6 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr std::size_t k_points = 150'000;
 /// Points and fields of a block stay in the first-level cache.
 constexpr std::size_t k_block = 1024;
 

@@ -9,8 +9,6 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr std::size_t k_points = 150'000;
-
 GaOptions always_fifty_generations() {
   GaOptions options = paper_ga_options();
   options.generation_limit = 50;

@@ -10,7 +10,7 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr std::size_t k_points = 20'000;
+constexpr std::size_t k_points_for_trees = 20'000;
 
 /// Each node is read once, and what is left of them is written once.
 Work node_work(std::span<const CsgTree> before, std::span<const CsgTree> after) {
@@ -23,7 +23,7 @@ Work node_work(std::span<const CsgTree> before, std::span<const CsgTree> after) 
 }
 
 Microbenchmark merging(const char* name) {
-  const auto trees = std::make_shared<std::vector<CsgTree>>(clique_trees(Scene(name, k_points)));
+  const auto trees = std::make_shared<std::vector<CsgTree>>(clique_trees(Scene(name, k_points_for_trees)));
   const MergeResult merged = merge_trees(*trees);
   return {std::string("merge/") + name, node_work(*trees, merged.trees), [=] {
             if (merge_trees(*trees).trees.size() != merged.trees.size()) throw std::logic_error("another merge");

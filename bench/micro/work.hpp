@@ -8,6 +8,9 @@
 
 namespace cloud2csg::bench {
 
+/// Of the clouds that are measured on.
+constexpr std::size_t k_points = 150'000;
+
 /// What has to be done for one unit of a benchmark, however it is programmed. What is left out makes the bound lower,
 /// never wrong.
 struct Work {

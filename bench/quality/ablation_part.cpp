@@ -7,8 +7,6 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr double k_right = 0.995;
-
 /// The strategy by cells, and the same with one thing changed or left out.
 std::vector<Setting> ablations() {
   std::vector<Setting> settings{{"all of it", {.strategy = Strategy::cells}}};
@@ -22,12 +20,16 @@ std::vector<Setting> ablations() {
   add("any point counts once", [](ExtractOptions& o) { o.cell_labels.presence = 1; });
   add("16 samples a primitive", [](ExtractOptions& o) { o.cell_samples = {.base = 16, .a_neighbour = 0}; });
   add("a quarter of the samples", [](ExtractOptions& o) { o.cell_samples = {.base = 12, .a_neighbour = 10}; });
+  add("half of the samples", [](ExtractOptions& o) { o.cell_samples = {.base = 24, .a_neighbour = 20, .most = 512}; });
+  add("four times the samples",
+      [](ExtractOptions& o) { o.cell_samples = {.base = 192, .a_neighbour = 160, .most = 4096}; });
   add("all labels are sure", [](ExtractOptions& o) { o.cell_solve.least_evidence = {0}; });
   add("sure from 3 points on", [](ExtractOptions& o) { o.cell_solve.least_evidence = {3}; });
   add("sure from 12 points on", [](ExtractOptions& o) { o.cell_solve.least_evidence = {12}; });
   add("leaves cost nothing", [](ExtractOptions& o) { o.cell_solve.leaf_cost = 0; });
   add("leaves cost 12 points", [](ExtractOptions& o) { o.cell_solve.leaf_cost = 12; });
   add("no minimal formulas", [](ExtractOptions& o) { o.cell_solve.minimal.combination_limit = 0; });
+  add("no climbing", [](ExtractOptions& o) { o.cell_solve.climb.work_limit = 0; });
   settings.push_back({"partitions instead", {.cell_trust = 2}});
   return settings;
 }
@@ -56,7 +58,7 @@ void print_ablation(const QualityOptions& options) {
       const std::uint64_t seed = options.first_seed + i;
       const RandomModel drawn = draw_model(Family::random, seed);
       return make_defective_task(
-          make_family(drawn.family, drawn.options), defect,
+          make_model(drawn), defect,
           {.points = k_points_per_primitive * drawn.options.primitives, .noise = options.noise, .seed = seed});
     };
     return run_tasks(fmt::format("ablation, {}", to_string(defect)), options.ablation_models, make, run);

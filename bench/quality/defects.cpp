@@ -13,11 +13,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t k_stream = 0x646566656374;
+constexpr std::uint64_t k_defect_stream = 0x646566656374;
 constexpr double k_noise_of_diagonal = 0.005;
 constexpr double k_missing_share = 0.2;
 constexpr double k_patch_of_primitive = 0.25;  ///< points in a patch, of those that a primitive has on average
 constexpr double k_outlier_share = 0.05;
+constexpr double k_large_outlier_share = 0.3;
+constexpr double k_turned_share = 0.2;
 constexpr double k_enlarged = 0.1;  ///< of the bounds, for outliers
 
 Vector3d random_direction(RandomStream& random) {
@@ -63,16 +65,22 @@ PointCloud without_patches(const PointCloud& cloud, double patch_share, RandomSt
   return select_points(cloud, is_kept);
 }
 
-PointCloud with_outliers(PointCloud cloud, RandomStream& random) {
+PointCloud with_outliers(PointCloud cloud, double share, RandomStream& random) {
   AlignedBox box = bounds_of(cloud.positions);
   const Vector3d margin = 0.5 * k_enlarged * box.sizes();
   box.extend(Vector3d(box.max() + margin));
   box.extend(Vector3d(box.min() - margin));
-  const auto count =
-      static_cast<std::size_t>(static_cast<double>(cloud.size()) * k_outlier_share / (1 - k_outlier_share));
+  const auto count = static_cast<std::size_t>(static_cast<double>(cloud.size()) * share / (1 - share));
   for (std::size_t i = 0; i < count; ++i) {
     cloud.positions.push_back(random_between(box.min(), box.max(), random));
     cloud.normals.push_back(random_direction(random));
+  }
+  return cloud;
+}
+
+PointCloud with_turned_normals(PointCloud cloud, RandomStream& random) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (random.chance(k_turned_share)) cloud.normals.set(i, -cloud.normals[i]);
   }
   return cloud;
 }
@@ -110,7 +118,9 @@ PointCloud defective_cloud(const Model& model, Defect defect, const DefectOption
     const double patch_share = k_patch_of_primitive / static_cast<double>(model.primitives.size());
     return without_patches(cloud, patch_share, random);
   }
-  if (defect == Defect::outliers) return with_outliers(std::move(cloud), random);
+  if (defect == Defect::outliers) return with_outliers(std::move(cloud), k_outlier_share, random);
+  if (defect == Defect::many_outliers) return with_outliers(std::move(cloud), k_large_outlier_share, random);
+  if (defect == Defect::turned) return with_turned_normals(std::move(cloud), random);
   return cloud;
 }
 
@@ -126,6 +136,10 @@ std::string_view to_string(Defect defect) {
       return "20 % of the points missing";
     case Defect::outliers:
       return "5 % outliers";
+    case Defect::many_outliers:
+      return "30 % outliers";
+    case Defect::turned:
+      return "20 % of the normals turned";
     case Defect::spurious:
       return "a spurious primitive";
     case Defect::missing:
@@ -135,7 +149,7 @@ std::string_view to_string(Defect defect) {
 }
 
 Task make_defective_task(const Model& model, Defect defect, const DefectOptions& options) {
-  RandomStream random(options.seed, k_stream);
+  RandomStream random(options.seed, k_defect_stream);
   PointCloud cloud = defective_cloud(model, defect, options, random);
   Model judged = model;
   if (defect == Defect::spurious) judged.primitives.push_back(spurious_copy(model.primitives, random));

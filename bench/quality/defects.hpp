@@ -10,14 +10,16 @@ namespace cloud2csg::bench {
 
 enum class Defect {
   none,
-  noise,     ///< sigma of half a percent of the diagonal
-  patches,   ///< a fifth of the points is gone, in balls
-  outliers,  ///< a twentieth of the points is anywhere, with any normal
-  spurious,  ///< one primitive more: a copy of one, shifted and scaled
-  missing,   ///< one primitive less
+  noise,          ///< sigma of half a percent of the diagonal
+  patches,        ///< a fifth of the points is gone, in balls
+  outliers,       ///< a twentieth of the points is anywhere, with any normal
+  many_outliers,  ///< three tenths of them
+  turned,         ///< a fifth of the normals leads the other way
+  spurious,       ///< one primitive more: a copy of one, shifted and scaled
+  missing,        ///< one primitive less
 };
-inline constexpr std::array k_defects{Defect::none,     Defect::noise,    Defect::patches,
-                                      Defect::outliers, Defect::spurious, Defect::missing};
+inline constexpr std::array k_defects{Defect::none,          Defect::noise,  Defect::patches,  Defect::outliers,
+                                      Defect::many_outliers, Defect::turned, Defect::spurious, Defect::missing};
 /// As in the tables.
 [[nodiscard]] std::string_view to_string(Defect defect);
 

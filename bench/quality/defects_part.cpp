@@ -10,8 +10,6 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr double k_right = 0.995;
-
 struct KnownModel {
   Model model;
   DefectOptions options;
@@ -24,7 +22,7 @@ std::vector<KnownModel> known_models(const QualityOptions& options) {
     const std::uint64_t seed = options.first_seed + i;
     const RandomModel drawn = draw_model(Family::random, seed);
     models.push_back(
-        {make_family(drawn.family, drawn.options),
+        {make_model(drawn),
          {.points = k_points_per_primitive * drawn.options.primitives, .noise = options.noise, .seed = seed}});
   }
   return models;

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t k_stream = 0x6a75646765;
+constexpr std::uint64_t k_judge_stream = 0x6a75646765;
 constexpr std::size_t k_word = 64;
 
 /// Uniform in the union of the boxes, one for each volume of edge^3: a lattice is laid over each box, and a place in it
@@ -19,7 +19,7 @@ constexpr std::size_t k_word = 64;
 Points places_in(std::span<const AlignedBox> boxes, double edge) {
   Points places;
   for (std::size_t b = 0; b < boxes.size(); ++b) {
-    RandomStream random(0, k_stream, b);
+    RandomStream random(0, k_judge_stream, b);
     const auto is_new = [&](const Vector3d& place) {
       return boxes[b].contains(place) &&
              std::ranges::none_of(boxes.first(b), [&](const AlignedBox& earlier) { return earlier.contains(place); });

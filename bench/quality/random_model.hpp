@@ -7,11 +7,15 @@
 
 namespace cloud2csg::bench {
 
-/// What make_family() needs to make a model.
+/// What make_model() needs.
 struct RandomModel {
   Family family = Family::random;
   FamilyOptions options = {};
+  /// So many leaves more than primitives: another tree over those of the family, in which some appear again.
+  std::size_t repeats = 0;
 };
+
+[[nodiscard]] Model make_model(const RandomModel& random_model);
 
 inline constexpr std::size_t k_points_per_primitive = 400;
 
@@ -20,7 +24,7 @@ inline constexpr std::size_t k_points_per_primitive = 400;
 /// A model of 5 to 40 primitives, clusters of up to 2 to 12, nests of 2 to 5 levels; a function of family and seed.
 [[nodiscard]] RandomModel draw_model(Family family, std::uint64_t seed);
 
-/// "random, cliques of 2-7": what goes into one row.
+/// "random, cliques of 2-7", "one cluster of 12": what goes into one row.
 [[nodiscard]] std::string kind_of(const RandomModel& model);
 /// As in source code: "make_family(Family::random, {.primitives = 23, .clique_size = 7, ...})".
 [[nodiscard]] std::string source_of(const RandomModel& model);

@@ -9,7 +9,6 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr double k_right = 0.995;
 constexpr std::size_t k_points_per_primitive_scanned = 2000;
 constexpr std::array<std::size_t, 3> k_views{4, 8, 20};
 
@@ -17,13 +16,14 @@ constexpr std::array<std::size_t, 3> k_views{4, 8, 20};
 std::vector<Setting> scan_settings() {
   return {{"auto", {}},
           {"no lines of sight", {.cell_labels = {.sight = 0}}},
+          {"absence as without sensors", {.cell_labels = {.absence_in_scans = 1}}},
           {"no evidence of absence", {.cell_labels = {.absence = 0}}},
           {"partitions instead", {.cell_trust = 2}}};
 }
 
 Task make_scan_task(std::uint64_t seed, std::size_t views) {
   const RandomModel drawn = draw_model(Family::random, seed);
-  const Model model = make_family(drawn.family, drawn.options);
+  const Model model = make_model(drawn);
   PointCloud cloud = scan_model(*model.tree, model.primitives,
                                 {.views = views,
                                  .count = k_points_per_primitive_scanned * model.primitives.size(),

@@ -41,6 +41,7 @@ Outcome extract_and_judge(const Task& task, const Setting& setting) {
     outcome.failure = fault_of(result.tree, task.primitives.size());
     if (!outcome.failure.empty()) return outcome;
     outcome.iou = task.judge->intersection_over_union(renumber(result.tree, task.judge_index));
+    outcome.is_proved = result.statistics.cells && result.statistics.cells->is_minimal;
     outcome.size_ratio = static_cast<double>(result.tree.size()) / static_cast<double>(task.truth.tree->size());
   } catch (const std::exception& error) {
     outcome.failure = error.what();
@@ -115,6 +116,7 @@ Summary summarise(std::span<const Outcome> outcomes, double right) {
     if (!outcome.failure.empty()) continue;
     const bool is_no_larger = outcome.size_ratio <= 1;
     summary.no_larger += is_no_larger ? 1 : 0;
+    summary.proved += outcome.is_proved ? 1 : 0;
     summary.right_and_no_larger += is_right && is_no_larger ? 1 : 0;
     summary.worst_ratio = std::max(summary.worst_ratio, outcome.size_ratio);
     summary.mean_ratio += outcome.size_ratio;
@@ -145,8 +147,8 @@ std::string milliseconds_text(double milliseconds) {
 
 std::string legend(double right) {
   return fmt::format(
-      "right: IoU >= {}; no larger: nodes <= true nodes; ratio: nodes / true nodes; ms: of the processor, "
-      "median.",
+      "right: IoU >= {}; no larger: nodes <= true nodes; proved: no smaller tree has the cells; ratio: nodes / true "
+      "nodes; ms: of the processor, median.",
       right);
 }
 

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/mesh.hpp"
 #include "cloud2csg/run_context.hpp"
 
-/// Solids bounded by exact surfaces, for CAD programs: STEP and BREP files, by OpenCASCADE. Its part of the library is
-/// a module that is loaded when first needed, so programs that write none do not pay for it.
+/// Solids bounded by exact surfaces, for CAD programs: STEP and BREP files, and meshes of them, by OpenCASCADE. Its
+/// part of the library is a module that is loaded when first needed, so programs that write none do not pay for it.
 namespace cloud2csg {
 
 struct BrepOptions {
@@ -24,6 +25,8 @@ struct BrepOptions {
   int facet_resolution = 16;
   /// The part of its volume by which a node may differ from what the tree says before its operation counts as failed.
   double volume_tolerance = 1e-3;
+  /// Of mesh_brep(): how far triangles may be from the surface, as a part of the model's extent.
+  double mesh_deviation = 3e-4;
 };
 
 /// A node of the tree whose exact solid could not be had, and which is written with facets instead.
@@ -46,6 +49,8 @@ struct BrepReport {
   /// The box at which a solid without ends was cut.
   std::optional<AlignedBox> cut_at = {};
 
+  /// Whether the solid is exact and without fault: nothing failed, nothing has facets, the volume is the tree's.
+  [[nodiscard]] bool is_exact(const BrepOptions& options) const;
   /// |volume - tree_volume| as a part of the tree's; 0 when both are empty.
   [[nodiscard]] double volume_difference() const;
 };
@@ -83,5 +88,16 @@ BrepReport write_step(const std::filesystem::path& file, const CsgTree& tree, co
 /// The same as a BREP file, OpenCASCADE's own: no names, no units.
 BrepReport write_brep(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
                       const BrepOptions& options = {}, const RunContext& run = {});
+
+struct BrepMesh {
+  TriangleMesh mesh;
+  BrepReport report;
+};
+
+/// The surface of the same solid as triangles: planes are flat and edges true, and as few triangles as the deviation
+/// allows. Closed, where the solid is valid. The same for any number of threads.
+/// @throws as write_step(), but for files
+[[nodiscard]] BrepMesh mesh_brep(const CsgTree& tree, const PrimitiveSet& primitives, const BrepOptions& options = {},
+                                 const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/evolve.hpp"
 #include "cloud2csg/formula.hpp"
 #include "cloud2csg/rank_classes.hpp"
 #include "cloud2csg/segmentation.hpp"
@@ -83,6 +85,9 @@ struct LabelOptions {
   /// than this share of what its area lets expect, those that are missing. A quarter: a surface of which most was
   /// not seen is still believed.
   double absence = 0.25;
+  /// The same, where it is less, for clouds that say where their sensors stood (extract_csg()): of what these could see
+  /// much is lost at a slant, at edges and in clefts.
+  double absence_in_scans = 0.05;
   double presence = 5;  ///< points that a patch has stand for so many of those: where there are some, it was seen
   double sight = 1;     ///< what a line of sight through a cell of the solid costs, in points
 };
@@ -115,6 +120,16 @@ struct CellSolveOptions {
   double leaf_cost = 3;  ///< of a leaf, in points
   /// Where the formula that was taken may not be minimal, a minimal one is looked for, core by core.
   MinimalFormulaOptions minimal = {.table_limit = std::size_t{1} << 18U, .combination_limit = 20'000'000};
+  /// Where it is not proved to be minimal, local searches go on from all that was tried, on what the cells and leaves
+  /// of a tree cost: over all of up to 64 primitives, of more core by core. The limits are those of each search; no
+  /// work, no climbing.
+  LocalSearchOptions climb = {.work_limit = 4e8};
+};
+
+/// A step on the way to a tree, and the nodes of the best one after it.
+struct TreeStep {
+  std::string name;
+  std::size_t size = 0;
 };
 
 struct CellSolution {
@@ -124,16 +139,18 @@ struct CellSolution {
   std::vector<CellIndex> open_cells = {};  ///< those whose labels were not sure enough, ascending
   std::size_t peeled = 0;  ///< primitives that were split off since they are wholly in, or wholly out of, the rest
   std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
-  std::size_t least_leaves = 0;         ///< it is proved that no tree with the labels that are sure has fewer
-  bool is_complete = true;              ///< false when it was stopped early
-  [[nodiscard]] bool is_minimal() const { return leaf_count(tree) == least_leaves; }
+  /// It is proved that no tree with the labels that are sure has fewer. Absent when the tree has not all of these.
+  std::optional<std::size_t> least_leaves = {};
+  std::vector<TreeStep> steps = {};  ///< "decomposition", "minimal formulas", "climbing": those that were needed
+  bool is_complete = true;           ///< false when it was stopped early
+  [[nodiscard]] bool is_minimal() const { return least_leaves == leaf_count(tree); }
 };
 
-/// A small tree that has the label of each cell that is sure. Primitives that no label depends on are left out; those
-/// that are wholly in the solid, or wholly out of it, but for what others add or take, are split off, again and again,
-/// until nothing or a core is left; parts of it that share no cell are solved one by one. Absent when one of them has
-/// more than 64 primitives. O(size of all cells) but for the cores. A triggered run.stop ends it soon, with the best
-/// tree so far.
+/// A small tree that has the label of each cell that is sure at the highest limit, and mostly at the one taken.
+/// Primitives that no label depends on are left out; those that are wholly in the solid, or wholly out of it, but for
+/// what others add or take, are split off, again and again, until nothing or a core is left; parts of it that share no
+/// cell are solved one by one. Absent when one of them has more than 64 primitives. O(size of all cells) but for the
+/// cores. A triggered run.stop ends it soon, with the best tree so far.
 [[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
                                                       const CellSolveOptions& options = {}, const RunContext& run = {});
 

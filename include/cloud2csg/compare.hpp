@@ -40,8 +40,8 @@ struct Shape3d {
   std::optional<PointCloud> cloud = {};
 };
 
-/// By the file's ending: .json a model, .stl .off .obj a mesh, .xyz .xyzn .pcd .pts .txt a cloud, .ply a mesh when it
-/// has faces, else a cloud. @throws Error
+/// By the file's ending: .json .scad .csg a model, .stl .off .obj .3mf .glb a mesh, .xyz .xyzn .pcd .pts .txt a cloud,
+/// .ply a mesh when it has faces, else a cloud. @throws Error
 [[nodiscard]] Shape3d read_shape(const std::filesystem::path& file);
 
 /// O(resolution^2 x cuts x primitives + samples log triangles). The result does not depend on the number of threads.

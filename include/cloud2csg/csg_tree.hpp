@@ -103,6 +103,9 @@ class CsgTree {
 
 /// Edges on the longest path from the root to a leaf: 0 for a leaf. O(size), no recursion.
 [[nodiscard]] std::size_t depth(const CsgTree& tree);
+/// The same as a person writes it, each operation with as many operands as it has: `a | b | c` is one level, and so is
+/// `a - b - c`. O(size), no recursion.
+[[nodiscard]] std::size_t levels(const CsgTree& tree);
 /// Leaves that are primitives, each counted as often as it appears.
 [[nodiscard]] std::size_t leaf_count(const CsgTree& tree);
 /// The primitives that appear, ascending, each once.

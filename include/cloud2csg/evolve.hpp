@@ -89,7 +89,8 @@ struct LocalSearchOptions {
   /// Only moves that make the tree smaller: redundancy removal.
   bool shrink_only = false;
   std::size_t evaluation_limit = 100'000;
-  /// Evaluations x classes x nodes: some ten seconds at most, however large the table is.
+  /// Evaluations x classes x nodes: some ten seconds at most, however large the table is. On the cells of CellComplex:
+  /// evaluations x (cells + patches + nodes x cells / 64).
   double work_limit = 4e10;
 };
 

@@ -54,6 +54,10 @@ struct ExportOptions {
   ScriptOptions script = {};
   MeshingOptions meshing = {};
   BrepOptions brep = {};
+  /// Meshes of the exact solid: mesh_brep(), as near as a fiftieth of the cells of `meshing`. Without, and for trees
+  /// of more than 100 leaves, for what has no exact surface, and where the exact solid has a fault or cannot be had,
+  /// they are those of mesh_surface().
+  bool exact_meshes = true;
 };
 
 /// What a file does not say of itself.
@@ -64,7 +68,8 @@ struct ExportReport {
   std::optional<BrepReport> brep = {};  ///< STEP and BREP
 };
 
-/// Writes a model by the file's ending: .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj, .dot.
+/// Writes a model by the file's ending: .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj, .3mf,
+/// .dot.
 /// All but .json need a tree, STEP and BREP need OpenCASCADE (has_brep()).
 /// Nothing half-written. @throws Error
 ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options = {},

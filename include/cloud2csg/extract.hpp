@@ -44,7 +44,8 @@ struct ExtractOptions {
   Precision precision = Precision::automatic;  ///< of distances and angles in the pass over the points
   GaOptions search = {};                       ///< its seed is not used: see below
   /// automatic: try cells first, and take their tree where the points contradict at most what is missing here to 1 of
-  /// what they say. Elsewhere partitions are searched too, and the tree of the higher E is taken. Above 1: no cells.
+  /// what they say, and enough say something. Elsewhere partitions are searched too, and the tree of the higher E is
+  /// taken. Above 1: no cells.
   double cell_trust = 0.97;
   SampleCounts cell_samples = {};
   LabelOptions cell_labels = {};
@@ -54,8 +55,9 @@ struct ExtractOptions {
   /// Judge the trees of a partition without the points inside primitives of other partitions, where no tree over its
   /// own can be right. The paper judges by all points on its primitives.
   bool without_strangers = true;
-  /// Take nodes out of the merged tree of a component as long as its E grows; of up to 24 primitives. The paper does
-  /// not.
+  /// Take nodes out of the merged tree of a component as long as its E grows; of up to 24 primitives. Where the tree
+  /// of the cells was not taken at once, a local search by E over all points comes last; of up to 127 primitives. The
+  /// paper has neither.
   bool polish = true;
   /// Stop the search when so many seconds have passed since the start of the extraction, with the best tree so far. The
   /// pass over the points, without which there is no tree, is always completed. The one option that makes a result
@@ -119,7 +121,9 @@ struct CellStatistics {
   double contradicted_points = 0;  ///< of these, those that the tree contradicts, and those that it would need more
   std::size_t peeled = 0;          ///< primitives that were split off
   std::vector<std::size_t> cores;  ///< how many primitives the rests had that were solved by formula
-  bool is_minimal = false;         ///< it is proved that no smaller tree of its primitives has all sure labels
+  /// It is proved that no tree with all sure labels has fewer; absent when this one has not all of them.
+  std::optional<std::size_t> least_leaves = {};
+  bool is_minimal = false;  ///< it has no more
 
   /// Of what the points say, the share that is contradicted.
   [[nodiscard]] double contradicted_share() const { return contradicted_points / std::max(1.0, speaking_points); }
@@ -139,10 +143,11 @@ struct FindingStatistics {
   std::size_t snaps = 0;                           ///< what was made regular
   double largest_turn_deg = 0, largest_shift = 0;  ///< ... and by how much
   double disagreement = 0;                         ///< see SolidChoice
+  bool is_tree_of_choice = false;                  ///< the tree is the one that the solids were chosen with
 };
 
 struct TreeStatistics {
-  std::size_t size = 0, leaves = 0, depth = 0;
+  std::size_t size = 0, leaves = 0, depth = 0, levels = 0;
 };
 /// O(size of the tree).
 [[nodiscard]] TreeStatistics statistics_of(const CsgTree& tree);
@@ -181,6 +186,7 @@ struct ExtractStatistics {
   std::optional<CellStatistics> cells;       ///< when the tree is that of the cells
   std::optional<FindingStatistics> finding;  ///< when the primitives were found in the cloud
   std::optional<RefineStatistics> refine;    ///< when the primitives were to be refined
+  std::vector<TreeStep> steps;               ///< on the way to the tree, and its nodes after each
   TreeStatistics before_simplification, tree;
   FitStatistics fit;
   StageSeconds seconds;

@@ -35,7 +35,7 @@ enum class Family {
 
 struct FamilyOptions {
   std::size_t primitives = 20;  ///< exactly so many
-  /// random: primitives of a cluster, that is of a largest clique, 2 to 12; the last may have fewer.
+  /// random: primitives of a cluster, that is of a largest clique, 2 to 20; the last may have fewer.
   std::size_t clique_size = 4;
   /// random: clusters have this many to clique_size primitives, drawn evenly; 0: all have clique_size.
   std::size_t least_clique_size = 0;

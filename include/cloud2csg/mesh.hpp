@@ -43,7 +43,7 @@ struct MeshingOptions {
 /// .stl .off .obj .ply .3mf .glb as assimp reads them, in single precision; vertices at the same place are joined, and
 /// triangles that lose a corner by it are left out. @throws Error
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);
-/// .stl (binary) .off .obj by the file's ending. Nothing half-written. @throws Error
+/// .stl (binary) .off .obj .3mf by the file's ending. Nothing half-written. @throws Error
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
 
 }  // namespace cloud2csg

@@ -23,6 +23,7 @@ struct PreparedCloud {
   Scale scale;       ///< of the cleaned cloud
   CleanReport cleaning;
   bool normals_estimated = false;
+  double clean_seconds = 0, normals_seconds = 0;
   std::vector<std::string> warnings = {};  ///< sentences for the user: what was changed, what is doubtful, and where
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct ReconstructOptions {
   bool close_unseen_side = true;
   SolidOptions solids = {};
   ExtractOptions extraction = {};
+  /// Then move and size the solids to where the points are, as in extract_refined_csg(), and take them and the tree
+  /// over them where E is higher so. Not where primitives are known: these stay.
+  std::optional<RefineOptions> refine = {};
 };
 
 struct FoundPrimitives {
@@ -30,7 +34,7 @@ struct FoundPrimitives {
   std::size_t added_points = 0;  ///< on a side that was not seen: the last ones of the cloud
   SolidChoice choice;            ///< those known, a few solids that surfaces bound, with evidence, and a tree over them
   std::vector<SurfacePoints> points;  ///< of the prepared cloud, that lie on each of these solids
-  double prepare_seconds = 0, detect_seconds = 0, choose_seconds = 0;
+  double detect_seconds = 0, choose_seconds = 0;
   std::vector<std::string> warnings;  ///< sentences for the user: what is doubtful, and where
 };
 
@@ -39,7 +43,8 @@ struct FoundPrimitives {
 /// primitives that the points do not bear out are in no tree, and a warning names them. The same seed gives the same
 /// for any number of threads.
 /// @throws Error when the cloud has too few points, no surface was found in it, it has no inside, or a known primitive
-/// is invalid or has the id of another; Cancelled.
+/// is invalid or has the id of another, or the time limit of the extraction is over before surfaces were found; then
+/// on, there are solids to give at any time, with a warning. Cancelled.
 [[nodiscard]] FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},
                                               const RunContext& run = {});
 
@@ -52,7 +57,7 @@ struct Reconstruction {
 };
 
 /// find_primitives(), then extract_csg() over them. The tree is that of the extraction, or the one that the solids were
-/// chosen with, whichever costs less in disagreement with the cloud and leaves.
+/// chosen with, whichever costs less in disagreement with the cloud and leaves; or else the refined one.
 /// @throws as find_primitives() and extract_csg()
 [[nodiscard]] Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {},
                                          const RunContext& run = {});

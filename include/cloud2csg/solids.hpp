@@ -44,6 +44,11 @@ struct PlaceOptions {
 /// The weight of the places that a tree labels otherwise; 0 when it is right everywhere. O(places x size).
 [[nodiscard]] double disagreement(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places);
 
+/// Of the places that a tree labels otherwise, the one deepest inside or farthest outside of its solid. O(places x
+/// size). Precondition: there is one.
+[[nodiscard]] Eigen::Vector3d worst_place(const CsgTree& tree, const PrimitiveSet& solids,
+                                          const LabelledPlaces& places);
+
 struct RegularityOptions {
   /// False: surfaces are not made like each other. What is given below holds all the same.
   bool snap = true;
@@ -65,8 +70,16 @@ struct RegularityOptions {
   std::optional<double> given_tolerance = {};
 };
 
-enum class RegularityKind : std::uint8_t { direction, offset, axis, radius, given_direction, given_radius };
-/// "direction", "offset", "axis", "radius", "given direction", "given radius".
+enum class RegularityKind : std::uint8_t {
+  direction,
+  offset,
+  axis,
+  radius,
+  given_direction,
+  given_radius,
+  arrangement
+};
+/// "direction", "offset", "axis", "radius", "given direction", "given radius", "arrangement".
 [[nodiscard]] std::string_view to_string(RegularityKind kind);
 
 /// What was snapped.
@@ -89,8 +102,9 @@ struct FixedValues {
 /// Makes directions that nearly are so equal or orthogonal, planes that nearly are so coplanar, axes coaxial, radii
 /// equal. A direction is laid along an axis of coordinates where that moves no surface by more than the distance
 /// tolerance: a part that lies so is easier to edit. A value that several share is the mean by their points, so what
-/// has more is moved less. Turned surfaces keep their position, which should be near their points. `fixed` has one a
-/// surface, or none. O(surfaces^2).
+/// has more is moved less. Parallel axes of cylinders of equal radius are put into rows and grids of equal steps and
+/// into circles of equal angles (regular_places.hpp). Turned surfaces keep their position, which should be near their
+/// points. `fixed` has one a surface, or none. O(surfaces^2).
 [[nodiscard]] RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
                                          double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
                                          std::span<const FixedValues> fixed = {});
@@ -101,8 +115,11 @@ struct SolidOptions {
   double leaf_cost = 0.001;
   /// What a plane of a polytope beyond the sixth costs, in leaves: a box is preferred where it is as good.
   double plane_cost = 0.2;
-  std::size_t most_rules = 128;  ///< of the decision list; a guard
+  std::size_t most_rules = 1024;  ///< of the decision list; a guard, and a warning says where it ended the choice
   PlaceOptions places = {};
+  /// Places in the volume, and points with places beside them, for each surface, where that is more than `places` has:
+  /// with fewer, a hole among hundreds is a matter of chance.
+  std::size_t volume_places_a_surface = 400, surface_points_a_surface = 100;
   RegularityOptions regularity = {};
 };
 

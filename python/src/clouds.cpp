@@ -186,7 +186,7 @@ void bind_mesh(py::module_& module) {
             const py::gil_scoped_release unlocked;
             write_mesh(file, self);
           },
-          py::arg("file"), "Writes by the file's ending: .stl .off .obj. Nothing half-written.")
+          py::arg("file"), "Writes by the file's ending: .stl .off .obj .3mf. Nothing half-written.")
       .def("__repr__", [](const TriangleMesh& self) {
         return fmt::format("<cloud2csg.TriangleMesh: {} vertices, {} triangles>", self.vertices.size(),
                            self.triangles.size());

@@ -73,15 +73,10 @@ Result extract_over(std::shared_ptr<Cloud> cloud, const PrimitiveSet& primitives
 
 /// The whole way from a raw cloud.
 Result extract_raw(const Cloud& cloud, const Request& request, const RunContext& run) {
-  Reconstruction found = reconstruct(cloud.points(), request.options, run);
+  ReconstructOptions options = request.options;
+  if (request.refine) options.refine = request.refine;
+  Reconstruction found = reconstruct(cloud.points(), options, run);
   auto used = std::make_shared<Cloud>(std::move(found.cloud), cloud.is_exact());
-  if (request.refine) {
-    Result refined = extract_over(used, found.solids, request, run);
-    if (refined.statistics.fit.objective > found.statistics.fit.objective) {
-      refined.snaps = std::move(found.snaps);
-      return refined;
-    }
-  }
   return {.cloud = std::move(used),
           .model = std::make_shared<Model>(Model{.primitives = std::move(found.solids), .tree = std::move(found.tree)}),
           .statistics = std::move(found.statistics),

@@ -27,6 +27,8 @@ void bind_judgement(py::module_& module) {
   OptionClass<LabelOptions>(module, "LabelOptions", "What labels of cells cost.")
       .field("absence", &LabelOptions::absence,
              "Share of the points that the area of a surface lets expect, below which those missing cost.")
+      .field("absence_in_scans", &LabelOptions::absence_in_scans,
+             "The same, where it is less, for clouds that say where their sensors stood.")
       .field("presence", &LabelOptions::presence, "Points that a patch has stand for so many of those.")
       .field("sight", &LabelOptions::sight, "Cost of a line of sight through the solid, in points.")
       .finish();
@@ -34,12 +36,19 @@ void bind_judgement(py::module_& module) {
       .field("table_limit", &MinimalFormulaOptions::table_limit, "Functions of few leaves that are listed.")
       .field("combination_limit", &MinimalFormulaOptions::combination_limit, "Pairs of such functions that are tried.")
       .finish();
+  OptionClass<LocalSearchOptions>(module, "LocalSearchOptions", "Climbing by the best of all small changes of a tree.")
+      .field("shrink_only", &LocalSearchOptions::shrink_only, "Only changes that make the tree smaller.")
+      .field("evaluation_limit", &LocalSearchOptions::evaluation_limit, "Trees that are looked at, at most.")
+      .field("work_limit", &LocalSearchOptions::work_limit, "Evaluations x classes x nodes, at most.")
+      .finish();
   OptionClass<CellSolveOptions>(module, "CellSolveOptions", "From labelled cells to a small tree.")
       .field("least_evidence", &CellSolveOptions::least_evidence,
              "Of cells whose labels cost fewer points to change, the formula may make what it likes. Descending; each "
              "is tried.")
       .field("leaf_cost", &CellSolveOptions::leaf_cost, "Of a leaf, in points.")
       .nested("minimal", &CellSolveOptions::minimal, "The search for a minimal formula, core by core.")
+      .nested("climb", &CellSolveOptions::climb,
+              "The local searches where the formula is not proved to be minimal. No work, no climbing.")
       .finish();
 }
 
@@ -97,7 +106,7 @@ void bind_extraction(py::module_& module) {
              "Solids nearer than this overlap, in the cloud's units. None: the measured noise.")
       .field("without_strangers", &ExtractOptions::without_strangers,
              "Judge the trees of a partition without the points inside primitives of others.")
-      .field("polish", &ExtractOptions::polish, "Take nodes out of the merged tree as long as that is better.")
+      .field("polish", &ExtractOptions::polish, "Improve merged trees by the whole cloud.")
       .field("time_limit_seconds", &ExtractOptions::time_limit_seconds,
              "Stop the search after so many seconds, with the best tree so far.")
       .field("seed", &ExtractOptions::seed, "The same seed gives the same tree, for any number of threads.")
@@ -162,6 +171,10 @@ void bind_finding(py::module_& module) {
       .field("plane_cost", &SolidOptions::plane_cost, "Of a plane of a polytope beyond the sixth, in leaves.")
       .field("most_rules", &SolidOptions::most_rules, "Of the decision list; a guard.")
       .nested("places", &SolidOptions::places, "Places by which solids are judged.")
+      .field("volume_places_a_surface", &SolidOptions::volume_places_a_surface,
+             "Places in the volume for each surface, where that is more than `places` has.")
+      .field("surface_points_a_surface", &SolidOptions::surface_points_a_surface,
+             "Points with places beside them for each surface, where that is more.")
       .nested("regularity", &SolidOptions::regularity, "What of the surfaces is made regular.")
       .finish();
   OptionClass<ReconstructOptions>(module, "ReconstructOptions", "From a raw cloud to a tree: see extract().")
@@ -174,6 +187,8 @@ void bind_finding(py::module_& module) {
              "Close a side that is missing as a whole, as that on which the part stood, by a plane.")
       .nested("solids", &ReconstructOptions::solids, "Solids are chosen.")
       .nested("extraction", &ReconstructOptions::extraction, "A tree over them is extracted.")
+      .field("refine", &ReconstructOptions::refine,
+             "RefineOptions: then move and size the solids to where the points are, where that is better.")
       .finish();
 }
 

@@ -227,7 +227,8 @@ void bind_outputs(ModelClass& model) {
           },
           py::arg("file"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
           py::arg("progress") = py::none(),
-          "Writes by the file's ending: .json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .dot .html .png. "
+          "Writes by the file's ending: .json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .3mf .dot .html "
+          ".png. "
           "All but .json need a tree. Nothing half-written. Returns ExportReport; raises Error.")
       .def(
           "picture",

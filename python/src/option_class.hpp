@@ -29,6 +29,9 @@ std::string python_type() {
   if constexpr (std::is_same_v<Value, std::string>) return "str";
   if constexpr (std::is_same_v<Value, std::vector<double>>) return "list[float]";
   if constexpr (std::is_same_v<Value, PrimitiveSet>) return "list[Primitive]";
+  if constexpr (std::is_aggregate_v<Value>) {
+    return pybind11::type::of<Value>().attr("__name__").template cast<std::string>();
+  }
   return {};
 }
 template <typename Value>
@@ -45,7 +48,7 @@ class OptionClass {
   OptionClass(pybind11::module_& module, const char* name, std::string doc)
       : class_(module, name), name_(name), doc_(std::move(doc)) {}
 
-  /// A number, a text, a list, any of them optional.
+  /// A number, a text or a list, any of them optional; or options that may be absent.
   template <typename Value>
   OptionClass& field(const char* name, Value Options::*member, const std::string& doc) {
     return add(

@@ -27,12 +27,16 @@ void bind_output_options(py::module_& module) {
              "Solids without exact surfaces are written with facets: so many cells along their longest side.")
       .field("volume_tolerance", &BrepOptions::volume_tolerance,
              "The part of its volume by which a node may be wrong before its operation counts as failed.")
+      .field("mesh_deviation", &BrepOptions::mesh_deviation,
+             "Of meshes: how far triangles may be from the surface, as a part of the model's extent.")
       .finish();
   OptionClass<ExportOptions>(module, "ExportOptions", "How a model is written: see Model.write().")
       .nested("openscad", &ExportOptions::openscad, "Of .scad and .csg.")
       .nested("script", &ExportOptions::script, "Of .FCMacro and .py.")
-      .nested("meshing", &ExportOptions::meshing, "Of .stl, .off and .obj.")
+      .nested("meshing", &ExportOptions::meshing, "Of .stl, .off, .obj and .3mf.")
       .nested("brep", &ExportOptions::brep, "Of .step, .stp and .brep.")
+      .field("exact_meshes", &ExportOptions::exact_meshes,
+             "Meshes of the exact solid where OpenCASCADE makes one, else by contouring in cells.")
       .finish();
   OptionClass<PictureOptions>(module, "PictureOptions", "How large a picture is, and from where: see Model.picture().")
       .field("width", &PictureOptions::width, "Pixels; 0: so many that each half is a square.")

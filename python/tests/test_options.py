@@ -10,7 +10,7 @@ import cloud2csg
 CLASSES = [value for name, value in vars(cloud2csg).items()
            if isinstance(value, type) and (name.endswith("Options") or name == "SampleCounts")]
 # Structs of parts of the library that Python does not have.
-LEFT_OUT = {"CellOptions", "FamilyOptions", "FitOptions", "LocalSearchOptions", "OverlapOptions", "PaperOptions",
+LEFT_OUT = {"CellOptions", "FamilyOptions", "FitOptions", "OverlapOptions", "PaperOptions",
             "PointPassOptions", "ResultComparisonOptions", "ScalingOptions"}
 # Fields that look at memory of the caller's.
 LEFT_OUT_FIELDS = {("CloudWriteOptions", "colours")}

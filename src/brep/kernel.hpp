@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "brep/solid_plan.hpp"
+#include "cloud2csg/mesh.hpp"
 #include "cloud2csg/run_context.hpp"
 
 /// What the library and the module with OpenCASCADE say to each other. The module knows solids, not trees or meshes:
@@ -41,7 +42,7 @@ struct WorkFrame {
   [[nodiscard]] bool is_identity() const { return scale == 1 && offset.isZero(0); }
 };
 
-enum class KernelFormat { step, brep };
+enum class KernelFormat { step, brep, mesh };
 
 struct KernelJob {
   SolidPlan plan = {};
@@ -51,7 +52,8 @@ struct KernelJob {
   double volume_tolerance = 1e-3;
   WorkFrame frame = {};
   KernelFormat format = KernelFormat::step;
-  std::filesystem::path file = {};  ///< to be written over
+  std::filesystem::path file = {};  ///< to be written over, but for a mesh
+  double mesh_deviation = 0;        ///< of a mesh from the surface, in the kernel's frame
   /// Names are plain letters and digits: the host puts the real ones in their place (step_text.hpp).
   std::string part_name = {};
   std::string assembly_name = {};               ///< of part and components
@@ -66,12 +68,13 @@ struct KernelFailure {
 };
 
 struct KernelResult {
-  bool is_empty = false;  ///< nothing was written then
+  bool is_empty = false;  ///< nothing was made then
   bool is_valid = false;
   double volume = 0;  ///< in the model's units
   std::size_t solids = 0;
   std::size_t faces = 0;
   std::size_t healed_faces = 0;
+  TriangleMesh mesh = {};  ///< in the kernel's frame, when it was asked for
   std::vector<KernelFailure> failures = {};
   std::string error = {};  ///< not empty: the file could not be made, and this is why
 };
@@ -100,7 +103,7 @@ class KernelHost {
 /// them.
 inline constexpr const char* k_kernel_version_symbol = "cloud2csg_kernel_version";
 inline constexpr const char* k_kernel_run_symbol = "cloud2csg_kernel_run";
-inline constexpr int k_kernel_version = 1;
+inline constexpr int k_kernel_version = 2;
 using KernelVersion = int (*)();
 /// @throws Cancelled, and what the host throws
 using KernelRun = void (*)(const KernelJob* job, const KernelHost* host, KernelResult* result);

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "base/atomic_file.hpp"
+#include "base/scratch_file.hpp"
 #include "brep/host.hpp"
 #include "brep/kernel_solids.hpp"
 #include "brep/load_kernel.hpp"
-#include "brep/scratch_file.hpp"
 #include "brep/step_text.hpp"
 #include "brep/tree_volume.hpp"
 #include "cloud2csg/brep.hpp"
@@ -33,6 +33,9 @@ void validate(const BrepOptions& options) {
   if (!(options.volume_tolerance > 0 && options.volume_tolerance < 1)) {
     refuse("volume_tolerance", fmt::format("expected a number between 0 and 1, found {}", options.volume_tolerance));
   }
+  if (!(options.mesh_deviation >= 1e-6 && options.mesh_deviation < 1)) {
+    refuse("mesh_deviation", fmt::format("expected a number from 1e-6 to 1, found {}", options.mesh_deviation));
+  }
 }
 
 const brep::Kernel& kernel_for(const std::filesystem::path& file) {
@@ -40,7 +43,7 @@ const brep::Kernel& kernel_for(const std::filesystem::path& file) {
   if (kernel.run != nullptr) return kernel;
   throw Error({.file = file.string(),
                .where = {},
-               .expected = "STEP and BREP files need OpenCASCADE, which cloud2csg has not: " + kernel.missing,
+               .expected = "exact solids need OpenCASCADE, which cloud2csg has not: " + kernel.missing,
                .remedy = kernel.remedy});
 }
 
@@ -84,7 +87,8 @@ std::string shortened(std::string text) {
   return text.substr(0, end) + "...";
 }
 
-BrepReport report_of(KernelResult result, const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives) {
+BrepReport report_of(const KernelResult& result, const KernelJob& job, const CsgTree& tree,
+                     const PrimitiveSet& primitives) {
   BrepReport report{.volume = result.volume,
                     .is_valid = result.is_valid,
                     .solids = result.solids,
@@ -93,9 +97,9 @@ BrepReport report_of(KernelResult result, const KernelJob& job, const CsgTree& t
   for (const PrimitiveIndex index : primitives_of(tree)) {
     if (!brep::has_exact_surfaces(primitives[index])) report.faceted.push_back(index);
   }
-  for (brep::KernelFailure& failure : result.failures) {
+  for (const brep::KernelFailure& failure : result.failures) {
     report.failed.push_back(
-        {.node = shortened(to_text(tree_of(job.plan, failure.node), primitives)), .reason = std::move(failure.reason)});
+        {.node = shortened(to_text(tree_of(job.plan, failure.node), primitives)), .reason = failure.reason});
   }
   return report;
 }
@@ -108,33 +112,50 @@ brep::VolumeEstimate volume_within(const CsgTree& tree, const PrimitiveSet& prim
   return brep::tree_volume(tree, primitives, own.intersection(extent), k_levels, run);
 }
 
-BrepReport write(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
-                 const BrepOptions& options, KernelFormat format, const RunContext& run) {
-  validate(options);
-  const brep::Kernel& kernel = kernel_for(file);
-  const AlignedBox extent = model_extent(tree, primitives);
-  KernelJob job = job_of(tree, primitives, extent, options, format);
-  const brep::ScratchFile scratch;
-  job.file = scratch.path();
-  const brep::ModelHost host(job, tree, primitives, extent, options, run);
+/// What the kernel made, and what is to be said of it.
+struct Made {
   KernelResult result;
-  kernel.run(&job, &host, &result);
+  BrepReport report;
+};
+
+Made make(const std::filesystem::path& file, const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives,
+          const AlignedBox& extent, const BrepOptions& options, const RunContext& run) {
+  const brep::ModelHost host(job, tree, primitives, extent, options, run);
+  Made made;
+  KernelResult& result = made.result;
+  kernel_for(file).run(&job, &host, &result);
   if (result.error.empty() && result.is_empty) result.error = "the solid is empty";
   if (!result.error.empty()) {
     throw Error({.file = file.string(), .where = {}, .expected = result.error, .remedy = {}});
   }
-  BrepReport report = report_of(std::move(result), job, tree, primitives);
+  made.report = report_of(result, job, tree, primitives);
   const brep::VolumeEstimate estimate = volume_within(tree, primitives, extent, run);
-  report.tree_volume = estimate.volume;
-  report.tree_volume_error = estimate.error;
-  report.cut_at = cut_at(tree, primitives, extent);
+  made.report.tree_volume = estimate.volume;
+  made.report.tree_volume_error = estimate.error;
+  made.report.cut_at = cut_at(tree, primitives, extent);
+  return made;
+}
+
+BrepReport write(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
+                 const BrepOptions& options, KernelFormat format, const RunContext& run) {
+  validate(options);
+  require_brep(file);
+  const AlignedBox extent = model_extent(tree, primitives);
+  KernelJob job = job_of(tree, primitives, extent, options, format);
+  const ScratchFile scratch;
+  job.file = scratch.path();
+  Made made = make(file, job, tree, primitives, extent, options, run);
   const std::string text = read_text_file(scratch.path());
   write_text_file(
       file, format == KernelFormat::step ? brep::with_names(text, names_in_file(file, primitives, options)) : text);
-  return report;
+  return std::move(made.report);
 }
 
 }  // namespace
+
+bool BrepReport::is_exact(const BrepOptions& options) const {
+  return is_valid && failed.empty() && faceted.empty() && volume_difference() <= options.volume_tolerance;
+}
 
 double BrepReport::volume_difference() const {
   const double difference = std::abs(volume - tree_volume);
@@ -170,6 +191,21 @@ BrepReport write_step(const std::filesystem::path& file, const CsgTree& tree, co
 BrepReport write_brep(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
                       const BrepOptions& options, const RunContext& run) {
   return write(file, tree, primitives, options, KernelFormat::brep, run);
+}
+
+BrepMesh mesh_brep(const CsgTree& tree, const PrimitiveSet& primitives, const BrepOptions& options,
+                   const RunContext& run) {
+  validate(options);
+  require_brep({});
+  const AlignedBox extent = model_extent(tree, primitives);
+  KernelJob job = job_of(tree, primitives, extent, options, KernelFormat::mesh);
+  job.mesh_deviation = options.mesh_deviation * job.size;
+  Made made = make({}, job, tree, primitives, extent, options, run);
+  TriangleMesh mesh{.vertices = {}, .triangles = std::move(made.result.mesh.triangles)};
+  for (std::size_t i = 0; i < made.result.mesh.vertices.size(); ++i) {
+    mesh.vertices.push_back(job.frame.scale * made.result.mesh.vertices[i] + job.frame.offset);
+  }
+  return {.mesh = std::move(mesh), .report = std::move(made.report)};
 }
 
 }  // namespace cloud2csg

@@ -3,6 +3,7 @@
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <limits>
 
+#include "cells/label_costs.hpp"
 #include "cloud2csg/cells.hpp"
 
 namespace cloud2csg {
@@ -120,91 +121,51 @@ class MinimumCut {
   std::vector<Edge> edges_;
 };
 
-/// What each choice of labels costs.
-class LabelCosts {
- public:
-  LabelCosts(const CellComplex& complex, double density, const LabelOptions& options)
-      : complex_(complex),
-        expected_(options.absence * density),
-        presence_(options.presence),
-        in_(complex.cells.size()),
-        out_(complex.cells.size()) {
-    for (const Patch& patch : complex.patches) {
-      in_[patch.first] += patch.first_in / 2;
-      out_[patch.second] += patch.first_in / 2;
-      in_[patch.second] += patch.second_in / 2;
-      out_[patch.first] += patch.second_in / 2;
-    }
-    for (CellIndex cell = 0; cell < complex.seen_through.size(); ++cell) {
-      out_[cell] += options.sight * complex.seen_through[cell];
-    }
+/// The labels with the least cost.
+std::vector<bool> cheapest_labels(const CellComplex& complex, const LabelCosts& costs) {
+  constexpr double k_forbidden_label = 1e12;  // more than any cloud has points
+  MinimumCut cut(complex.cells.size());
+  for (CellIndex cell = 0; cell < complex.cells.size(); ++cell) {
+    cut.add_source(cell, costs.if_out(cell));
+    cut.add_sink(cell, costs.if_in(cell));
   }
+  for (const CellIndex cell : complex.unbounded) cut.add_sink(cell, k_forbidden_label);
+  for (const LabelCosts::Border& border : costs.borders()) cut.add_edge(border.first, border.second, border.cost);
+  return cut.solve();
+}
 
-  [[nodiscard]] std::vector<bool> cheapest() const {
-    MinimumCut cut(complex_.cells.size());
-    for (CellIndex cell = 0; cell < complex_.cells.size(); ++cell) {
-      cut.add_source(cell, in_[cell]);
-      cut.add_sink(cell, out_[cell]);
-    }
-    for (const CellIndex cell : complex_.unbounded) cut.add_sink(cell, k_forbidden);
-    for (const Patch& patch : complex_.patches) cut.add_edge(patch.first, patch.second, missing_points(patch));
-    return cut.solve();
+/// What it costs to turn each cell, the others being as they are.
+std::vector<double> evidence_of(const CellComplex& complex, const LabelCosts& costs, const std::vector<bool>& is_in) {
+  std::vector<double> change(is_in.size());
+  for (CellIndex cell = 0; cell < is_in.size(); ++cell) {
+    change[cell] = costs.if_out(cell) - costs.if_in(cell);
+    if (!is_in[cell]) change[cell] = -change[cell];
   }
-
-  [[nodiscard]] double cost(const std::vector<bool>& is_in) const {
-    double sum = 0;
-    for (CellIndex cell = 0; cell < is_in.size(); ++cell) sum += is_in[cell] ? out_[cell] : in_[cell];
-    for (const Patch& patch : complex_.patches) {
-      if (is_in[patch.first] != is_in[patch.second]) sum += missing_points(patch);
-    }
-    return sum;
+  for (const LabelCosts::Border& border : costs.borders()) {
+    const double more = is_in[border.first] == is_in[border.second] ? border.cost : -border.cost;
+    change[border.first] += more;
+    change[border.second] += more;
   }
-
-  /// What it costs to turn each cell, the others being as they are.
-  [[nodiscard]] std::vector<double> evidence(const std::vector<bool>& is_in) const {
-    std::vector<double> change(is_in.size());
-    for (CellIndex cell = 0; cell < is_in.size(); ++cell) {
-      change[cell] = is_in[cell] ? in_[cell] - out_[cell] : out_[cell] - in_[cell];
-    }
-    for (const Patch& patch : complex_.patches) {
-      const double more = is_in[patch.first] == is_in[patch.second] ? missing_points(patch) : -missing_points(patch);
-      change[patch.first] += more;
-      change[patch.second] += more;
-    }
-    for (double& value : change) value = std::max(0.0, value);
-    for (const CellIndex cell : complex_.unbounded) change[cell] = std::numeric_limits<double>::infinity();
-    return change;
-  }
-
- private:
-  /// Points that would be on a patch, were it surface, and are not.
-  [[nodiscard]] double missing_points(const Patch& patch) const {
-    return std::max(0.0, expected_ * patch.area - presence_ * (patch.first_in + patch.second_in));
-  }
-
-  static constexpr double k_forbidden = 1e12;  // more than any cloud has points
-
-  const CellComplex& complex_;
-  double expected_;  // points per area
-  double presence_;
-  std::vector<double> in_, out_;  // what points have against a cell's being out, and in
-};
+  for (double& value : change) value = std::max(0.0, value);
+  for (const CellIndex cell : complex.unbounded) change[cell] = std::numeric_limits<double>::infinity();
+  return change;
+}
 
 }  // namespace
 
 CellLabels label_cells(const CellComplex& complex, const LabelOptions& options) {
   CellLabels result{.density = density_of(complex), .options = options};
   const LabelCosts costs(complex, result.density, options);
-  result.is_in = costs.cheapest();
-  result.evidence = costs.evidence(result.is_in);
-  result.cost = costs.cost(result.is_in);
+  result.is_in = cheapest_labels(complex, costs);
+  result.evidence = evidence_of(complex, costs, result.is_in);
+  result.cost = costs.of([&result](CellIndex cell) { return result.is_in[cell]; });
   for (const Patch& patch : complex.patches) result.points += patch.first_in + patch.second_in;
   return result;
 }
 
 double cost_of(const CellComplex& complex, const std::vector<bool>& is_in, double density,
                const LabelOptions& options) {
-  return LabelCosts(complex, density, options).cost(is_in);
+  return LabelCosts(complex, density, options).of([&is_in](CellIndex cell) { return is_in[cell]; });
 }
 
 }  // namespace cloud2csg

@@ -22,6 +22,7 @@ constexpr double k_near_sensors = 0.05;  ///< of the diagonal of the cloud: sens
 constexpr std::size_t k_most_views = 256;
 constexpr double k_points_a_cell = 3;  ///< at least, on average over the cells with points
 constexpr int k_finest = 512;
+constexpr double k_grazing = 0.2;  ///< cosine of incidence below which returns are lost
 constexpr std::size_t k_reference_points = 2000;
 
 struct GridCell {
@@ -107,6 +108,7 @@ double SensorViews::density_at(const Vector3d& place, const Vector3d& normal) co
     const double range = way.norm();
     if (!(range > 0)) continue;
     const double cosine = std::abs(way.dot(normal)) / range;
+    if (cosine < k_grazing) continue;
     density += view.points_a_steradian * cosine / (range * range) * share_that_sees(view, way, range, cosine);
   }
   return density;

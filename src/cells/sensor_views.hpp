@@ -17,7 +17,8 @@ class SensorViews {
   explicit SensorViews(const PointCloud& cloud);
 
   /// Points per area that a surface at this place, with this normal or the opposite one, would have: 0 where what is
-  /// nearer hides it from all sensors. Where a sensor saw nothing at all, it would have seen the surface. O(views)
+  /// nearer hides it from all sensors, or these graze it. Where a sensor saw nothing at all, it would have seen the
+  /// surface. O(views)
   [[nodiscard]] double density_at(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 
  private:

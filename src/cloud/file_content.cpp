@@ -13,7 +13,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::size_t k_block_bytes = std::size_t{1} << 26;
+constexpr std::size_t k_bytes_a_read = std::size_t{1} << 26;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -31,11 +31,11 @@ FileContent::FileContent(const std::filesystem::path& file, const RunContext& ru
   }
   // A pipe has no size: it grows block by block. One byte more than a regular file has finds its end.
   const std::uintmax_t announced = std::filesystem::file_size(file, status_error);
-  grow(status_error ? k_block_bytes : std::min<std::size_t>(announced, limit - 1) + 1);
+  grow(status_error ? k_bytes_a_read : std::min<std::size_t>(announced, limit - 1) + 1);
   while (size_ < limit) {
     run.throw_if_stopped();
     if (size_ == capacity_) grow(2 * capacity_);
-    const std::size_t wanted = std::min({k_block_bytes, capacity_ - size_, limit - size_});
+    const std::size_t wanted = std::min({k_bytes_a_read, capacity_ - size_, limit - size_});
     const std::size_t got = std::fread(bytes_.get() + size_, 1, wanted, in.get());
     size_ += got;
     if (got < wanted) break;

@@ -50,9 +50,9 @@ struct Entry {
   std::size_t line = 0;
 };
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(const FileContent& content) : content_(content) {}
+  explicit PcdHeaderParser(const FileContent& content) : content_(content) {}
 
   PcdHeader parse() {
     while (data_.line == 0) parse_line();
@@ -191,7 +191,7 @@ std::size_t PcdHeader::columns() const {
 }
 
 PcdHeader parse_pcd_header(const FileContent& content) {
-  return HeaderParser(content).parse();
+  return PcdHeaderParser(content).parse();
 }
 
 }  // namespace cloud2csg

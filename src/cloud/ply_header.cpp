@@ -32,9 +32,9 @@ constexpr std::array<std::pair<std::string_view, ScalarType>, 16> k_type_names{{
 }};
 
 /// Reads a header line by line; holds the line number for messages.
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(const FileContent& content) : content_(content) {}
+  explicit PlyHeaderParser(const FileContent& content) : content_(content) {}
 
   PlyHeader parse() {
     if (next_words() != std::vector<std::string>{"ply"}) fail(R"(expected "ply" as the first line)");
@@ -124,7 +124,7 @@ std::size_t PlyElement::stride() const {
 }
 
 PlyHeader parse_ply_header(const FileContent& content) {
-  return HeaderParser(content).parse();
+  return PlyHeaderParser(content).parse();
 }
 
 bool ply_has_faces(const std::filesystem::path& file) {

@@ -15,7 +15,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::size_t k_block_bytes = std::size_t{1} << 20;
+constexpr std::size_t k_bytes_a_write = std::size_t{1} << 20;
 
 template <typename T>
 void append_binary(std::string& block, T value) {
@@ -75,7 +75,7 @@ void write_records(AtomicFile& out, const PointCloud& cloud, const RecordFormat&
       append_record<float>(block, used, format.binary);
     }
     if (!format.colours.empty()) append_colour(block, format.colours[i], format.binary);
-    if (block.size() >= k_block_bytes) {
+    if (block.size() >= k_bytes_a_write) {
       out.write(block);
       block.clear();
     }

@@ -14,14 +14,14 @@ Shape3d read_shape(const std::filesystem::path& file) {
     return std::ranges::find(endings, ending) != endings.end();
   };
   if (is_one_of({".json", ".scad", ".csg"})) return {.model = read_model(file)};
-  if (is_one_of({".stl", ".off", ".obj"})) return {.mesh = read_mesh(file)};
+  if (is_one_of({".stl", ".off", ".obj", ".3mf", ".glb"})) return {.mesh = read_mesh(file)};
   if (ending == ".ply" && ply_has_faces(file)) return {.mesh = read_mesh(file)};
   if (is_one_of({".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"})) return {.cloud = read_point_cloud(file)};
   throw Error({.file = file.string(),
                .where = {},
                .expected =
-                   "expected a model (.json, .scad, .csg), a mesh (.stl, .off, .obj, .ply with faces) or a point cloud "
-                   "(.ply, .pcd, .xyz, .xyzn, .txt, .pts)",
+                   "expected a model (.json, .scad, .csg), a mesh (.stl, .off, .obj, .3mf, .glb, .ply with faces) or a "
+                   "point cloud (.ply, .pcd, .xyz, .xyzn, .txt, .pts)",
                .remedy = "convert the file"});
 }
 

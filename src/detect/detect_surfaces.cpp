@@ -143,6 +143,12 @@ void require_positive(const char* field, double value) {
 
 void validate(const DetectOptions& options) {
   require_positive("angle_tolerance_deg", options.angle_tolerance_deg);
+  if (options.angle_tolerance_deg > 90) {
+    throw Error({.file = {},
+                 .where = "angle_tolerance_deg",
+                 .expected = fmt::format("expected at most 90 degrees, got {}", options.angle_tolerance_deg),
+                 .remedy = {}});
+  }
   if (options.distance_tolerance) require_positive("distance_tolerance", *options.distance_tolerance);
   if (options.least_size) require_positive("least_size", *options.least_size);
   if (options.most_size) require_positive("most_size", *options.most_size);

@@ -1,7 +1,6 @@
-#include <array>
+#include "evolve/local_search.hpp"
 
-#include "cloud2csg/evolve.hpp"
-#include "evolve/scored_tree.hpp"
+#include <array>
 
 namespace cloud2csg {
 namespace {
@@ -14,14 +13,17 @@ CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
                                                 : subtract(a, b);
 }
 
-bool is_spent(const Evaluator& evaluator, const LocalSearchOptions& options) {
+template <typename TreeEvaluator>
+bool is_spent(const TreeEvaluator& evaluator, const LocalSearchOptions& options) {
   return evaluator.evaluations() >= options.evaluation_limit || evaluator.work() >= options.work_limit;
 }
 
 /// The best of the neighbours of one tree.
+template <typename TreeEvaluator>
 class Neighbourhood {
  public:
-  Neighbourhood(Evaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options, std::stop_token stop)
+  Neighbourhood(TreeEvaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options,
+                std::stop_token stop)
       : evaluator_(evaluator), centre_(centre), options_(options), stop_(std::move(stop)), best_(centre) {}
 
   ScoredTree best() {
@@ -29,7 +31,7 @@ class Neighbourhood {
       shrink(node);
       if (options_.shrink_only) continue;
       change_operation(node);
-      for (PrimitiveIndex p = 0; p < evaluator_.table().primitive_count() && !is_at_end(); ++p) {
+      for (PrimitiveIndex p = 0; p < evaluator_.primitives() && !is_at_end(); ++p) {
         insert(node, CsgTree::leaf(p));
         if (!centre_.tree.nodes()[node].is_leaf() || centre_.tree.nodes()[node].primitive() != p) {
           consider(node, CsgTree::leaf(p));
@@ -82,18 +84,16 @@ class Neighbourhood {
     consider(node, subtract(leaf, here));
   }
 
-  Evaluator& evaluator_;
+  TreeEvaluator& evaluator_;
   const ScoredTree& centre_;
   const LocalSearchOptions& options_;
   std::stop_token stop_;
   ScoredTree best_;
 };
 
-}  // namespace
-
-Evolution local_search(const RankClasses& table, const CsgTree& start, const LocalSearchOptions& options,
-                       const RunContext& run) {
-  Evaluator evaluator(table);
+template <typename TreeEvaluator>
+Evolution climb(TreeEvaluator evaluator, const CsgTree& start, const LocalSearchOptions& options,
+                const RunContext& run) {
   ScoredTree current{start, evaluator.score(start)};
   bool complete = true;
   while (!is_spent(evaluator, options)) {
@@ -114,6 +114,18 @@ Evolution local_search(const RankClasses& table, const CsgTree& start, const Loc
           .generations = 0,
           .evaluations = evaluator.evaluations(),
           .complete = complete};
+}
+
+}  // namespace
+
+Evolution local_search(const RankClasses& table, const CsgTree& start, const LocalSearchOptions& options,
+                       const RunContext& run) {
+  return climb(Evaluator(table), start, options, run);
+}
+
+Evolution local_search(const TreeObjective& objective, const CsgTree& start, const LocalSearchOptions& options,
+                       const RunContext& run) {
+  return climb(ObjectiveEvaluator(objective), start, options, run);
 }
 
 }  // namespace cloud2csg

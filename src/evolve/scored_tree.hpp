@@ -20,6 +20,8 @@ struct TreeObjective {
   /// E(t) without the cost of size. Called by several threads at a time.
   std::function<double(const CsgTree&)> geometry;
   double alpha = 0;  ///< cost of a node
+  /// Of an evaluation, for limits: a part that is the same for all trees, and a part a node.
+  double work = 0, work_per_node = 1;
 };
 
 /// Evaluates trees on a TreeObjective and counts how many; one a thread.
@@ -29,14 +31,18 @@ class ObjectiveEvaluator {
 
   [[nodiscard]] double score(const CsgTree& tree) {
     ++evaluations_;
+    work_ += objective_.work + objective_.work_per_node * static_cast<double>(tree.size());
     return geometry(tree) - objective_.alpha * static_cast<double>(tree.size());
   }
   [[nodiscard]] double geometry(const CsgTree& tree) const { return objective_.geometry(tree); }
   [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
+  [[nodiscard]] double work() const { return work_; }
+  [[nodiscard]] std::size_t primitives() const { return objective_.primitives; }
 
  private:
   const TreeObjective& objective_;
   std::size_t evaluations_ = 0;
+  double work_ = 0;
 };
 
 /// Evaluates trees on a table and counts how many; one a thread.
@@ -53,7 +59,7 @@ class Evaluator {
   [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
   /// Evaluations x classes x nodes.
   [[nodiscard]] double work() const { return work_; }
-  [[nodiscard]] const RankClasses& table() const { return table_; }
+  [[nodiscard]] std::size_t primitives() const { return table_.primitive_count(); }
 
  private:
   const RankClasses& table_;

@@ -11,33 +11,27 @@
 namespace cloud2csg {
 namespace {
 
-/// A function of the script, written when it is used.
-struct Helper {
-  const char* call;
-  const char* text;
-};
-
-constexpr std::array k_helpers{
-    Helper{"= box(", R"(def box(size, position, axis=(0, 0, 1), degrees=0):
+constexpr std::array k_cadquery_functions{
+    script::Function{"= box(", R"(def box(size, position, axis=(0, 0, 1), degrees=0):
     x, y, z = size
     return placed(cq.Solid.makeBox(x, y, z, cq.Vector(-x / 2, -y / 2, -z / 2)), position, axis, degrees)
 )"},
-    Helper{"= sphere(", R"(def sphere(radius, position):
+    script::Function{"= sphere(", R"(def sphere(radius, position):
     whole = cq.Solid.makeSphere(radius, cq.Vector(0, 0, 0), cq.Vector(0, 0, 1), -90, 90, 360)
     return placed(whole, position)
 )"},
-    Helper{"= cylinder(", R"(def cylinder(radius, height, position, axis=(0, 0, 1), degrees=0):
+    script::Function{"= cylinder(", R"(def cylinder(radius, height, position, axis=(0, 0, 1), degrees=0):
     solid = cq.Solid.makeCylinder(radius, height, cq.Vector(0, 0, -height / 2))
     return placed(solid, position, axis, degrees)
 )"},
-    Helper{"= cone(", R"(def cone(radius_bottom, radius_top, height, position, axis=(0, 0, 1), degrees=0):
+    script::Function{"= cone(", R"(def cone(radius_bottom, radius_top, height, position, axis=(0, 0, 1), degrees=0):
     solid = cq.Solid.makeCone(radius_bottom, radius_top, height, cq.Vector(0, 0, -height / 2))
     return placed(solid, position, axis, degrees)
 )"},
-    Helper{"= torus(", R"(def torus(major_radius, minor_radius, position, axis=(0, 0, 1), degrees=0):
+    script::Function{"= torus(", R"(def torus(major_radius, minor_radius, position, axis=(0, 0, 1), degrees=0):
     return placed(cq.Solid.makeTorus(major_radius, minor_radius), position, axis, degrees)
 )"},
-    Helper{"= polyhedron(", R"(def polyhedron(shells, position, axis=(0, 0, 1), degrees=0):
+    script::Function{"= polyhedron(", R"(def polyhedron(shells, position, axis=(0, 0, 1), degrees=0):
     solid = None
     for points, faces in shells:
         corners = [cq.Vector(*point) for point in points]
@@ -62,7 +56,7 @@ def turns_inward(points, faces):
     return volume < 0
 )"}};
 
-constexpr const char* k_head = R"(# For CadQuery 2.2 or later. The result is `part`: CQ-editor shows it;
+constexpr const char* k_cadquery_head = R"(# For CadQuery 2.2 or later. The result is `part`: CQ-editor shows it;
 # cq.exporters.export(cq.Workplane(part), "part.step") writes it.
 # Lengths are in the model's units; a solid is turned about its axis through the origin, by degrees, then moved.
 import cadquery as cq
@@ -74,12 +68,12 @@ def placed(solid, position, axis=(0, 0, 1), degrees=0):
     return solid.moved(cq.Location(cq.Vector(*position), cq.Vector(*axis), degrees))
 )";
 
-constexpr const char* k_tail = R"(
+constexpr const char* k_cadquery_tail = R"(
 if "show_object" in globals():
     show_object(part)
 )";
 
-std::set<std::string> reserved_names() {
+std::set<std::string> cadquery_reserved_names() {
   std::set<std::string> names = script::python_keywords();
   names.insert({"cq", "part", "placed", "turns_inward", "box", "sphere", "cylinder", "cone", "torus", "polyhedron",
                 "show_object", "globals", "zip", "enumerate"});
@@ -182,9 +176,9 @@ script::Dialect dialect(script::UniqueNames& names, const script::NumberFormat& 
                     Operands operands) { return fmt::format("{}.cut({})", base, script::arguments(operands)); }};
 }
 
-std::string helpers_of(const std::string& statements) {
+std::string cadquery_functions(const std::string& statements) {
   std::string helpers = k_placed;
-  for (const Helper& helper : k_helpers) {
+  for (const script::Function& helper : k_cadquery_functions) {
     if (statements.find(helper.call) != std::string::npos) helpers += std::string("\n\n") + helper.text;
   }
   return helpers;
@@ -196,11 +190,11 @@ std::string to_cadquery(const CsgTree& tree, const PrimitiveSet& primitives, con
   script::validate_facet_resolution(options.facet_resolution);
   const script::Plan plan = script::plan_script(tree, primitives);
   const script::NumberFormat number(plan.everything.sizes().maxCoeff());
-  script::UniqueNames names(reserved_names());
+  script::UniqueNames names(cadquery_reserved_names());
   const script::PythonBody body =
       script::python_body(plan, primitives, options.facet_resolution, names, dialect(names, number));
-  return script::comment(options.comment, "# ") + k_head + body.parameters + helpers_of(body.solids) + "\n\n" +
-         body.solids + "\n" + body.operations + k_tail;
+  return script::comment(options.comment, "# ") + k_cadquery_head + body.parameters + cadquery_functions(body.solids) +
+         "\n\n" + body.solids + "\n" + body.operations + k_cadquery_tail;
 }
 
 }  // namespace cloud2csg

@@ -44,11 +44,29 @@ ExportReport export_script(const std::filesystem::path& file, const Model& model
   return report;
 }
 
-ExportReport export_mesh(const std::filesystem::path& file, const Model& model, const MeshingOptions& options,
+/// The surface of the exact solid, where there is a kernel that makes one without fault.
+std::optional<TriangleMesh> exact_surface(const CsgTree& tree, const PrimitiveSet& primitives,
+                                          const ExportOptions& options, const RunContext& run) {
+  constexpr std::size_t k_most_leaves = 100;  // of more, the kernel is slow
+  constexpr double k_share_of_cell = 0.02;
+  if (!options.exact_meshes || leaf_count(tree) > k_most_leaves || !has_brep()) return std::nullopt;
+  BrepOptions brep = options.brep;
+  brep.mesh_deviation = k_share_of_cell / options.meshing.resolution;
+  try {
+    BrepMesh made = mesh_brep(tree, primitives, brep, run);
+    const bool is_right = made.report.is_exact(brep) && is_watertight(made.mesh);
+    return is_right ? std::optional(std::move(made.mesh)) : std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+ExportReport export_mesh(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
                          const RunContext& run) {
   const CsgTree& tree = tree_of(model, file);
   const AlignedBox extent = model_extent(tree, model.primitives);
-  write_mesh(file, mesh_surface(tree, model.primitives, extent, options, run));
+  const std::optional<TriangleMesh> exact = exact_surface(tree, model.primitives, options, run);
+  write_mesh(file, exact ? *exact : mesh_surface(tree, model.primitives, extent, options.meshing, run));
   return {.cut_at = cut_at(tree, model.primitives, extent)};
 }
 
@@ -76,7 +94,8 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
   if (ending == ".csg") return export_script(file, model, options.openscad, to_openscad_csg);
   if (ending == ".fcmacro") return export_script(file, model, options.script, to_freecad_macro);
   if (ending == ".py") return export_script(file, model, options.script, to_cadquery);
-  if (ending == ".stl" || ending == ".off" || ending == ".obj") return export_mesh(file, model, options.meshing, run);
+  if (ending == ".stl" || ending == ".off" || ending == ".obj" || ending == ".3mf")
+    return export_mesh(file, model, options, run);
   if (ending == ".step" || ending == ".stp" || ending == ".brep") {
     return export_brep(file, model, ending, options.brep, run);
   }
@@ -84,7 +103,7 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
       {.file = file.string(),
        .where = {},
        .expected = fmt::format("expected a file ending in .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, "
-                               ".stl, .off, .obj or .dot, found \"{}\"",
+                               ".stl, .off, .obj, .3mf or .dot, found \"{}\"",
                                ending),
        .remedy = {}});
 }

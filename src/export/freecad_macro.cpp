@@ -12,33 +12,27 @@ namespace {
 
 using script::exact;
 
-/// A function of the macro, written when it is used.
-struct Helper {
-  const char* call;
-  const char* text;
-};
-
 // FreeCAD's boxes begin at a corner, its cylinders and cones at the middle of the lower end: the placement moves them
 // there. MultiCommon means different things in different versions of FreeCAD, as soon as it has more than two operands.
-constexpr std::array k_helpers{
-    Helper{" = box(", R"(def box(label, size, position, rotation=(0, 0, 0, 1)):
+constexpr std::array k_freecad_functions{
+    script::Function{" = box(", R"(def box(label, size, position, rotation=(0, 0, 0, 1)):
     x, y, z = size
     return add("Part::Box", label, at(position, rotation, (-x / 2, -y / 2, -z / 2)), Length=x, Width=y, Height=z)
 )"},
-    Helper{" = sphere(", R"(def sphere(label, radius, position, rotation=(0, 0, 0, 1)):
+    script::Function{" = sphere(", R"(def sphere(label, radius, position, rotation=(0, 0, 0, 1)):
     return add("Part::Sphere", label, at(position, rotation), Radius=radius)
 )"},
-    Helper{" = cylinder(", R"(def cylinder(label, radius, height, position, rotation=(0, 0, 0, 1)):
+    script::Function{" = cylinder(", R"(def cylinder(label, radius, height, position, rotation=(0, 0, 0, 1)):
     return add("Part::Cylinder", label, at(position, rotation, (0, 0, -height / 2)), Radius=radius, Height=height)
 )"},
-    Helper{" = cone(", R"(def cone(label, bottom, top, height, position, rotation=(0, 0, 0, 1)):
+    script::Function{" = cone(", R"(def cone(label, bottom, top, height, position, rotation=(0, 0, 0, 1)):
     place = at(position, rotation, (0, 0, -height / 2))
     return add("Part::Cone", label, place, Radius1=bottom, Radius2=top, Height=height)
 )"},
-    Helper{" = torus(", R"(def torus(label, major, minor, position, rotation=(0, 0, 0, 1)):
+    script::Function{" = torus(", R"(def torus(label, major, minor, position, rotation=(0, 0, 0, 1)):
     return add("Part::Torus", label, at(position, rotation), Radius1=major, Radius2=minor)
 )"},
-    Helper{" = polyhedron(", R"(def polyhedron(label, shells, position, rotation=(0, 0, 0, 1)):
+    script::Function{" = polyhedron(", R"(def polyhedron(label, shells, position, rotation=(0, 0, 0, 1)):
     shape = None
     for points, faces in shells:
         corners = [FreeCAD.Vector(*point) for point in points]
@@ -56,20 +50,21 @@ constexpr std::array k_helpers{
     thing.Placement = at(position, rotation)
     return thing
 )"},
-    Helper{"union(", R"(def union(*operands):
+    script::Function{"union(", R"(def union(*operands):
     return combine("Part::MultiFuse", "Union", operands, Shapes=list(operands))
 )"},
-    Helper{"common(", R"(def common(first, *others):
+    script::Function{"common(", R"(def common(first, *others):
     for other in others:  # in pairs: MultiCommon of more differs between versions of FreeCAD
         first = combine("Part::MultiCommon", "Common", (first, other), Shapes=[first, other])
     return first
 )"},
-    Helper{"cut(", R"(def cut(base, *tools):
+    script::Function{"cut(", R"(def cut(base, *tools):
     tool = tools[0] if len(tools) == 1 else combine("Part::MultiFuse", "Removed", tools, Shapes=list(tools))
     return combine("Part::Cut", "Cut", (base, tool), Base=base, Tool=tool)
 )"}};
 
-constexpr const char* k_head = R"(# Run it in FreeCAD (Macro > Macros...), or without a window: freecadcmd FILE.FCMacro
+constexpr const char* k_freecad_head =
+    R"(# Run it in FreeCAD (Macro > Macros...), or without a window: freecadcmd FILE.FCMacro
 # A length of 1 is one millimetre in FreeCAD. Rotations are quaternions: x, y, z, w.
 import FreeCAD
 import Part
@@ -99,13 +94,13 @@ def combine(kind, label, operands, **properties):
     return add(kind, label, FreeCAD.Placement(), **properties)
 )";
 
-constexpr const char* k_tail = R"(part.Label = "part"
+constexpr const char* k_freecad_tail = R"(part.Label = "part"
 document.recompute()
 if FreeCAD.GuiUp:
     FreeCAD.Gui.SendMsgToActiveView("ViewFit")
 )";
 
-std::set<std::string> reserved_names() {
+std::set<std::string> freecad_reserved_names() {
   std::set<std::string> names = script::python_keywords();
   names.insert({"FreeCAD", "Part", "document", "at", "add", "combine", "part", "box", "sphere", "cylinder", "cone",
                 "torus", "polyhedron", "union", "common", "cut", "setattr", "list", "len"});
@@ -171,10 +166,10 @@ script::Dialect dialect() {
 }
 
 /// Those functions of the macro that its statements call.
-std::string helpers_of(const std::string& statements) {
+std::string freecad_functions(const std::string& statements) {
   std::string helpers;
   bool combines = false;
-  for (const Helper& helper : k_helpers) {
+  for (const script::Function& helper : k_freecad_functions) {
     if (statements.find(helper.call) == std::string::npos) continue;
     const bool is_operation = std::string_view(helper.text).find("combine(") != std::string_view::npos;
     if (is_operation && !std::exchange(combines, true)) helpers += k_combine;
@@ -189,10 +184,10 @@ std::string helpers_of(const std::string& statements) {
 std::string to_freecad_macro(const CsgTree& tree, const PrimitiveSet& primitives, const ScriptOptions& options) {
   script::validate_facet_resolution(options.facet_resolution);
   const script::Plan plan = script::plan_script(tree, primitives);
-  script::UniqueNames names(reserved_names());
+  script::UniqueNames names(freecad_reserved_names());
   const script::PythonBody body = script::python_body(plan, primitives, options.facet_resolution, names, dialect());
-  return script::comment(options.comment, "# ") + k_head + helpers_of(body.solids + body.operations) + "\n\n" +
-         body.parameters + body.solids + "\n" + body.operations + k_tail;
+  return script::comment(options.comment, "# ") + k_freecad_head + freecad_functions(body.solids + body.operations) +
+         "\n\n" + body.parameters + body.solids + "\n" + body.operations + k_freecad_tail;
 }
 
 }  // namespace cloud2csg

@@ -13,14 +13,30 @@ namespace {
 
 using Kind = script::Step::Kind;
 
-std::string around(const script::LinePattern& line, const std::string& count, const script::NumberFormat& number,
+/// As a parameter.
+std::string count_of(std::size_t members, Parameters& parameters) {
+  return parameters.add("count", fmt::format("{}", members));
+}
+
+std::string around(const script::LinePattern& line, std::size_t members, const script::NumberFormat& number,
                    Parameters& parameters) {
+  const std::string count = count_of(members, parameters);
   return fmt::format("for (i = [0 : {} - 1]) translate(i * {}) ", count,
                      parameters.add("step", list(line.step, number)));
 }
 
-std::string around(const script::CirclePattern& circle, const std::string& count, const script::NumberFormat& number,
+std::string around(const script::GridPattern& grid, std::size_t members, const script::NumberFormat& number,
                    Parameters& parameters) {
+  const std::string columns = parameters.add("columns", fmt::format("{}", grid.columns));
+  const std::string rows = parameters.add("rows", fmt::format("{}", members / grid.columns));
+  const std::string step = parameters.add("step", list(grid.step, number));
+  return fmt::format("for (i = [0 : {} - 1], j = [0 : {} - 1]) translate(i * {} + j * {}) ", columns, rows, step,
+                     parameters.add("row_step", list(grid.row_step, number)));
+}
+
+std::string around(const script::CirclePattern& circle, std::size_t members, const script::NumberFormat& number,
+                   Parameters& parameters) {
+  const std::string count = count_of(members, parameters);
   const script::NumberFormat plain(1.0);
   // A full circle stays one when the count is changed.
   const std::string angle = circle.is_full ? "360 / " + count : parameters.add("angle", plain(circle.angle_deg));
@@ -33,6 +49,13 @@ std::string around(const script::CirclePattern& circle, const std::string& count
     back = fmt::format("translate(-{}) ", name);
   }
   return fmt::format("for (i = [0 : {} - 1]) {}rotate(a = i * {}, v = {}) {}", count, there, angle, axis, back);
+}
+
+const char* way_of(const decltype(script::Pattern::motion)& motion) {
+  return std::visit(Overloaded{[](const script::LinePattern&) { return "at equal steps"; },
+                               [](const script::GridPattern&) { return "at equal steps in two directions"; },
+                               [](const script::CirclePattern&) { return "at equal angles about an axis"; }},
+                    motion);
 }
 
 }  // namespace
@@ -63,14 +86,17 @@ Loops loops_of(const script::Plan& plan, const PrimitiveSet& primitives) {
 
 std::string loop_over(const script::Pattern& pattern, const std::vector<std::string>& names,
                       const script::NumberFormat& number, Parameters& parameters) {
+  constexpr std::size_t k_most_named = 12;
   std::vector<std::string> others;
-  for (std::size_t place = 1; place < pattern.members.size(); ++place) others.push_back(names[pattern.members[place]]);
-  const bool is_line = std::holds_alternative<script::LinePattern>(pattern.motion);
-  parameters.remark(fmt::format("Repeated {}, as {}; these were off by {:.1g} at most.",
-                                is_line ? "at equal steps" : "at equal angles about an axis", fmt::join(others, ", "),
+  for (std::size_t place = 1; place < pattern.members.size() && others.size() < k_most_named; ++place) {
+    others.push_back(names[pattern.members[place]]);
+  }
+  const std::size_t unnamed = pattern.members.size() - 1 - others.size();
+  parameters.remark(fmt::format("Repeated {}, as {}{}; these were off by {:.1g} at most.", way_of(pattern.motion),
+                                fmt::join(others, ", "), unnamed > 0 ? fmt::format(" and {} more", unnamed) : "",
                                 pattern.deviation));
-  const std::string count = parameters.add("count", fmt::format("{}", pattern.members.size()));
-  return std::visit([&](const auto& motion) { return around(motion, count, number, parameters); }, pattern.motion);
+  const auto loop = [&](const auto& motion) { return around(motion, pattern.members.size(), number, parameters); };
+  return std::visit(loop, pattern.motion);
 }
 
 }  // namespace cloud2csg::openscad

@@ -20,7 +20,7 @@ struct Loops {
 /// The patterns among what is united or taken away together. Primitives that the tree has twice stay alone.
 [[nodiscard]] Loops loops_of(const script::Plan& plan, const PrimitiveSet& primitives);
 
-/// `for (...) translate(...) `, to stand before the first member; adds count and step to its parameters.
+/// `for (...) translate(...) `, to stand before the first member; adds counts and steps to its parameters.
 [[nodiscard]] std::string loop_over(const script::Pattern& pattern, const std::vector<std::string>& names,
                                     const script::NumberFormat& number, Parameters& parameters);
 

@@ -15,6 +15,7 @@ constexpr double k_infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t k_fewest = 3;
 constexpr std::size_t k_most_in_line = 256;
 constexpr std::size_t k_most_in_circle = 48;
+constexpr std::size_t k_most_in_small_grid = 16;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180.0;
@@ -50,6 +51,11 @@ Pose motion_of(const LinePattern& line, std::size_t place) {
   return {.position = static_cast<double>(place) * line.step};
 }
 
+Pose motion_of(const GridPattern& grid, std::size_t place) {
+  return {.position = static_cast<double>(place % grid.columns) * grid.step +
+                      static_cast<double>(place / grid.columns) * grid.row_step};
+}
+
 Pose motion_of(const CirclePattern& circle, std::size_t place) {
   const double angle = radians(static_cast<double>(place) * circle.angle_deg);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, circle.axis));
@@ -72,6 +78,36 @@ Primitive moved(const Primitive& first, const Motion& motion, std::size_t place)
   return member;
 }
 
+bool is_backward(const Eigen::Vector3d& step) {
+  Eigen::Index largest = 0;
+  step.cwiseAbs().maxCoeff(&largest);
+  return step[largest] < 0;
+}
+
+/// The same members from another end, so that steps are positive where they are largest.
+void turn_forward(Pattern& pattern) {
+  const auto begin = pattern.members.begin();
+  if (auto* line = std::get_if<LinePattern>(&pattern.motion); line && is_backward(line->step)) {
+    std::reverse(begin, pattern.members.end());
+    line->step = -line->step;
+  }
+  auto* grid = std::get_if<GridPattern>(&pattern.motion);
+  if (!grid) return;
+  const auto columns = static_cast<std::ptrdiff_t>(grid->columns);
+  const auto reverse_rows = [&] {
+    for (auto row = begin; row != pattern.members.end(); row += columns) std::reverse(row, row + columns);
+  };
+  if (is_backward(grid->step)) {
+    reverse_rows();
+    grid->step = -grid->step;
+  }
+  if (is_backward(grid->row_step)) {
+    std::reverse(begin, pattern.members.end());
+    reverse_rows();
+    grid->row_step = -grid->row_step;
+  }
+}
+
 /// Equal solids in which patterns are looked for.
 class Group {
  public:
@@ -88,9 +124,15 @@ class Group {
     const auto keep_longer = [&longest](std::optional<Pattern> pattern) {
       if (pattern && pattern->members.size() > longest.members.size()) longest = std::move(*pattern);
     };
-    if (free_.size() <= k_most_in_line) keep_longer(longest_line());
+    if (free_.size() <= k_most_in_line) keep_longer(widest_grid(longest_line()));
     if (free_.size() <= k_most_in_circle) keep_longer(longest_circle());
+    if (longest.members.empty() && free_.size() <= k_most_in_small_grid) keep_longer(grid_of_pairs());
     if (longest.members.size() < k_fewest) return {};
+    longest.deviation = deviation(longest);
+    Pattern turned = longest;
+    turn_forward(turned);
+    turned.deviation = deviation(turned);
+    if (turned.deviation <= tolerance_) longest = std::move(turned);
     std::erase_if(free_, [&longest](PrimitiveIndex index) {
       return std::find(longest.members.begin(), longest.members.end(), index) != longest.members.end();
     });
@@ -110,6 +152,15 @@ class Group {
     return {};
   }
 
+  [[nodiscard]] double deviation(const Pattern& pattern) const {
+    double most = 0;
+    for (std::size_t place = 1; place < pattern.members.size(); ++place) {
+      const Primitive wanted = moved(at(pattern.members[0]), pattern.motion, place);
+      most = std::max(most, misfit(wanted, at(pattern.members[place])));
+    }
+    return most;
+  }
+
   /// All that the motion reaches from the first, one after the other.
   [[nodiscard]] Pattern chain(PrimitiveIndex first, const Motion& motion) const {
     Pattern pattern{.members = {first}, .motion = motion};
@@ -118,7 +169,6 @@ class Group {
       const std::optional<PrimitiveIndex> next = find(wanted);
       // Back at the first, or at one of two solids in the same place.
       if (!next || std::find(pattern.members.begin(), pattern.members.end(), *next) != pattern.members.end()) break;
-      pattern.deviation = std::max(pattern.deviation, misfit(wanted, at(*next)));
       pattern.members.push_back(*next);
     }
     return pattern;
@@ -143,6 +193,75 @@ class Group {
       }
     }
     return longest;
+  }
+
+  /// The line and all that the row step reaches from it, or goes back to; nothing if that is nothing.
+  [[nodiscard]] std::optional<Pattern> grid_of(const Pattern& line, const Eigen::Vector3d& row_step) const {
+    const LinePattern along = std::get<LinePattern>(line.motion);
+    const auto row_from = [&](const Eigen::Vector3d& offset) {
+      std::vector<PrimitiveIndex> row;
+      for (std::size_t place = 0; place < line.members.size(); ++place) {
+        Primitive wanted = moved(at(line.members[0]), along, place);
+        wanted.pose.position += offset;
+        const std::optional<PrimitiveIndex> member = find(wanted);
+        if (!member) return std::vector<PrimitiveIndex>{};
+        row.push_back(*member);
+      }
+      return row;
+    };
+    if (!row_from(-row_step).empty()) return {};  // found from there
+    Pattern grid{.members = line.members, .motion = GridPattern{along.step, row_step, line.members.size()}};
+    for (double rows = 1;; ++rows) {
+      const std::vector<PrimitiveIndex> row = row_from(rows * row_step);
+      const auto is_taken = [&grid](PrimitiveIndex one) {
+        return std::find(grid.members.begin(), grid.members.end(), one) != grid.members.end();
+      };
+      if (row.empty() || std::any_of(row.begin(), row.end(), is_taken)) break;
+      grid.members.insert(grid.members.end(), row.begin(), row.end());
+    }
+    if (grid.members.size() == line.members.size()) return {};
+    return grid;
+  }
+
+  /// The grid of most rows like the line, those nearest to each other; or else the line itself.
+  [[nodiscard]] std::optional<Pattern> widest_grid(const std::optional<Pattern>& line) const {
+    if (!line) return {};
+    Pattern widest = *line;
+    double least_step = k_infinite;
+    // Any row of the grid may be the first.
+    for (const PrimitiveIndex from : free_) {
+      Pattern row = chain(from, line->motion);
+      if (row.members.size() != line->members.size()) continue;
+      for (const PrimitiveIndex to : free_) {
+        const Eigen::Vector3d step = position(to) - position(from);
+        const Eigen::Vector3d along = std::get<LinePattern>(line->motion).step;
+        if (to == from || step.cross(along).norm() <= 2 * tolerance_ * along.norm()) continue;
+        if (widest.members.size() > line->members.size() && step.norm() > least_step * (1 + 1e-9)) continue;
+        const std::optional<Pattern> grid = grid_of(row, step);
+        if (!grid || grid->members.size() < widest.members.size()) continue;
+        const bool is_wider = grid->members.size() > widest.members.size();
+        if (!is_wider && !(step.norm() < least_step * (1 - 1e-9))) continue;
+        widest = *grid;
+        least_step = step.norm();
+      }
+    }
+    return widest;
+  }
+
+  /// Two rows of two, or more: the corners of a rectangle.
+  [[nodiscard]] std::optional<Pattern> grid_of_pairs() const {
+    std::optional<Pattern> widest;
+    for (const PrimitiveIndex first : free_) {
+      for (const PrimitiveIndex second : free_) {
+        const Eigen::Vector3d step = position(second) - position(first);
+        if (step.norm() <= 2 * tolerance_) continue;
+        std::optional<Pattern> grid = widest_grid(Pattern{.members = {first, second}, .motion = LinePattern{step}});
+        if (grid && grid->members.size() >= 4 && (!widest || grid->members.size() > widest->members.size())) {
+          widest = std::move(grid);
+        }
+      }
+    }
+    return widest;
   }
 
   [[nodiscard]] std::optional<Pattern> longest_circle() const {

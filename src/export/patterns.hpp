@@ -13,6 +13,12 @@ namespace cloud2csg::script {
 struct LinePattern {
   Eigen::Vector3d step;  ///< from one member to the next
 };
+/// Rows of equal steps, at equal steps from each other.
+struct GridPattern {
+  Eigen::Vector3d step;      ///< from one member of a row to the next
+  Eigen::Vector3d row_step;  ///< from one row to the next
+  std::size_t columns;       ///< members of a row
+};
 /// Equal angles about an axis, which the members turn with.
 struct CirclePattern {
   Eigen::Vector3d centre;
@@ -22,14 +28,15 @@ struct CirclePattern {
 };
 
 struct Pattern {
-  std::vector<PrimitiveIndex> members;  ///< in their order along the line or circle; three or more
-  std::variant<LinePattern, CirclePattern> motion;
+  std::vector<PrimitiveIndex> members;  ///< in their order along the line or circle, or row by row
+  std::variant<LinePattern, GridPattern, CirclePattern> motion;
   double deviation = 0;  ///< how far at most a member is from where the pattern puts it, in size, place and turn
 };
 
-/// Patterns of boxes, spheres, cylinders, cones and tori of equal size among `candidates`, the longest first; each
-/// candidate is in one at most. None deviates by more than `tolerance`. Of more than 256 equal solids, none is looked
-/// for; in circles, of more than 48. O(n^3 x patterns) for n equal solids
+/// Patterns of boxes, spheres, cylinders, cones and tori of equal size among `candidates`, those of most members first;
+/// each candidate is in one at most. Three or more in a line or on a circle, or four or more in a grid. None deviates
+/// by more than `tolerance`. Of more than 256 equal solids, none is looked for; in circles, of more than 48. O(n^3 x
+/// patterns) for n equal solids
 [[nodiscard]] std::vector<Pattern> find_patterns(const PrimitiveSet& primitives,
                                                  std::span<const PrimitiveIndex> candidates, double tolerance);
 

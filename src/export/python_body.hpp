@@ -27,6 +27,12 @@ struct Dialect {
   std::function<std::string(const std::string& base, std::span<const std::string> operands)> cut;
 };
 
+/// A function of the script, written when a statement calls it.
+struct Function {
+  const char* call;
+  const char* text;
+};
+
 struct PythonBody {
   std::string parameters;  ///< of each primitive
   std::string solids;      ///< of each primitive one, ascending

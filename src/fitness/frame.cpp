@@ -23,7 +23,10 @@ double reach_from(const Eigen::Vector3d& centre, const Primitive& primitive) {
   Pose pose = primitive.pose;
   pose.position -= centre;
   if (is_plain_half_space(primitive)) return foot_of_origin(pose).norm();
-  const Eigen::Vector3d half_size = oriented_bounds(primitive).half_size;
+  // Of a displaced solid its own size will do: to search for how far it really reaches takes longer than the rest.
+  Primitive plain = primitive;
+  plain.displacement.reset();
+  const Eigen::Vector3d half_size = oriented_bounds(plain).half_size;
   return pose.position.norm() + (half_size.allFinite() ? 2 * half_size.norm() : 0.0);
 }
 

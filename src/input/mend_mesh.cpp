@@ -7,27 +7,25 @@
 #include <vector>
 
 #include "cloud2csg/input.hpp"
+#include "geometry/place_text.hpp"
 #include "input/mesh_faults.hpp"
+#include "input/orient_pieces.hpp"
 
 namespace cloud2csg {
 namespace {
 
-using Corners = std::array<std::uint32_t, 3>;
+using CornerIndices = std::array<std::uint32_t, 3>;
 
 /// Of the squared size: triangles with less area are taken for lines.
 constexpr double k_least_area = 1e-14;
 
-std::string place_text(const Eigen::Vector3d& place) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", place.x(), place.y(), place.z());
-}
-
 /// The corners in the same cyclic order, the least first.
-Corners rotated(Corners corners) {
+CornerIndices rotated(CornerIndices corners) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   return corners;
 }
 
-bool has_area(const TriangleMesh& mesh, const Corners& corners, double least) {
+bool has_area(const TriangleMesh& mesh, const CornerIndices& corners, double least) {
   const Eigen::Vector3d a = mesh.vertices[corners[0]];
   return (mesh.vertices[corners[1]] - a).cross(mesh.vertices[corners[2]] - a).norm() > least;
 }
@@ -35,23 +33,23 @@ bool has_area(const TriangleMesh& mesh, const Corners& corners, double least) {
 void leave_out_flat(MendedMesh& mended) {
   const double least = k_least_area * bounds_of(mended.mesh.vertices).diagonal().squaredNorm();
   const std::size_t flat = std::erase_if(
-      mended.mesh.triangles, [&](const Corners& corners) { return !has_area(mended.mesh, corners, least); });
+      mended.mesh.triangles, [&](const CornerIndices& corners) { return !has_area(mended.mesh, corners, least); });
   if (flat > 0) mended.warnings.push_back(fmt::format("{} triangles of the mesh have no area and are left out.", flat));
 }
 
 void leave_out_repeated(MendedMesh& mended) {
-  std::vector<Corners>& triangles = mended.mesh.triangles;
+  std::vector<CornerIndices>& triangles = mended.mesh.triangles;
   struct Entry {
-    Corners sorted;
+    CornerIndices sorted;
     std::uint32_t index;
     bool is_even;  ///< of the two ways round
   };
   std::vector<Entry> entries;
   entries.reserve(triangles.size());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    const Corners corners = rotated(triangles[i]);
+    const CornerIndices corners = rotated(triangles[i]);
     const bool is_even = corners[1] < corners[2];
-    entries.push_back({is_even ? corners : Corners{corners[0], corners[2], corners[1]}, i, is_even});
+    entries.push_back({is_even ? corners : CornerIndices{corners[0], corners[2], corners[1]}, i, is_even});
   }
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return std::pair(a.sorted, a.index) < std::pair(b.sorted, b.index); });
@@ -78,7 +76,7 @@ void leave_out_repeated(MendedMesh& mended) {
   for (const Repeated& group : groups) {
     if (group.is_back_to_back && !is_two_sided) goes[group.first] = 1;
   }
-  std::vector<Corners> kept;
+  std::vector<CornerIndices> kept;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     if (goes[i] == 0) kept.push_back(triangles[i]);
   }
@@ -88,27 +86,37 @@ void leave_out_repeated(MendedMesh& mended) {
   triangles = std::move(kept);
 }
 
-void turn_if_inside_out(MendedMesh& mended) {
-  if (volume_of(mended.mesh) >= 0.0) return;
-  for (Corners& corners : mended.mesh.triangles) std::swap(corners[1], corners[2]);
-  mended.warnings.emplace_back("The mesh is inside out: its volume is negative. It was turned.");
+void turn_outward(MendedMesh& mended) {
+  const TurnedTriangles turned = orient_pieces(mended.mesh);
+  if (turned.disagreeing > 0) {
+    mended.warnings.push_back(
+        fmt::format("{} triangles of the mesh disagreed with their neighbours on which side is "
+                    "outside. They were turned.",
+                    turned.disagreeing));
+  }
+  if (turned.whole) mended.warnings.emplace_back("The mesh is inside out: its volume is negative. It was turned.");
+  if (turned.pieces > 0) {
+    mended.warnings.push_back(
+        fmt::format("{} pieces of the mesh were inside out, and not within others. They were turned.", turned.pieces));
+  }
 }
 
 void warn_of_faults(MendedMesh& mended, const RunContext& run) {
+  const double diagonal = bounds_of(mended.mesh.vertices).diagonal().norm();
   const EdgeFaults edges = find_edge_faults(mended.mesh);
   if (edges.open.count > 0) {
     mended.warnings.push_back(fmt::format("The mesh is open: {} edges have one triangle only, the first near {}.",
-                                          edges.open.count, place_text(edges.open.place)));
+                                          edges.open.count, place_text(edges.open.place, diagonal)));
   }
   if (edges.inconsistent.count > 0) {
     mended.warnings.push_back(
         fmt::format("Triangles of the mesh disagree on which side is outside at {} edges, the first near {}.",
-                    edges.inconsistent.count, place_text(edges.inconsistent.place)));
+                    edges.inconsistent.count, place_text(edges.inconsistent.place, diagonal)));
   }
   const MeshFault crossings = find_self_intersections(mended.mesh, run);
   if (crossings.count > 0) {
     mended.warnings.push_back(fmt::format("The mesh intersects itself: {} triangles, the first near {}.",
-                                          crossings.count, place_text(crossings.place)));
+                                          crossings.count, place_text(crossings.place, diagonal)));
   }
 }
 
@@ -118,7 +126,7 @@ MendedMesh mend_mesh(const TriangleMesh& mesh, const RunContext& run) {
   MendedMesh mended{.mesh = mesh};
   leave_out_flat(mended);
   leave_out_repeated(mended);
-  turn_if_inside_out(mended);
+  turn_outward(mended);
   run.throw_if_stopped();
   warn_of_faults(mended, run);
   return mended;

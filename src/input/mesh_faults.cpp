@@ -25,21 +25,21 @@ constexpr std::size_t k_triangles_a_task = 1024;
 /// Of a length: nearer than this counts as touching. Readers of meshes give single precision.
 constexpr double k_touching = 1e-6;
 
-using Corners = std::array<Vector3d, 3>;
+using CornerPoints = std::array<Vector3d, 3>;
 
-Corners corners_of(const TriangleMesh& mesh, std::size_t triangle) {
+CornerPoints corners_of(const TriangleMesh& mesh, std::size_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
-IndexBox box_of(const Corners& corners) {
+IndexBox box_of(const CornerPoints& corners) {
   const Vector3d low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
   const Vector3d high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
 /// Whether the segment goes through the inside of the triangle, by more than rounding.
-bool passes_through(const Vector3d& from, const Vector3d& to, const Corners& triangle) {
+bool passes_through(const Vector3d& from, const Vector3d& to, const CornerPoints& triangle) {
   const Vector3d along = to - from;
   const Vector3d first = triangle[1] - triangle[0];
   const Vector3d second = triangle[2] - triangle[0];
@@ -55,7 +55,7 @@ bool passes_through(const Vector3d& from, const Vector3d& to, const Corners& tri
   return share_first > k_touching && share_second > k_touching && share_first + share_second < 1.0 - k_touching;
 }
 
-bool edges_pass_through(const Corners& edges, const Corners& triangle) {
+bool edges_pass_through(const CornerPoints& edges, const CornerPoints& triangle) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (passes_through(edges[i], edges[(i + 1) % 3], triangle)) return true;
   }
@@ -69,10 +69,10 @@ bool share_a_vertex(const TriangleMesh& mesh, std::size_t one, std::size_t other
 }
 
 bool meets_another(const TriangleMesh& mesh, const TriangleIndex& index, std::size_t triangle) {
-  const Corners corners = corners_of(mesh, triangle);
+  const CornerPoints corners = corners_of(mesh, triangle);
   return std::any_of(index.qbegin(bg::index::intersects(box_of(corners))), index.qend(), [&](const auto& entry) {
     if (share_a_vertex(mesh, triangle, entry.second)) return false;
-    const Corners other = corners_of(mesh, entry.second);
+    const CornerPoints other = corners_of(mesh, entry.second);
     return edges_pass_through(corners, other) || edges_pass_through(other, corners);
   });
 }
@@ -127,7 +127,7 @@ MeshFault find_self_intersections(const TriangleMesh& mesh, const RunContext& ru
   MeshFault fault;
   for (std::size_t i = 0; i < count; ++i) {
     if (meets[i] == 0 || fault.count++ > 0) continue;
-    const Corners corners = corners_of(mesh, i);
+    const CornerPoints corners = corners_of(mesh, i);
     fault.place = (corners[0] + corners[1] + corners[2]) / 3.0;
   }
   return fault;

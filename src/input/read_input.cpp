@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "cloud/ply_header.hpp"
 #include "cloud2csg/error.hpp"
+#include "cloud2csg/geometry.hpp"
 #include "cloud2csg/input.hpp"
 #include "primitive/triangle_sampler.hpp"
 
@@ -38,10 +40,25 @@ Input read_cloud(const std::filesystem::path& file, const RunContext& run) {
   return input;
 }
 
+/// Readers of meshes give single precision, whatever the file says.
+void warn_of_coarse_corners(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  constexpr double k_coarse = 1e-4;  // of the diagonal: a tenth of the least tolerance
+  const AlignedBox box = bounds_of(mesh.vertices);
+  if (box.isEmpty()) return;
+  const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  const double step = farthest * static_cast<double>(std::numeric_limits<float>::epsilon());
+  if (step <= k_coarse * box.diagonal().norm()) return;
+  warnings.push_back(fmt::format(
+      "The mesh is so far from the origin that its corners are read in steps of {:.2g}: move it there before, "
+      "or give a cloud.",
+      step));
+}
+
 Input read_and_sample(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
   MendedMesh mended = mend_mesh(read_mesh(file), run);
   try {
     Input input{.cloud = sample_mesh(mended.mesh, options, run), .warnings = std::move(mended.warnings)};
+    warn_of_coarse_corners(mended.mesh, input.warnings);
     input.mesh = std::move(mended.mesh);
     return input;
   } catch (const Error& error) {

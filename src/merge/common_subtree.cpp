@@ -5,14 +5,12 @@
 #include <tuple>
 #include <utility>
 
+#include "base/narrow.hpp"
+
 namespace cloud2csg {
 namespace {
 
 using Operand = MergeCandidate::Operand;
-
-std::uint32_t narrow(std::size_t n) {
-  return static_cast<std::uint32_t>(n);
-}
 
 /// An operand of the smaller tree that is found at a valid place of the larger one.
 struct Match {

@@ -146,10 +146,10 @@ class VertexPlacer {
 
   /// Newton's steps onto the surface, within the vertices' cells.
   void project(std::size_t slot) {
-    constexpr int k_most_steps = 8;
+    constexpr int k_newton_steps = 8;
     std::vector<Placed> open;
     for_each_vertex(slot, [&](std::uint32_t vertex, const Eigen::Vector3i& cell) { open.push_back({vertex, cell}); });
-    for (int step = 0; step < k_most_steps && !open.empty(); ++step) open = step_to_surface(slot, open);
+    for (int step = 0; step < k_newton_steps && !open.empty(); ++step) open = step_to_surface(slot, open);
   }
 
   struct Placed {

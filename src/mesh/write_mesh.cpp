@@ -8,6 +8,7 @@
 #include "base/file_ending.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
+#include "mesh/threemf.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -66,9 +67,10 @@ void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
   if (ending == ".stl") return write_text_file(file, to_stl(mesh));
   if (ending == ".off") return write_text_file(file, to_off(mesh));
   if (ending == ".obj") return write_text_file(file, to_obj(mesh));
+  if (ending == ".3mf") return write_text_file(file, to_3mf(mesh));
   throw Error({.file = file.string(),
                .where = {},
-               .expected = fmt::format("expected a file ending in .stl, .off or .obj, found \"{}\"", ending),
+               .expected = fmt::format("expected a file ending in .stl, .off, .obj or .3mf, found \"{}\"", ending),
                .remedy = {}});
 }
 

@@ -100,12 +100,12 @@ std::vector<std::size_t> operands(const CsgTree& tree, std::size_t node) {
 }
 
 std::string tree_text(const CsgTree& tree, const PrimitiveSet& primitives) {
-  struct OpenNode {
+  struct UnfinishedNode {
     std::vector<std::size_t> operands;
     std::size_t done = 0;
   };
   std::string text;
-  std::vector<OpenNode> open;
+  std::vector<UnfinishedNode> open;
   const auto write = [&](std::size_t node) {
     const CsgNode head = tree.nodes()[node];
     if (head.operation() == Operation::primitive) {
@@ -119,7 +119,7 @@ std::string tree_text(const CsgTree& tree, const PrimitiveSet& primitives) {
   };
   write(tree.root());
   while (!open.empty()) {
-    OpenNode& node = open.back();
+    UnfinishedNode& node = open.back();
     if (node.done == node.operands.size()) {
       text += "]}";
       open.pop_back();

@@ -1,5 +1,7 @@
 #include "pipeline/cell_extraction.hpp"
 
+#include <algorithm>
+
 #include "base/stopwatch.hpp"
 #include "cloud2csg/cells.hpp"
 
@@ -7,7 +9,7 @@ namespace cloud2csg {
 
 double CellExtraction::trust() const {
   // Where most points are near several surfaces at once, the cells do not tell much.
-  constexpr double k_least_share = 0.25;
+  constexpr double k_least_share = 0.6;
   const auto assigned = static_cast<double>(complex.order.size() - complex.unassigned);
   if (is_constant(tree) || statistics.speaking_points < k_least_share * assigned) return 0;
   return 1 - statistics.contradicted_share();
@@ -31,7 +33,9 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
   } while (drop_unsupported(complex.points_of_primitive, supported, result.warnings));
   seconds.segment += watch.lap();
   search_run.report("search", 0, 1);
-  const CellLabels labels = label_cells(complex, options.cell_labels);
+  LabelOptions labelling = options.cell_labels;
+  if (cloud.has_sensor_positions()) labelling.absence = std::min(labelling.absence, labelling.absence_in_scans);
+  const CellLabels labels = label_cells(complex, labelling);
   const std::optional<CellSolution> solution = solve_cells(complex, labels, options.cell_solve, search_run);
   seconds.search += watch.lap();
   search_run.report("search", 1, 1);
@@ -46,8 +50,10 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
                        .contradicted_points = solution->cost,
                        .peeled = solution->peeled,
                        .cores = solution->cores,
+                       .least_leaves = solution->least_leaves,
                        .is_minimal = solution->is_minimal()};
   result.open_cells = solution->open_cells;
+  result.steps = solution->steps;
   result.complex = std::move(complex);
   return result;
 }

@@ -13,6 +13,7 @@ struct CellExtraction {
   SupportedPrimitives supported;
   CellComplex complex = {};
   std::vector<CellIndex> open_cells = {};
+  std::vector<TreeStep> steps = {};
   std::vector<std::string> warnings;
 
   /// The share of what the points say that the tree does not contradict; none where few of them say anything.

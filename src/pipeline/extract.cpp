@@ -27,6 +27,9 @@ namespace {
 constexpr std::uint64_t k_component_items = std::uint64_t{1} << 40U;
 constexpr std::uint64_t k_joint_items = std::uint64_t{1} << 41U;
 
+/// Of climbing by E, in evaluations x classes x nodes: about a second.
+constexpr double k_climbing_work = 4e9;
+
 void check_primitive(const Primitive& primitive) {
   try {
     validate(primitive);
@@ -126,7 +129,8 @@ class Extractor {
     statistics_.cells = by_cells_->statistics;
     statistics_.unassigned_points = by_cells_->complex.unassigned;
     statistics_.warnings = by_cells_->warnings;
-    statistics_.complete = by_cells_->is_complete;
+    statistics_.complete = statistics_.complete && by_cells_->is_complete;
+    statistics_.steps = by_cells_->steps;
     order_ = std::move(by_cells_->complex.order);
     return by_cells_->tree;
   }
@@ -137,10 +141,76 @@ class Extractor {
     limit_.enforce();
     solve_partitions();
     CsgTree tree = renumber(merge_components(), prepared_.original);
+    note("merged partitions", tree);
     if (!by_cells_) return tree;
     tree = simplify(tree);
-    const auto objective_of = [&](const CsgTree& some) { return fit_of(some, run).objective; };
-    return objective_of(by_cells_->tree) > objective_of(tree) ? take_cells() : tree;
+    const auto objective_of = [&](const CsgTree& some) {
+      Stopwatch watch;
+      const double objective = fit_of(some, run).objective;
+      statistics_.seconds.search += watch.lap();
+      return objective;
+    };
+    const bool only_cells_are_bounded =
+        is_unbounded(tree) && !is_constant(by_cells_->tree) && !is_unbounded(by_cells_->tree);
+    double objective = objective_of(tree);
+    if (const double of_cells = objective_of(by_cells_->tree); only_cells_are_bounded || of_cells >= objective) {
+      tree = take_cells();
+      objective = of_cells;
+    }
+    if (!options_.polish) return tree;
+    CsgTree climbed = climb(tree);
+    if (climbed == tree || objective_of(climbed) <= objective) return tree;
+    statistics_.cells.reset();  // it is not their tree any more
+    note("climbing by E", climbed);
+    return climbed;
+  }
+
+  /// By E over all points, or of a large cloud every k-th. Not where the points bear the cells out: E does not see what
+  /// they lack. The primitives that points support only.
+  CsgTree climb(const CsgTree& start) {
+    const SupportedPrimitives& supported = by_cells_->supported;
+    const RunContext run = search_run();
+    const bool knows_all = std::ranges::includes(supported.original, primitives_of(start));
+    if (is_constant(start) || !knows_all || supported.original.size() > RankClasses::k_byte_limit) return start;
+    limit_.enforce();
+    if (run.stop.stop_requested()) {
+      statistics_.complete = false;
+      return start;
+    }
+    Stopwatch watch;
+    const PointPass pass = pass_over(supported.primitives, true);
+    const CsgTree local = renumber(start, local_indices(supported.original, input_.size()));
+    const Evolution climbed = local_search(pass.tables.front(), local, {.work_limit = k_climbing_work}, run);
+    statistics_.complete = statistics_.complete && climbed.complete;
+    statistics_.seconds.search += watch.lap();
+    CsgTree tree = renumber(simplify(climbed.tree), supported.original);
+    return is_constant(tree) || is_unbounded(tree) ? start : tree;
+  }
+
+  void note(const char* step, const CsgTree& tree) { statistics_.steps.push_back({step, tree.size()}); }
+
+  [[nodiscard]] bool is_unbounded(const CsgTree& tree) const {
+    const CellComplex& complex = by_cells_->complex;
+    return std::ranges::any_of(complex.unbounded, [&](CellIndex cell) {
+      std::vector<bool> is_inside(input_.size());
+      for (const PrimitiveIndex p : complex.cells[cell]) is_inside[by_cells_->supported.original[p]] = true;
+      return contains(tree, is_inside);
+    });
+  }
+
+  /// A table of its own for some primitives: the pass looks at no other.
+  [[nodiscard]] PointPass pass_over(const PrimitiveSet& members, bool all_points) const {
+    RankClassesRequest request;
+    request.primitives.resize(members.size());
+    request.stride = stride_for(members.size(), cloud_.size());
+    request.all_points = all_points;
+    std::iota(request.primitives.begin(), request.primitives.end(), PrimitiveIndex{0});
+    return build_rank_classes(cloud_, members, std::span(&request, 1),
+                              {.tolerances = scale_.tolerances,
+                               .objective = options_.objective,
+                               .noise = scale_.noise,
+                               .precision = options_.precision},
+                              without_stop(search_run()));
   }
 
   [[nodiscard]] FitStatistics fit_of(const CsgTree& tree, const RunContext& run) const {
@@ -241,19 +311,9 @@ class Extractor {
 
   /// A tree for some primitives of a component, from a pass over the points for just them; component's indices.
   CsgTree solve_set(const Clique& set, std::span<const PrimitiveIndex> component) {
-    // A set of its own: the pass looks at no other primitive.
     PrimitiveSet members;
     for (const PrimitiveIndex p : set) members.push_back(prepared_.primitives[component[p]]);
-    RankClassesRequest request;
-    request.primitives.resize(set.size());
-    request.stride = stride_for(set.size(), cloud_.size());
-    std::iota(request.primitives.begin(), request.primitives.end(), PrimitiveIndex{0});
-    const PointPass pass = build_rank_classes(cloud_, members, std::span(&request, 1),
-                                              {.tolerances = scale_.tolerances,
-                                               .objective = options_.objective,
-                                               .noise = scale_.noise,
-                                               .precision = options_.precision},
-                                              without_stop(search_run()));
+    const PointPass pass = pass_over(members, false);
     const Evolution evolution =
         evolve_tree(pass.tables.front(), options_.search, k_joint_items + joint_solutions_++, search_run());
     statistics_.complete = statistics_.complete && evolution.complete;
@@ -279,6 +339,7 @@ class Extractor {
     statistics_.before_simplification = statistics_of(tree);
     CsgTree result = simplify(tree);
     statistics_.tree = statistics_of(result);
+    note("simplification", result);
     statistics_.seconds.simplify += watch.lap();
     return result;
   }
@@ -293,6 +354,11 @@ class Extractor {
     if (10 * statistics_.unassigned_points > statistics_.points) {
       statistics_.warnings.emplace_back(
           "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
+    } else if (statistics_.fit.p95_distance > scale_.tolerances.distance) {
+      statistics_.warnings.push_back(
+          fmt::format("more than a twentieth of the points is farther than {:.3g} from the surface of the result: "
+                      "primitives may be missing or badly fitted",
+                      scale_.tolerances.distance));
     }
     if (!statistics_.cells && statistics_.merge.worst_shortfall > k_tolerated_shortfall) {
       statistics_.warnings.push_back(
@@ -330,7 +396,7 @@ class Extractor {
 }  // namespace
 
 TreeStatistics statistics_of(const CsgTree& tree) {
-  return {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree)};
+  return {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree), .levels = levels(tree)};
 }
 
 Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
@@ -121,9 +123,14 @@ void validate(const ExtractOptions& options) {
   require_positive(options.cell_trust, "cell_trust");
   require(options.cell_samples.base >= 1, "cell_samples.base", "expected 1 or more, found 0");
   require(options.cell_labels.absence >= 0, "cell_labels.absence", "expected a number >= 0");
+  require(options.cell_labels.absence_in_scans >= 0, "cell_labels.absence_in_scans", "expected a number >= 0");
   require(options.cell_labels.presence >= 0, "cell_labels.presence", "expected a number >= 0");
   require(options.cell_labels.sight >= 0, "cell_labels.sight", "expected a number >= 0");
   require(!options.cell_solve.least_evidence.empty(), "cell_solve.least_evidence", "expected at least one number");
+  require(std::ranges::none_of(options.cell_solve.least_evidence, [](double least) { return !(least >= 0); }),
+          "cell_solve.least_evidence", "expected numbers >= 0");
+  require(std::ranges::is_sorted(options.cell_solve.least_evidence, std::greater<>()), "cell_solve.least_evidence",
+          "expected descending numbers");
   require(options.cell_solve.leaf_cost >= 0, "cell_solve.leaf_cost", "expected a number >= 0");
   if (options.time_limit_seconds) require_positive(*options.time_limit_seconds, "time_limit");
   validate(options.search);

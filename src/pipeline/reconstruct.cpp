@@ -12,6 +12,7 @@
 #include "base/without_stop.hpp"
 #include "cloud/append.hpp"
 #include "cloud2csg/error.hpp"
+#include "geometry/place_text.hpp"
 #include "pipeline/bare_surface.hpp"
 #include "pipeline/detect_rest.hpp"
 #include "pipeline/fit.hpp"
@@ -22,6 +23,7 @@ namespace cloud2csg {
 namespace {
 
 constexpr double k_much_unexplained = 0.1;
+constexpr double k_coarse = 0.05;  ///< tolerance, of the diagonal
 constexpr double k_much_disagreement = 0.1;
 constexpr double k_much_bare_surface = 0.05;
 constexpr double k_bare_spacings = 6;  ///< as far from all points, a surface is bare
@@ -53,7 +55,30 @@ std::size_t count_of(const std::vector<SurfacePoints>& primitives) {
   return count;
 }
 
-void check_detection(const RestDetection& found, const PointCloud& cloud, std::vector<std::string>& warnings) {
+/// Where most of the points lie that are on no surface, and on nothing that is known.
+Eigen::Vector3d unexplained_place(const RestDetection& found, const PreparedCloud& prepared) {
+  std::vector<bool> is_explained(prepared.cloud.size(), false);
+  const auto note = [&is_explained](std::span<const std::uint32_t> points) {
+    for (const std::uint32_t i : points) is_explained[i] = true;
+  };
+  for (const DetectedSurface& surface : found.detection.surfaces) note(surface.points);
+  for (const SurfacePoints& known : found.known) note(known.points);
+  Points rest;
+  for (std::size_t i = 0; i < is_explained.size(); ++i) {
+    if (!is_explained[i]) rest.push_back(prepared.cloud.positions[i]);
+  }
+  constexpr double k_neighbourhood = 0.1;  // of the diagonal
+  return crowded_place(rest, k_neighbourhood * prepared.scale.diagonal);
+}
+
+void check_tolerance(double tolerance, double diagonal, std::vector<std::string>& warnings) {
+  if (tolerance <= k_coarse * diagonal) return;
+  warnings.push_back(fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost",
+                                 tolerance, 100 * tolerance / diagonal));
+}
+
+void check_detection(const RestDetection& found, const PreparedCloud& prepared, std::vector<std::string>& warnings) {
+  const PointCloud& cloud = prepared.cloud;
   const Detection& detection = found.detection;
   if (detection.surfaces.empty() && count_of(found.known) == 0) {
     throw Error({.file = {},
@@ -66,9 +91,10 @@ void check_detection(const RestDetection& found, const PointCloud& cloud, std::v
   const double unexplained = share(detection.unexplained, cloud.size());
   if (unexplained > k_much_unexplained) {
     warnings.push_back(
-        fmt::format("{:.0f} % of the points lie on no surface that was found: a larger tolerance than "
-                    "{:.3g} may help, or these parts are of free form",
-                    100 * unexplained, detection.distance_tolerance));
+        fmt::format("{:.0f} % of the points lie on no surface that was found, most of them near {}: a larger "
+                    "tolerance than {:.3g} may help, or these parts are of free form",
+                    100 * unexplained, place_text(unexplained_place(found, prepared), prepared.scale.diagonal),
+                    detection.distance_tolerance));
   }
 }
 
@@ -107,9 +133,6 @@ double cost_of(const CsgTree& tree, const SolidChoice& choice, const SolidOption
 Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared, const ReconstructOptions& options,
                         const RunContext& run) {
   ExtractOptions extraction = options.extraction;
-  if (!extraction.segmentation.distance_tolerance) {
-    extraction.segmentation.distance_tolerance = detection_tolerance(options.detection, prepared.scale);
-  }
   // There is a tree already to fall back on: no need to search partitions where the cells' is contradicted.
   constexpr double k_any_trust = 1e-9;
   if (extraction.strategy == Strategy::automatic) extraction.cell_trust = k_any_trust;
@@ -118,6 +141,7 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
     result.tree = choice.tree;
     ExtractStatistics& statistics = result.statistics;
     statistics.tree = statistics_of(result.tree);
+    statistics.steps = {{"choice of solids", result.tree.size()}};
     statistics.cells.reset();
     statistics.warnings.clear();  // they are about the other tree
     const Objective objective = resolve(extraction.objective, prepared.cloud.size(), statistics.noise);
@@ -127,15 +151,52 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
   return result;
 }
 
+double seconds_left(double limit, double gone) {
+  constexpr double k_next_to_nothing = 1e-9;
+  return std::max(k_next_to_nothing, limit - gone);
+}
+
+/// E of a tree, with the noise that another was measured with.
+double objective_with(double noise, const Reconstruction& found, const ExtractOptions& options, const RunContext& run) {
+  const Objective objective = resolve(options.objective, found.cloud.size(), noise);
+  return measure_fit(found.tree, found.solids, found.cloud, objective, noise, without_stop(run)).objective;
+}
+
+/// What was found out about the cloud is true of the refined tree as well.
+void refine_found(Reconstruction& found, const ReconstructOptions& options, double seconds_gone,
+                  const RunContext& run) {
+  ExtractStatistics& before = found.statistics;
+  if (!options.refine || !before.complete) return;
+  ExtractOptions extraction = options.extraction;
+  if (extraction.time_limit_seconds) {
+    extraction.time_limit_seconds = seconds_left(*extraction.time_limit_seconds, seconds_gone);
+  }
+  RefinedExtraction refined = extract_refined_csg(found.cloud, found.solids, extraction, *options.refine, run);
+  ExtractStatistics& after = refined.extraction.statistics;
+  before.refine = after.refine;
+  before.seconds.refine = after.seconds.refine;
+  if (before.refine) before.refine->is_taken = false;
+  if (after.fit.objective <= objective_with(after.noise, found, extraction, run)) return;
+  for (const std::string& warning : after.warnings) {
+    if (std::ranges::find(before.warnings, warning) == before.warnings.end()) before.warnings.push_back(warning);
+  }
+  after.warnings = std::move(before.warnings);
+  after.finding = before.finding;
+  after.seconds.extraction += before.seconds.extraction;
+  found.solids = std::move(refined.primitives);
+  found.tree = std::move(refined.extraction.tree);
+  found.statistics = std::move(after);
+}
+
 void check_surface(const CsgTree& tree, const FoundPrimitives& found, const RunContext& run,
                    std::vector<std::string>& warnings) {
   const double near = std::max(k_bare_spacings * found.prepared.scale.spacing, 2 * found.detection.distance_tolerance);
   const auto bare = find_bare_surface(tree, found.choice.solids, found.prepared.cloud, near, run);
   if (!bare || bare->share < k_much_bare_surface) return;
   warnings.push_back(
-      fmt::format("{:.0f} % of the result's surface has no points near it, least of all at ({:.4g}, "
-                  "{:.4g}, {:.4g}): what is there is a guess",
-                  100 * bare->share, bare->middle.x(), bare->middle.y(), bare->middle.z()));
+      fmt::format("{:.0f} % of the result's surface has no points near it, least of all at {}: what is there "
+                  "is a guess",
+                  100 * bare->share, place_text(bare->middle, found.prepared.scale.diagonal)));
 }
 
 /// Adds the side, if one is missing, to the cloud and to the surfaces.
@@ -184,11 +245,13 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   Stopwatch watch;
   FoundPrimitives found;
   found.prepared = prepare_cloud(cloud, options.preparation, run);
-  found.prepare_seconds = watch.lap();
+  watch.lap();
   found.warnings = found.prepared.warnings;
 
+  const std::optional<double>& tolerance = options.detection.distance_tolerance;
+  if (tolerance) check_tolerance(*tolerance, found.prepared.scale.diagonal, found.warnings);
   RestDetection rest = detect_rest(found.prepared.cloud, found.prepared.scale, options.known, options.detection, run);
-  check_detection(rest, found.prepared.cloud, found.warnings);
+  check_detection(rest, found.prepared, found.warnings);
   found.detection = std::move(rest.detection);
   // What is known has ends of its own.
   if (options.close_unseen_side && options.known.empty()) close_unseen_side(found, run);
@@ -205,22 +268,30 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   if (found.choice.solids.empty()) {
     throw Error({.file = {},
                  .where = {},
-                 .expected = "the surfaces that were found bound no solid",
-                 .remedy = "give a cloud of a closed object, or of most of its surface"});
+                 .expected = fmt::format("the surfaces that were found bound no solid: {} in {} points",
+                                         found.detection.surfaces.size(), found.prepared.cloud.size()),
+                 .remedy = "give a cloud of a closed object, or of most of its surface, of some thousand points"});
   }
   found.warnings.insert(found.warnings.end(), found.choice.warnings.begin(), found.choice.warnings.end());
-  add_evidence(found, options.detection, run);
+  // The choice may have been cut short, and has a tree all the same.
+  add_evidence(found, options.detection, without_stop(run));
   found.choose_seconds = watch.lap();
   return found;
 }
 
 /// find_primitives() within the time limit of the extraction: the choice of solids has a tree to give at any time.
 FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
-  const TimeLimit limit(run.stop, options.extraction.time_limit_seconds);
+  const std::optional<double>& seconds = options.extraction.time_limit_seconds;
+  const TimeLimit limit(run.stop, seconds);
   RunContext limited = run;
   limited.stop = limit.token();
+  const Stopwatch watch;
   try {
-    return find_all(cloud, options, limited);
+    FoundPrimitives found = find_all(cloud, options, limited);
+    if (seconds && *seconds <= watch.seconds()) {
+      found.warnings.emplace_back("the time was over while solids were chosen: these are the best so far");
+    }
+    return found;
   } catch (const Cancelled&) {
     if (run.stop.stop_requested()) throw;
     throw Error({.file = {},
@@ -233,39 +304,57 @@ FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& 
 }  // namespace
 
 FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
-  FoundPrimitives found = find_all(cloud, options, run);
+  FoundPrimitives found = find_in_time(cloud, options, run);
   check_known_are_used(found.choice.tree, found, options.known, found.warnings);
   return found;
 }
 
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   validate(options.extraction);
+  if (options.refine) validate(*options.refine);
+  if (options.refine && !options.known.empty()) {
+    throw Error({.file = {},
+                 .where = "refine",
+                 .expected = "primitives that are known would be moved",
+                 .remedy = "refine all primitives, or none"});
+  }
   const Stopwatch watch;
   FoundPrimitives found = find_in_time(cloud, options, run);
   ReconstructOptions rest = options;
   std::optional<double>& limit = rest.extraction.time_limit_seconds;
-  if (limit) limit = std::max(0.0, *limit - watch.seconds());
+  std::optional<double>& tolerance = rest.extraction.segmentation.distance_tolerance;
+  if (!tolerance) tolerance = detection_tolerance(options.detection, found.prepared.scale);
+  const bool is_over = limit && *limit <= watch.seconds();
+  if (limit) limit = seconds_left(*limit, watch.seconds());
+  const Stopwatch extracting;
   Extraction extraction = extract_over(found.choice, found.prepared, rest, run);
   ExtractStatistics& statistics = extraction.statistics;
   statistics.finding = statistics_of(found, options.known.size(), cloud.size());
+  statistics.finding->is_tree_of_choice = extraction.tree == found.choice.tree;
   statistics.finding->disagreement = disagreement(extraction.tree, found.choice.solids, found.choice.places);
   if (statistics.finding->disagreement > k_much_disagreement) {
+    const Eigen::Vector3d worst = worst_place(extraction.tree, found.choice.solids, found.choice.places);
     found.warnings.push_back(
-        fmt::format("the tree is doubtful: it is wrong at places that weigh {:.0f} % of the "
-                    "solid's volume and surface",
-                    100 * statistics.finding->disagreement));
+        fmt::format("the tree is doubtful: it is wrong at places that weigh {:.0f} % of the solid's volume and "
+                    "surface, worst near {}",
+                    100 * statistics.finding->disagreement, place_text(worst, found.prepared.scale.diagonal)));
   }
   check_surface(extraction.tree, found, without_stop(run), found.warnings);
   statistics.warnings.insert(statistics.warnings.begin(), found.warnings.begin(), found.warnings.end());
   check_known_are_used(extraction.tree, found, options.known, statistics.warnings);
-  statistics.seconds.clean = found.prepare_seconds;
-  statistics.seconds.detect = found.detect_seconds;
-  statistics.seconds.solids = found.choose_seconds;
-  return {.cloud = std::move(found.prepared.cloud),
-          .solids = std::move(found.choice.solids),
-          .tree = std::move(extraction.tree),
-          .statistics = std::move(statistics),
-          .snaps = std::move(found.choice.snaps)};
+  if (is_over) statistics.complete = false;
+  Reconstruction result{.cloud = std::move(found.prepared.cloud),
+                        .solids = std::move(found.choice.solids),
+                        .tree = std::move(extraction.tree),
+                        .statistics = std::move(statistics),
+                        .snaps = std::move(found.choice.snaps)};
+  refine_found(result, rest, extracting.seconds(), run);
+  StageSeconds& seconds = result.statistics.seconds;
+  seconds.clean = found.prepared.clean_seconds;
+  seconds.normals = found.prepared.normals_seconds;
+  seconds.detect = found.detect_seconds;
+  seconds.solids = found.choose_seconds;
+  return result;
 }
 
 }  // namespace cloud2csg

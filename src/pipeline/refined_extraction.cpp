@@ -7,6 +7,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
 #include "pipeline/fit.hpp"
+#include "pipeline/time_limit.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -53,22 +54,31 @@ RefineStatistics statistics_of(const Refinement& refinement) {
           .regularities = refinement.regularities};
 }
 
-/// Absent when stopped.
+void note_incomplete(ExtractStatistics& statistics) {
+  if (statistics.complete) statistics.warnings.emplace_back("stopped early: this is the best tree so far");
+  statistics.complete = false;
+}
+
+/// Absent when stopped, or when the time is over.
 std::optional<Refinement> refined(const PointCloud& cloud, const PrimitiveSet& primitives, const CsgTree& tree,
-                                  const RefineOptions& options, const RunContext& run) {
+                                  const RefineOptions& options, std::optional<double> seconds, const RunContext& run) {
+  const TimeLimit limit(run.stop, seconds);
+  RunContext limited = run;
+  limited.stop = limit.token();
+  limit.enforce();
   try {
-    return refine_primitives(cloud, primitives, tree, options, run);
+    return refine_primitives(cloud, primitives, tree, options, limited);
   } catch (const Cancelled&) {
     return std::nullopt;
   }
 }
 
+/// Absent when stopped, or when no time is left.
 std::optional<Extraction> extracted_again(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                          ExtractOptions options, double seconds_gone, const RunContext& run) {
-  if (options.time_limit_seconds) {
-    if (*options.time_limit_seconds <= seconds_gone) return std::nullopt;
-    *options.time_limit_seconds -= seconds_gone;
-  }
+                                          ExtractOptions options, std::optional<double> seconds,
+                                          const RunContext& run) {
+  if (seconds && *seconds <= 0) return std::nullopt;
+  options.time_limit_seconds = seconds;
   try {
     return extract_csg(cloud, primitives, options, run);
   } catch (const Cancelled&) {
@@ -83,22 +93,28 @@ RefinedExtraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSe
                                       const RunContext& run) {
   validate(refine_options);
   const Stopwatch watch;
+  const auto seconds_left = [&]() -> std::optional<double> {
+    if (!options.time_limit_seconds) return std::nullopt;
+    return std::max(0.0, *options.time_limit_seconds - watch.seconds());
+  };
   RefinedExtraction result{.primitives = primitives, .extraction = extract_csg(cloud, primitives, options, run)};
   Extraction& first = result.extraction;
   if (!first.statistics.complete || is_constant(first.tree)) return result;
 
   Stopwatch refining;
-  const std::optional<Refinement> refinement = refined(cloud, primitives, first.tree, refine_options, run);
+  const std::optional<Refinement> refinement =
+      refined(cloud, primitives, first.tree, refine_options, seconds_left(), run);
   const double refine_seconds = refining.lap();
   if (!refinement) {
-    first.statistics.complete = false;
+    note_incomplete(first.statistics);
     return result;
   }
   StageSeconds seconds = first.statistics.seconds;
   RefineStatistics statistics = statistics_of(*refinement);
   std::optional<Extraction> again;
-  if (refinement->is_better) again = extracted_again(cloud, refinement->primitives, options, watch.seconds(), run);
+  if (refinement->is_better) again = extracted_again(cloud, refinement->primitives, options, seconds_left(), run);
   if (again) add_seconds(seconds, again->statistics.seconds);
+  const bool is_complete = !refinement->is_better || (again && again->statistics.complete);
 
   if (refinement->is_better) {
     const Comparison fit_of(cloud, options, again ? again->statistics.noise : refinement->noise, run);
@@ -121,6 +137,7 @@ RefinedExtraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSe
   seconds.extraction += refine_seconds;
   seconds.total += refine_seconds;
   first.statistics.seconds = seconds;
+  if (!is_complete) note_incomplete(first.statistics);
   first.statistics.refine = std::move(statistics);
   return result;
 }

@@ -67,6 +67,7 @@ Json cells_json(const CellStatistics& s) {
           {"contradicted_points", s.contradicted_points},
           {"peeled", s.peeled},
           {"cores", s.cores},
+          {"least_leaves", s.least_leaves ? Json(*s.least_leaves) : Json(nullptr)},
           {"is_minimal", s.is_minimal}};
 }
 
@@ -120,11 +121,18 @@ Json finding_json(const FindingStatistics& s) {
           {"snaps", s.snaps},
           {"largest_turn_deg", s.largest_turn_deg},
           {"largest_shift", s.largest_shift},
-          {"disagreement", s.disagreement}};
+          {"disagreement", s.disagreement},
+          {"is_tree_of_choice", s.is_tree_of_choice}};
 }
 
 Json tree_json(const TreeStatistics& tree) {
-  return {{"size", tree.size}, {"leaves", tree.leaves}, {"depth", tree.depth}};
+  return {{"size", tree.size}, {"leaves", tree.leaves}, {"depth", tree.depth}, {"levels", tree.levels}};
+}
+
+Json steps_json(const std::vector<TreeStep>& steps) {
+  Json list = Json::array();
+  for (const TreeStep& step : steps) list.push_back({{"name", step.name}, {"size", step.size}});
+  return list;
 }
 
 }  // namespace
@@ -149,6 +157,7 @@ std::string to_json(const ExtractStatistics& s) {
                      {"finding", s.finding ? finding_json(*s.finding) : Json(nullptr)},
                      {"cells", s.cells ? cells_json(*s.cells) : Json(nullptr)},
                      {"refine", s.refine ? refine_json(*s.refine) : Json(nullptr)},
+                     {"steps", steps_json(s.steps)},
                      {"tree_before_simplification", tree_json(s.before_simplification)},
                      {"tree", tree_json(s.tree)},
                      {"fit",

@@ -4,7 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "base/stopwatch.hpp"
 #include "cloud2csg/prepare.hpp"
+#include "geometry/place_text.hpp"
 #include "prepare/orient_fits.hpp"
 #include "prepare/outliers.hpp"
 
@@ -55,11 +57,11 @@ void warn_of_normals(PreparedCloud& prepared, const EstimatedNormals& estimated)
   prepared.normals_estimated = true;
   const std::size_t points = prepared.cloud.size();
   if (static_cast<double>(estimated.doubtful) > k_much_doubt * static_cast<double>(points)) {
-    const Eigen::Vector3d& at = estimated.doubtful_at;
-    prepared.warnings.push_back(fmt::format(
-        "The orientation of the normals is doubtful for {:.3g} % of the points, near ({:.6g}, {:.6g}, {:.6g}): "
-        "give sensor positions or normals if there are any.",
-        100.0 * static_cast<double>(estimated.doubtful) / static_cast<double>(points), at.x(), at.y(), at.z()));
+    prepared.warnings.push_back(
+        fmt::format("The orientation of the normals is doubtful for {:.3g} % of the points, near {}: give sensor "
+                    "positions or normals if there are any.",
+                    100.0 * static_cast<double>(estimated.doubtful) / static_cast<double>(points),
+                    place_text(estimated.doubtful_at, prepared.scale.diagonal)));
   }
 }
 
@@ -79,7 +81,7 @@ bool has_duplicates(const LocalFits& fits) {
 /// Of most clouds cleaning leaves out nothing, or nearly so: then the planes by which it judged are those of the
 /// normals, too. @returns whether it is so, and the cloud is prepared.
 bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options, PreparedCloud& prepared,
-                         const RunContext& run) {
+                         Stopwatch& watch, const RunContext& run) {
   if (!options.clean.remove_outliers || cloud.size() > options.clean.point_budget) return false;
   // Where this does not do, cleaning begins anew: it counts as the first of its passes.
   const StageShare cleaning("clean", cloud.size(), "points");
@@ -98,11 +100,13 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
   }
   if (is_much(cloud.size() - kept.size(), cloud.size())) return false;
   cleaning.report(run, 1);
+  prepared.clean_seconds = watch.lap();
   std::sort(kept.begin(), kept.end());
   EstimatedNormals estimated =
       orient_fits(cloud, fits, prepared.scale, run, StageShare("normals", cloud.size(), "points"));
   PointCloud oriented = cloud;
   oriented.normals = std::move(estimated.normals);
+  prepared.normals_seconds = watch.lap();
   prepared.cloud = select_points(oriented, kept);
   prepared.cleaning = report;
   warn_of_cleaning(prepared, cloud.size());
@@ -113,6 +117,7 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
 }  // namespace
 
 PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& options, const RunContext& run) {
+  Stopwatch watch;
   PreparedCloud prepared{.cloud = {}, .scale = estimate_scale(cloud, run), .cleaning = {}};
   if (options.is_exact) {
     prepared.cloud = cloud;
@@ -120,16 +125,20 @@ PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& optio
     return prepared;
   }
   const bool has_given_normals = options.keep_normals && cloud.has_normals();
-  if (!has_given_normals && prepare_clean_cloud(cloud, options, prepared, run)) return prepared;
+  if (!has_given_normals && prepare_clean_cloud(cloud, options, prepared, watch, run)) return prepared;
   CleanCloud clean = clean_cloud(cloud, prepared.scale, options.clean, run);
   prepared.cloud = std::move(clean.cloud);
   prepared.cleaning = clean.report;
   // Outliers and repeated points are gone: now it is right.
   if (is_much(cloud.size() - prepared.cloud.size(), cloud.size())) prepared.scale = estimate_scale(prepared.cloud, run);
   warn_of_cleaning(prepared, cloud.size());
-  if (has_given_normals && keep_given_normals(prepared, run)) return prepared;
+  prepared.clean_seconds = watch.lap();
+  const bool are_good = has_given_normals && keep_given_normals(prepared, run);
+  prepared.normals_seconds = watch.seconds();
+  if (are_good) return prepared;
   EstimatedNormals estimated = estimate_normals(prepared.cloud, prepared.scale, run);
   prepared.cloud.normals = std::move(estimated.normals);
+  prepared.normals_seconds = watch.seconds();
   warn_of_normals(prepared, estimated);
   return prepared;
 }

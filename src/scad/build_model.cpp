@@ -71,6 +71,27 @@ class Builder {
   }
 
  private:
+  /// Held while something is inside of something.
+  class Level {
+   public:
+    Level(Builder& builder, const Statement& at) : builder_(builder) {
+      if (builder_.level_ >= scad::k_deepest || ++builder_.calls_ > k_most_calls) {
+        scad::refuse(builder_.text_, at.offset,
+                     fmt::format("expected at most {} calls in each other and {} in all, found more", scad::k_deepest,
+                                 k_most_calls));
+      }
+      ++builder_.level_;
+    }
+    ~Level() { --builder_.level_; }
+    Level(const Level&) = delete;
+    Level& operator=(const Level&) = delete;
+    Level(Level&&) = delete;
+    Level& operator=(Level&&) = delete;
+
+   private:
+    Builder& builder_;
+  };
+
   /// Variables have their last value everywhere in a block of OpenSCAD: refused where there are two.
   void assign(const std::vector<Statement>& statements, Scope& scope) const {
     for (const Statement& statement : statements) {
@@ -116,17 +137,9 @@ class Builder {
   }
 
   bool add(const Statement& statement, const Scope& scope, const Affine3d& frame) {
-    if (level_ >= scad::k_deepest || ++calls_ > k_most_calls) {
-      scad::refuse(text_, statement.offset,
-                   fmt::format("expected at most {} calls in each other and {} in all, found more", scad::k_deepest,
-                               k_most_calls));
-    }
-    ++level_;
-    const bool is_added = statement.kind == Kind::block
-                              ? combine_block(Operation::union_of, statement.children, scope, frame)
-                              : call(statement, scope, frame);
-    --level_;
-    return is_added;
+    const Level level(*this, statement);
+    return statement.kind == Kind::block ? combine_block(Operation::union_of, statement.children, scope, frame)
+                                         : call(statement, scope, frame);
   }
 
   bool call(const Statement& call, const Scope& scope, const Affine3d& frame) {
@@ -138,6 +151,7 @@ class Builder {
     for (const char* plain : {"union", "group", "render", "color"}) {
       if (call.name == plain) return combine_block(Operation::union_of, call.children, scope, frame);
     }
+    if (call.name == "for") return repeat(call, 0, scope, frame);
     if (call.name == "rotate_extrude") return add_torus(call, scope, frame);
     if (const auto map = scad::transform_of(call, scope, text_)) {
       return combine_block(Operation::union_of, call.children, scope, frame * *map);
@@ -146,6 +160,29 @@ class Builder {
     if (!leaf) refuse_call(call);
     add_leaf(leaf->shape, call, frame * leaf->frame);
     return true;
+  }
+
+  /// The union of a loop's turns, of all variables from the given one on.
+  bool repeat(const Statement& loop, std::size_t variable, const Scope& outer, const Affine3d& frame) {
+    const Level level(*this, loop);
+    if (variable == loop.arguments.size()) return combine_block(Operation::union_of, loop.children, outer, frame);
+    const scad::Argument& argument = loop.arguments[variable];
+    if (argument.name.empty()) {
+      scad::refuse(text_, argument.value.offset, "expected a variable and its values, as in for (i = [0 : 3])");
+    }
+    const std::size_t begin = postfix_.size();
+    bool is_solid = false;
+    for (scad::Value& turn : scad::turns_of(scad::evaluate(argument.value, outer, text_), k_most_calls, text_)) {
+      Scope scope{.outer = &outer};
+      scope.values.emplace(argument.name, std::move(turn));
+      const bool is_added = repeat(loop, variable + 1, scope, frame);
+      if (is_added && is_solid) {
+        postfix_.push_back(
+            CsgNode::inner(Operation::union_of, static_cast<std::uint32_t>(postfix_.size() - begin + 1)));
+      }
+      is_solid = is_solid || is_added;
+    }
+    return is_solid;
   }
 
   [[noreturn]] void refuse_call(const Statement& call) const {

@@ -10,8 +10,8 @@
 namespace cloud2csg::scad {
 namespace {
 
-constexpr std::array<std::string_view, 11> k_beyond = {
-    "function", "use", "include", "for", "intersection_for", "if", "let", "assert", "echo", "assign", "each"};
+constexpr std::array<std::string_view, 10> k_beyond = {"function", "use",    "include", "intersection_for", "if",
+                                                       "let",      "assert", "echo",    "assign",           "each"};
 
 /// One function a rule of the grammar.
 class Parser {
@@ -174,7 +174,7 @@ class Parser {
     if (take("-")) return {.kind = Term::Kind::negation, .offset = sign.offset, .operands = {signed_term()}};
     if (take("!")) return {.kind = Term::Kind::denial, .offset = sign.offset, .operands = {signed_term()}};
     Term value = simple_term();
-    for (const char* sign_beyond : {"[", ".", "(", "?", "<", ">", "&", "|", "^", ":"}) {
+    for (const char* sign_beyond : {"[", ".", "(", "?", "<", ">", "&", "|", "^"}) {
       if (tokens_.at(sign_beyond)) fail(tokens_.peek(), "numbers with + - * / %", k_flatten);
     }
     return value;
@@ -195,16 +195,31 @@ class Parser {
       return term;
     }
     if (token.raw != "[") fail(token, "a value");
-    term.kind = Term::Kind::list;
+    return list_or_range(token);
+  }
+
+  /// What follows on the bracket.
+  Term list_or_range(const Token& bracket) {
+    Term list{.kind = Term::Kind::list, .offset = bracket.offset};
     while (!take("]")) {
-      if (!term.operands.empty()) {
+      if (!list.operands.empty()) {
+        if (list.operands.size() == 1 && tokens_.at(":")) return range(std::move(list));
         if (!tokens_.at(",")) fail(tokens_.peek(), "',' or ']'");
         tokens_.next();
         if (take("]")) break;
       }
-      term.operands.push_back(this->term());
+      list.operands.push_back(term());
     }
-    return term;
+    return list;
+  }
+
+  /// What follows on its first number.
+  Term range(Term first) {
+    Term range = std::move(first);
+    range.kind = Term::Kind::range;
+    while (range.operands.size() < 3 && take(":")) range.operands.push_back(term());
+    expect("]");
+    return range;
   }
 
   static Term word(const Token& token) {

@@ -13,12 +13,12 @@ inline constexpr std::size_t k_deepest = 1000;
 
 /// What has a value: a number, a name, a list, a sum...
 struct Term {
-  enum class Kind { number, text, boolean, undefined, name, list, negation, denial, chain };
+  enum class Kind { number, text, boolean, undefined, name, list, range, negation, denial, chain };
   Kind kind = Kind::undefined;
-  std::size_t offset = 0;  ///< of its first byte in the file
-  double number = 0;       ///< of a boolean, too: 0 or 1
-  std::string text = {};   ///< a name or string; of a chain, the operators between its operands: "+-"
-  std::vector<Term> operands = {};
+  std::size_t offset = 0;           ///< of its first byte in the file
+  double number = 0;                ///< of a boolean, too: 0 or 1
+  std::string text = {};            ///< a name or string; of a chain, the operators between its operands: "+-"
+  std::vector<Term> operands = {};  ///< of a range: from where, in steps of what (where told), to where
 };
 
 struct Argument {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace cloud2csg::scad {
@@ -21,6 +22,8 @@ std::string kind_name(const Value& value) {
       return "a string";
     case Value::Kind::list:
       return fmt::format("a list of {}", value.items.size());
+    case Value::Kind::range:
+      return "a range";
   }
   return {};
 }
@@ -43,6 +46,66 @@ double apply(char operation, double a, double b) {
     default:
       return std::fmod(a, b);
   }
+}
+
+Value number_at(std::size_t offset, double number) {
+  return {.kind = Value::Kind::number, .offset = offset, .number = number};
+}
+
+bool is_list(const Value& value) {
+  return value.kind == Value::Kind::list;
+}
+
+/// Numbers with numbers, vectors with vectors of their length, vectors times and by numbers.
+Value combined(char operation, const Value& a, const Value& b, std::string_view text) {
+  const bool is_sum = operation == '+' || operation == '-';
+  Value result = is_list(a) ? a : b;
+  if (is_list(a) && is_list(b) && is_sum) {
+    if (a.items.size() != b.items.size()) {
+      refuse(text, b.offset, fmt::format("expected a list of {}, found {}", a.items.size(), kind_name(b)));
+    }
+    for (std::size_t i = 0; i < a.items.size(); ++i) {
+      result.items[i] = combined(operation, a.items[i], b.items[i], text);
+    }
+  } else if (is_list(a) && !is_list(b) && (operation == '*' || operation == '/')) {
+    for (Value& item : result.items) item = combined(operation, item, b, text);
+  } else if (is_list(b) && !is_list(a) && operation == '*') {
+    for (Value& item : result.items) item = combined(operation, a, item, text);
+  } else {
+    result = number_at(a.offset, apply(operation, need_number(a, text), need_number(b, text)));
+  }
+  return result;
+}
+
+Value evaluate_list(const Term& term, const Scope& scope, std::string_view text) {
+  Value list{.kind = Value::Kind::list, .offset = term.offset};
+  list.items.reserve(term.operands.size());
+  for (const Term& item : term.operands) {
+    list.items.push_back(evaluate(item, scope, text));
+    // Else a few lines, each a list of the one before many times over, would need all memory.
+    if (item.kind != Term::Kind::list && is_list(list.items.back())) {
+      const std::string found = item.kind == Term::Kind::name ? fmt::format("the list '{}'", item.text) : "a list";
+      refuse(text, item.offset, "expected a number, found " + found, k_flatten);
+    }
+  }
+  return list;
+}
+
+Value evaluate_range(const Term& term, const Scope& scope, std::string_view text) {
+  Value range{.kind = Value::Kind::range, .offset = term.offset};
+  for (const Term& bound : term.operands) {
+    range.items.push_back(number_at(bound.offset, need_number(evaluate(bound, scope, text), text)));
+  }
+  if (range.items.size() == 2) {
+    // OpenSCAD turns it around, and says that it will not for ever.
+    if (range.items[0].number > range.items[1].number) {
+      refuse(text, term.offset, "expected a range that rises, found one that falls",
+             "give its step: [3 : -1 : 0], or [0 : 1 : -1] for none");
+    }
+    range.items.insert(range.items.begin() + 1, number_at(term.offset, 1.0));
+  }
+  if (range.items[1].number == 0.0) refuse(text, range.items[1].offset, "expected a step other than 0");
+  return range;
 }
 
 }  // namespace
@@ -79,18 +142,11 @@ Value evaluate(const Term& term, const Scope& scope, std::string_view text) {
       break;
     }
     case Term::Kind::list:
-      value.kind = Value::Kind::list;
-      value.items.reserve(term.operands.size());
-      for (const Term& item : term.operands) {
-        value.items.push_back(evaluate(item, scope, text));
-        // Else a few lines, each a list of the one before many times over, would need all memory.
-        if (item.kind == Term::Kind::name && value.items.back().kind == Value::Kind::list) {
-          refuse(text, item.offset, fmt::format("expected a number, found the list '{}'", item.text), k_flatten);
-        }
-      }
-      break;
+      return evaluate_list(term, scope, text);
+    case Term::Kind::range:
+      return evaluate_range(term, scope, text);
     case Term::Kind::negation:
-      value.number = -need_number(evaluate(term.operands.front(), scope, text), text);
+      value = combined('*', number_at(term.offset, -1.0), evaluate(term.operands.front(), scope, text), text);
       break;
     case Term::Kind::denial: {
       const Value denied = evaluate(term.operands.front(), scope, text);
@@ -101,14 +157,34 @@ Value evaluate(const Term& term, const Scope& scope, std::string_view text) {
       break;
     }
     case Term::Kind::chain:
-      value.number = need_number(evaluate(term.operands.front(), scope, text), text);
+      value = evaluate(term.operands.front(), scope, text);
       for (std::size_t i = 0; i < term.text.size(); ++i) {
-        value.number =
-            apply(term.text[i], value.number, need_number(evaluate(term.operands[i + 1], scope, text), text));
+        value = combined(term.text[i], value, evaluate(term.operands[i + 1], scope, text), text);
       }
       break;
   }
   return value;
+}
+
+std::vector<Value> turns_of(const Value& value, std::size_t most, std::string_view text) {
+  if (is_list(value)) return value.items;
+  if (value.kind != Value::Kind::range) {
+    refuse(text, value.offset, fmt::format("expected a list or a range like [0 : 3], found {}", kind_name(value)));
+  }
+  const double begin = value.items[0].number;
+  const double step = value.items[1].number;
+  const double end = value.items[2].number;
+  // The next larger number, as in OpenSCAD: [0 : 0.1 : 0.3] has its end, though three tenths are a little more.
+  const double steps = std::nextafter((end - begin) / step, std::numeric_limits<double>::max());
+  if (steps < 0) return {};
+  if (!(steps < static_cast<double>(most))) {
+    refuse(text, value.offset, fmt::format("expected at most {} turns of a loop, found more", most));
+  }
+  std::vector<Value> turns;
+  for (std::size_t i = 0; static_cast<double>(i) <= steps; ++i) {
+    turns.push_back(number_at(value.offset, begin + static_cast<double>(i) * step));
+  }
+  return turns;
 }
 
 Arguments::Arguments(const Statement& call, std::span<const std::string_view> order,

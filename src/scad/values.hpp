@@ -13,11 +13,11 @@
 namespace cloud2csg::scad {
 
 struct Value {
-  enum class Kind { undefined, number, boolean, text, list };
+  enum class Kind { undefined, number, boolean, text, list, range };
   Kind kind = Kind::undefined;
   std::size_t offset = 0;  ///< of the term that it is of
   double number = 0;
-  std::vector<Value> items = {};
+  std::vector<Value> items = {};  ///< of a range: from where, in steps of what, to where
 };
 
 /// Variables that are known at a place: its own, and those around it.
@@ -31,6 +31,9 @@ struct Scope {
 
 /// @throws Error for a name without a value, and what is no number where one is needed.
 [[nodiscard]] Value evaluate(const Term& term, const Scope& scope, std::string_view text);
+
+/// What the variable of a loop is in turn. @throws Error for anything but a list or range, and for more than `most`
+[[nodiscard]] std::vector<Value> turns_of(const Value& value, std::size_t most, std::string_view text);
 
 /// The arguments of a call by name.
 class Arguments {

@@ -77,6 +77,12 @@ void validate(const RegularityOptions& options) {
 
 void validate(const SolidOptions& options) {
   require_positive("leaf_cost", options.leaf_cost);
+  if (options.leaf_cost > 1) {
+    throw Error({.file = {},
+                 .where = "leaf_cost",
+                 .expected = fmt::format("expected a share of the solid, at most 1, got {}", options.leaf_cost),
+                 .remedy = {}});
+  }
   require_positive("plane_cost", options.plane_cost);
   require_positive("most_rules", static_cast<double>(options.most_rules));
   validate(options.regularity);
@@ -97,6 +103,10 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   }
   PlaceOptions place_options = options.places;
   place_options.noise = noise_of(surfaces, known, options);
+  place_options.volume_places =
+      std::max(place_options.volume_places, options.volume_places_a_surface * surfaces.size());
+  place_options.surface_points =
+      std::max(place_options.surface_points, options.surface_points_a_surface * surfaces.size());
   SolidChoice choice;
   choice.places = label_places(cloud, place_options, run);
   const double tolerance = tolerance_of(cloud, options, *place_options.noise);
@@ -106,12 +116,17 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   run.throw_if_stopped();
   const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance, terms);
   const TermCosts costs{.leaf = options.leaf_cost, .plane = options.plane_cost};
-  WrittenSolids written = write_solids(space, search_list(space, costs, options.most_rules, run));
+  const DecisionList list = search_list(space, costs, options.most_rules, run);
+  WrittenSolids written = write_solids(space, list);
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);
   choice.disagreement = disagreement(choice.tree, choice.solids, choice.places);
   choice.snaps = std::move(regular.snaps);
   choice.warnings = std::move(regular.warnings);
+  if (list.size() >= options.most_rules) {
+    choice.warnings.push_back(
+        fmt::format("the solid has more than {} parts: what is smaller than these is left out", options.most_rules));
+  }
   return choice;
 }
 

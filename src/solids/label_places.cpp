@@ -21,8 +21,13 @@ constexpr double k_clear_out = 0.3;
 constexpr double k_far_margin = 0.3;         // of the diagonal, beyond the margin
 constexpr std::size_t k_chunk_places = 256;  // places between two looks at the stop token
 
-[[noreturn]] void refuse(const char* where, std::string expected) {
-  throw Error({.file = {}, .where = where, .expected = std::move(expected), .remedy = {}});
+[[noreturn]] void refuse(const char* where, std::string expected, std::string remedy = {}) {
+  throw Error({.file = {}, .where = where, .expected = std::move(expected), .remedy = std::move(remedy)});
+}
+
+[[noreturn]] void refuse_without_inside() {
+  refuse("cloud", "expected the surface of a solid, found one that encloses nothing",
+         "give points from all sides of the object, and outward normals or sensor positions if there are any");
 }
 
 void check(const PointCloud& cloud, const PlaceOptions& options) {
@@ -76,9 +81,7 @@ class Labelling {
     noise_ = options.noise.value_or(0.1 * spacing_);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(options.margin * diagonal_);
     grown_ = AlignedBox(box.min() - margin, box.max() + margin);
-    if (!(enclosed_volume() > 0)) {
-      refuse("cloud", "expected a closed surface with outward normals, got one that encloses nothing");
-    }
+    if (!(enclosed_volume() > 0)) refuse_without_inside();
   }
 
   void add_volume(LabelledPlaces& places) const {
@@ -92,7 +95,7 @@ class Labelling {
     for (const double number : numbers) {
       if (number > 0.5) inside.push_back(number);
     }
-    if (inside.empty()) refuse("cloud", "expected a closed surface with outward normals: no place is inside");
+    if (inside.empty()) refuse_without_inside();
     const double unit = median(inside);
     const std::vector<int> sides = sides_of(candidates, numbers, unit);
     const auto count_in = static_cast<double>(std::max<std::ptrdiff_t>(std::ranges::count(sides, 1), 1));
@@ -216,6 +219,18 @@ double disagreement(const CsgTree& tree, const PrimitiveSet& solids, const Label
     if ((values[i] < 0) != (places.weights[i] > 0)) sum += std::abs(places.weights[i]);
   }
   return sum;
+}
+
+Eigen::Vector3d worst_place(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places) {
+  const std::vector<double> values = implicit_value(tree, solids, places.positions);
+  std::size_t worst = 0;
+  double largest = -1;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if ((values[i] < 0) == (places.weights[i] > 0) || std::abs(values[i]) <= largest) continue;
+    worst = i;
+    largest = std::abs(values[i]);
+  }
+  return places.positions[worst];
 }
 
 }  // namespace cloud2csg

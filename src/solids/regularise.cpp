@@ -2,11 +2,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "cloud2csg/solids.hpp"
+#include "solids/regular_places.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -61,6 +63,7 @@ class Regulariser {
     snap_offsets();
     snap_axes();
     snap_radii();
+    snap_arrangements();
     return std::move(result_);
   }
 
@@ -234,6 +237,84 @@ class Regulariser {
     }
   }
 
+  /// Coaxial surfaces, which move together.
+  struct Axis {
+    std::vector<std::uint32_t> surfaces = {};
+    bool is_fixed = false;
+    double weight = 0;
+    double least_radius = std::numeric_limits<double>::infinity();  ///< of its cylinders
+  };
+
+  /// By direction: parallel ones together.
+  [[nodiscard]] std::vector<std::vector<Axis>> axes() {
+    std::vector<std::vector<Axis>> found;
+    for (const std::uint32_t i : by_weight_) {
+      if (!has_axis(surface(i).type)) continue;
+      auto bundle = std::ranges::find_if(found, [&](const auto& b) { return are_parallel(b[0].surfaces[0], i); });
+      if (bundle == found.end()) bundle = found.emplace(found.end());
+      const double rounding = 1e-6 * distance_tolerance_;
+      auto axis = std::ranges::find_if(
+          *bundle, [&](const Axis& a) { return across(surface(a.surfaces[0]), surface(i)).norm() <= rounding; });
+      if (axis == bundle->end()) axis = bundle->emplace(bundle->end());
+      axis->surfaces.push_back(i);
+      axis->is_fixed = axis->is_fixed || fixed_[i].position;
+      axis->weight += weight_of(result_.surfaces[i]);
+      if (surface(i).type == SurfaceType::cylinder) {
+        axis->least_radius = std::min(axis->least_radius, surface(i).radius);
+      }
+    }
+    return found;
+  }
+
+  /// Along the plane of most points that the direction lies in, or else along an axis of coordinates.
+  [[nodiscard]] Eigen::Vector3d upright_across(const Eigen::Vector3d& direction) {
+    for (const std::uint32_t i : by_weight_) {
+      if (surface(i).type == SurfaceType::plane && std::abs(surface(i).axis.dot(direction)) < 1e-9) {
+        return surface(i).axis;
+      }
+    }
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(direction[k]) < 1e-9) return Eigen::Vector3d::Unit(k);
+    }
+    return direction.unitOrthogonal();
+  }
+
+  /// Axes are alike by the least radius on them; those that may not move, or have no cylinder, are like no other.
+  [[nodiscard]] static std::vector<int> kinds_of(const std::vector<Axis>& bundle) {
+    std::vector<int> kinds;
+    for (std::size_t k = 0; k < bundle.size(); ++k) {
+      const auto is_alike = [&](const Axis& other) { return other.least_radius == bundle[k].least_radius; };
+      const bool may_move = !bundle[k].is_fixed && std::isfinite(bundle[k].least_radius);
+      const auto first = may_move ? std::ranges::find_if(bundle, is_alike) - bundle.begin() : -1;
+      kinds.push_back(may_move ? static_cast<int>(first) : -1 - static_cast<int>(k));
+    }
+    return kinds;
+  }
+
+  void snap_arrangements() {
+    for (const std::vector<Axis>& bundle : axes()) {
+      const Surface& any = surface(bundle[0].surfaces[0]);
+      Eigen::Matrix<double, 3, 2> frame;
+      frame.col(0) = upright_across(any.axis);
+      frame.col(1) = any.axis.cross(frame.col(0));
+      const Eigen::Vector3d origin = any.position;
+      std::vector<Eigen::Vector2d> places;
+      std::vector<double> weights;
+      for (const Axis& axis : bundle) {
+        places.emplace_back(frame.transpose() * (surface(axis.surfaces[0]).position - origin));
+        weights.push_back(axis.weight);
+      }
+      const RegularPlaces regular = regular_places(places, kinds_of(bundle), weights, places, distance_tolerance_);
+      for (std::size_t k = 0; k < bundle.size(); ++k) {
+        const Eigen::Vector3d change = frame * (regular.places[k] - places[k]);
+        for (const std::uint32_t i : bundle[k].surfaces) {
+          note(RegularityKind::arrangement, i, change.norm());
+          surface(i).position += change;
+        }
+      }
+    }
+  }
+
   [[nodiscard]] bool are_parallel(std::uint32_t a, std::uint32_t b) {
     return surface(a).axis.cross(surface(b).axis).norm() < 1e-9;
   }
@@ -249,8 +330,8 @@ class Regulariser {
 }  // namespace
 
 std::string_view to_string(RegularityKind kind) {
-  constexpr std::array<std::string_view, 6> k_names{"direction", "offset",          "axis",
-                                                    "radius",    "given direction", "given radius"};
+  constexpr std::array<std::string_view, 7> k_names{"direction",       "offset",       "axis",       "radius",
+                                                    "given direction", "given radius", "arrangement"};
   return k_names[static_cast<std::size_t>(kind)];
 }
 

@@ -17,7 +17,7 @@ constexpr std::array k_families{Family::chain,  Family::grid, Family::plate,
                                 Family::random, Family::nest, Family::panel};
 constexpr std::size_t k_most_primitives = 1'000'000;
 constexpr std::size_t k_least_clique = 2;
-constexpr std::size_t k_most_clique = 12;
+constexpr std::size_t k_most_clique = 20;
 constexpr std::size_t k_most_levels = 8;
 
 void require_within(const char* field, std::size_t value, std::size_t least, std::size_t most) {

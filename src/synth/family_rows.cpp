@@ -90,13 +90,13 @@ void build_chain(FamilyBuilder& builder, const FamilyOptions& options) {
 void build_grid(FamilyBuilder& builder, const FamilyOptions& options) {
   // M2: radius 0.25, spacing 0.3, 5 x 4. Displaced a little, so that no four spheres meet in a point.
   constexpr double k_radius = 0.25;
-  constexpr double k_spacing = 0.3;
+  constexpr double k_pitch = 0.3;
   constexpr double k_displacement = 0.008;
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.primitives))));
   for (std::size_t i = 0; i < options.primitives; ++i) {
     RandomStream random = family_stream(Family::grid, options, i);
     const std::size_t row = i / columns;
-    const Vector3d place(k_spacing * static_cast<double>(i % columns), k_spacing * static_cast<double>(row), 0);
+    const Vector3d place(k_pitch * static_cast<double>(i % columns), k_pitch * static_cast<double>(row), 0);
     builder.add_part(builder.add(Sphere{.radius = k_radius + random.uniform(-k_displacement, k_displacement)},
                                  {.position = place + random_shift(k_displacement, random)}));
   }

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/narrow.hpp"
+
 namespace cloud2csg {
 namespace {
-
-std::uint32_t narrow(std::size_t n) {
-  return static_cast<std::uint32_t>(n);
-}
 
 /// What is still to be written while a tree is taken apart: a node, plain or complemented, or a closing token.
 struct Pending {

@@ -112,6 +112,28 @@ std::size_t depth(const CsgTree& tree) {
   return depths.back();
 }
 
+std::size_t levels(const CsgTree& tree) {
+  struct Subtree {
+    Operation operation;
+    std::size_t levels;
+  };
+  std::vector<Subtree> stack;
+  for (const CsgNode node : tree.nodes()) {
+    const Operation operation = node.operation();
+    Subtree joined{operation, 0};
+    for (int child = arity(operation); child > 0; --child) {
+      const Subtree operand = stack.back();
+      stack.pop_back();
+      // What is taken away at once is a union, and what is left of a difference may lose more.
+      const Operation same = operation == Operation::difference && child == 2 ? Operation::union_of : operation;
+      const bool is_listed = operand.operation == same && operation != Operation::complement;
+      joined.levels = std::max(joined.levels, operand.levels + (is_listed ? 0 : 1));
+    }
+    stack.push_back(joined);
+  }
+  return stack.back().levels;
+}
+
 std::size_t leaf_count(const CsgTree& tree) {
   return static_cast<std::size_t>(std::ranges::count(tree.nodes(), Operation::primitive, &CsgNode::operation));
 }

@@ -13,7 +13,7 @@
 namespace cloud2csg {
 namespace {
 
-struct Token {
+struct TextToken {
   enum class Kind { name, symbol, end };
   Kind kind;
   char symbol;  ///< one of ( ) | & - ~; 0 for the other kinds
@@ -22,30 +22,30 @@ struct Token {
   std::size_t begin;  ///< byte in the text
 };
 
-std::string describe(const Token& token) {
-  if (token.kind == Token::Kind::end) return "the end of the text";
-  return token.kind == Token::Kind::symbol ? fmt::format("'{}'", token.symbol) : fmt::format("\"{}\"", token.name);
+std::string describe(const TextToken& token) {
+  if (token.kind == TextToken::Kind::end) return "the end of the text";
+  return token.kind == TextToken::Kind::symbol ? fmt::format("'{}'", token.symbol) : fmt::format("\"{}\"", token.name);
 }
 
 class Lexer {
  public:
   explicit Lexer(std::string_view text) : text_(text) {}
 
-  Token next() {
+  TextToken next() {
     while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) ++at_;
     const std::size_t begin = at_;
-    if (at_ == text_.size()) return {Token::Kind::end, 0, {}, false, begin};
+    if (at_ == text_.size()) return {TextToken::Kind::end, 0, {}, false, begin};
     const char c = text_[at_];
-    if (c == '"') return {Token::Kind::name, 0, quoted_name(), true, begin};
+    if (c == '"') return {TextToken::Kind::name, 0, quoted_name(), true, begin};
     if (is_name_character(c)) {
       while (at_ < text_.size() && is_name_character(text_[at_])) ++at_;
-      return {Token::Kind::name, 0, std::string(text_.substr(begin, at_ - begin)), false, begin};
+      return {TextToken::Kind::name, 0, std::string(text_.substr(begin, at_ - begin)), false, begin};
     }
     if (std::string_view("()|&-~").find(c) == std::string_view::npos) {
       fail(begin, fmt::format("unexpected character '{}'", c), "operators are | & - ~; put unusual ids in \"quotes\"");
     }
     ++at_;
-    return {Token::Kind::symbol, c, {}, false, begin};
+    return {TextToken::Kind::symbol, c, {}, false, begin};
   }
 
   [[noreturn]] void fail(std::size_t byte, std::string expected, std::string remedy) const {
@@ -121,8 +121,8 @@ class Parser {
 
   CsgTree parse() {
     bool wants_operand = true;
-    Token token = lexer_.next();
-    for (; token.kind != Token::Kind::end; token = lexer_.next()) {
+    TextToken token = lexer_.next();
+    for (; token.kind != TextToken::Kind::end; token = lexer_.next()) {
       wants_operand = wants_operand ? take_before_operand(token) : take_after_operand(token);
     }
     if (wants_operand) fail_without_operand(token);
@@ -135,8 +135,8 @@ class Parser {
 
  private:
   /// Returns whether an operand is still wanted.
-  bool take_before_operand(const Token& token) {
-    if (token.kind == Token::Kind::name) {
+  bool take_before_operand(const TextToken& token) {
+    if (token.kind == TextToken::Kind::name) {
       nodes_.push_back(leaf(token));
       return false;
     }
@@ -146,7 +146,7 @@ class Parser {
   }
 
   /// Returns whether an operand is wanted next.
-  bool take_after_operand(const Token& token) {
+  bool take_after_operand(const TextToken& token) {
     const bool is_binary = token.symbol == '|' || token.symbol == '&' || token.symbol == '-';
     if (is_binary) {
       emit_down_to(binding(token.symbol));
@@ -163,12 +163,12 @@ class Parser {
     return false;
   }
 
-  [[noreturn]] void fail_without_operand(const Token& token) const {
+  [[noreturn]] void fail_without_operand(const TextToken& token) const {
     lexer_.fail(token.begin, fmt::format("expected a solid, found {}", describe(token)),
                 "write the id of a primitive, empty, full, ~ or a formula in parentheses");
   }
 
-  CsgNode leaf(const Token& token) const {
+  CsgNode leaf(const TextToken& token) const {
     if (!token.quoted && token.name == k_empty_word) return CsgNode::constant(Operation::empty);
     if (!token.quoted && token.name == k_full_word) return CsgNode::constant(Operation::full);
     const auto found = index_of_.find(token.name);

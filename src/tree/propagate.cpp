@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/narrow.hpp"
+
 namespace cloud2csg {
 namespace {
 
 constexpr std::uint32_t k_none = 0xffffffffU;
-
-std::uint32_t narrow(std::size_t n) {
-  return static_cast<std::uint32_t>(n);
-}
 
 }  // namespace
 

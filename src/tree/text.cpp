@@ -62,9 +62,9 @@ const char* symbol(Operation operation) {
 }
 
 /// What is still to be written: a node, or text.
-using Pending = std::variant<std::size_t, const char*>;
+using PendingText = std::variant<std::size_t, const char*>;
 
-void push_child(std::vector<Pending>& pending, const CsgTree& tree, std::size_t parent, std::size_t child) {
+void push_child(std::vector<PendingText>& pending, const CsgTree& tree, std::size_t parent, std::size_t child) {
   const Operation operation = tree.nodes()[parent].operation();
   const bool is_second = arity(operation) == 2 && child == tree.second_child(parent);
   const bool parentheses = needs_parentheses(operation, is_second, tree.nodes()[child].operation());
@@ -77,9 +77,9 @@ void push_child(std::vector<Pending>& pending, const CsgTree& tree, std::size_t 
 
 std::string to_text(const CsgTree& tree, const PrimitiveSet& primitives) {
   std::string text;
-  std::vector<Pending> pending{tree.root()};
+  std::vector<PendingText> pending{tree.root()};
   while (!pending.empty()) {
-    const Pending next = pending.back();
+    const PendingText next = pending.back();
     pending.pop_back();
     if (const auto* literal = std::get_if<const char*>(&next)) {
       text += *literal;

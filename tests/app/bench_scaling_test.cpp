@@ -48,7 +48,7 @@ TEST_F(BenchScaling, GoesOnWhereItStopped) {
 TEST_F(BenchScaling, WrongUsageIsNamed) {
   expect_failure(run({"bench", "scaling"}), 2, {"--output"});
   expect_failure(run({"bench", "scaling", "-o", path("out"), "--family", "gird"}), 2, {"--family", "grid"});
-  expect_failure(run({"bench", "scaling", "-o", path("out"), "--cliques", "13"}), 2, {"--cliques", "12"});
+  expect_failure(run({"bench", "scaling", "-o", path("out"), "--cliques", "21"}), 2, {"--cliques", "20"});
   expect_failure(run({"bench", "scaling", "-o", path("out"), "--primitives", "0"}), 2, {"--primitives"});
   expect_failure(run({"bench", "scaling", "-o", path("out"), "--primitives", "5", "5"}), 1, {"primitives", "twice"});
 }

@@ -91,7 +91,7 @@ TEST_F(Habits, BashCompletesFilesByTheirEndings) {
   std::filesystem::create_directory(path("parts"));
   EXPECT_EQ(offered("cloud2csg extract part"), "part.PCD\npart.ply\nparts\n");
   EXPECT_EQ(offered("cloud2csg extract two"), "two words.stl\n");
-  EXPECT_EQ(offered("cloud2csg extract part.ply --primitives pa"), "part.json\nparts\n");
+  EXPECT_EQ(offered("cloud2csg extract part.ply --primitives pa"), "part.json\npart.scad\nparts\n");
   EXPECT_EQ(offered("cloud2csg convert part.json -o part."), "part.json\npart.scad\n");
 }
 

@@ -34,8 +34,20 @@ TEST_F(Overwriting, LeavesOtherFilesAlone) {
     EXPECT_NE(refused.err.find("work" + ending + ": is there already and is no "), std::string::npos) << refused.err;
     EXPECT_NE(refused.err.find("choose another name"), std::string::npos) << refused.err;
   }
+  const std::string package = file("package.json", "{\n  \"name\": \"somebody's\"\n}\n");
+  EXPECT_EQ(run({"convert", shipped("m1.json"), "-o", package}).status, 1);
+  EXPECT_NE(read_file(package).find("somebody's"), std::string::npos);
   for (const std::string ending : {".json", ".off", ".png"}) {
     EXPECT_EQ(run({"convert", shipped("m1.json"), "-o", file("notes" + ending, "my notes")}).status, 1) << ending;
+  }
+}
+
+TEST_F(Overwriting, StatisticsTakeTheirOwnKind) {
+  ASSERT_EQ(run({"sample", shipped("m1.json"), "-n", "500", "-o", path("c.ply")}).status, 0);
+  for (int k = 0; k < 2; ++k) {
+    const Outcome written = run({"extract", path("c.ply"), "--primitives", shipped("m1.json"), "-o", path("m.json"),
+                                 "--stats", path("s.json")});
+    EXPECT_EQ(written.status, 0) << written.err;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "program.hpp"
 
@@ -43,6 +44,33 @@ TEST_F(Raw, ExtractFindsThePrimitivesOfACloud) {
   EXPECT_EQ(statistics["finding"]["planes"], 7);
   EXPECT_GT(statistics["seconds"]["detect"].get<double>(), 0);
   EXPECT_NE(read_file(path("t.scad")).find("difference()"), std::string::npos);
+}
+
+/// Radii of 0.6 and 0.608 are near enough to be made equal; the points tell them apart. What was found out about the
+/// cloud is told with the refined tree as well.
+TEST_F(Raw, RefineMovesSolidsBackToTheirPoints) {
+  std::string text = read_file(block());
+  text.replace(text.find("0.5, \"height\": 3"), 3, "0.608");
+  const std::string truth = file("unlike.json", text);
+  ASSERT_EQ(run({"sample", truth, "-n", "30000", "--relative-noise", "0.001", "-o", path("c.ply")}).status, 0);
+  const Outcome outcome = run({"extract", path("c.ply"), "--refine", "-o", path("t.json"), "--stats", path("s.json")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json statistics = json::parse(read_file(path("s.json")));
+  ASSERT_FALSE(statistics["refine"].is_null());
+  EXPECT_TRUE(statistics["refine"]["is_taken"].get<bool>());
+  EXPECT_LT(statistics["refine"]["rms_after"], statistics["refine"]["rms_before"]);
+  EXPECT_EQ(statistics["finding"]["planes"], 7);
+  EXPECT_GT(statistics["seconds"]["detect"].get<double>(), 0);
+  EXPECT_NE(outcome.err.find("surfaces     7 planes"), std::string::npos) << outcome.err;
+  std::vector<double> radii;
+  const json model = json::parse(read_file(path("t.json")));
+  for (const json& primitive : model["primitives"]) {
+    if (primitive.contains("radius")) radii.push_back(primitive["radius"]);
+  }
+  std::ranges::sort(radii);
+  ASSERT_EQ(radii.size(), 2U);
+  EXPECT_NEAR(radii[0], 0.6, 0.002);
+  EXPECT_NEAR(radii[1], 0.608, 0.002);
 }
 
 TEST_F(Raw, ExtractTakesAMesh) {

@@ -27,7 +27,8 @@ class Reports : public ProgramTest {
     arguments.insert(arguments.end(), options.begin(), options.end());
     RunningProgram program = start(arguments);
     std::string address;
-    for (int k = 0; k < 2000 && address.find('\n') == std::string::npos; ++k) {
+    // Sanitized and beside other work, the page takes a while.
+    for (int k = 0; k < 20000 && address.find('\n') == std::string::npos; ++k) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       address = program.out_so_far();
     }

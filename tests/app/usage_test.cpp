@@ -124,6 +124,10 @@ TEST_F(Usage, ValuesAreChecked) {
   expect_failure(run({"sample", model, "-o", out, "-n", "5", "--density", "6"}), 2, {"--count", "--density"});
   expect_failure(run({"sample", model, "-o", ""}), 2, {"--output: expected the name of a file"});
   expect_failure(run({"sample", "", "-o", out}), 2, {"shape: expected the name of a file"});
+  for (const auto& [option, value] : {std::pair{"--distance", "0.5"}, std::pair{"--field-of-view", "171"},
+                                      std::pair{"--angular-step", "171"}, std::pair{"--grazing-angle", "90"}}) {
+    expect_failure(run({"scan", model, "-o", out, option, value}), 2, {option, "expected a number from", value});
+  }
   const std::vector<std::string> extract{"extract", "c.ply", "--primitives", model, "-o", "x.json"};
   const auto with = [&extract](std::vector<std::string> more) {
     more.insert(more.begin(), extract.begin(), extract.end());

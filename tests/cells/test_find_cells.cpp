@@ -15,10 +15,11 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_noise = 0.01;
+constexpr double k_sampling_noise = 0.01;
 
 CellOptions options_with(Precision precision) {
-  return {.tolerances = segmentation_tolerances({}, k_noise), .noise = k_noise, .precision = precision};
+  return {
+      .tolerances = segmentation_tolerances({}, k_sampling_noise), .noise = k_sampling_noise, .precision = precision};
 }
 
 test::PlainCrossings counted(const PointCloud& cloud, const PrimitiveSet& primitives, const CellOptions& options,
@@ -64,7 +65,7 @@ RC_GTEST_PROP(CountCrossings, IsThePlainRuleAtEachPointOfAnyScene, (std::uint64_
 class PaperCloud : public ::testing::TestWithParam<const char*> {
  protected:
   PaperCloud() : model_(test::paper_model(GetParam())) {
-    cloud_ = sample_surface(*model_.tree, model_.primitives, {.count = 40'000, .noise = k_noise, .seed = 4});
+    cloud_ = sample_surface(*model_.tree, model_.primitives, {.count = 40'000, .noise = k_sampling_noise, .seed = 4});
   }
 
   Model model_;

@@ -123,9 +123,9 @@ class HoleWithoutPoints : public ::testing::Test {
   }
 
   [[nodiscard]] bool is_solid_at(const Vector3d& place) const {
-    constexpr double k_noise = 0.01;
-    const CellComplex complex =
-        find_cells(cloud_, primitives_, {.tolerances = segmentation_tolerances({}, k_noise), .noise = k_noise});
+    constexpr double k_range_noise = 0.01;
+    const CellComplex complex = find_cells(
+        cloud_, primitives_, {.tolerances = segmentation_tolerances({}, k_range_noise), .noise = k_range_noise});
     const CsgTree tree = solve_cells(complex, label_cells(complex)).value().tree;
     return implicit_value(tree, primitives_, only(place))[0] < 0;
   }

@@ -131,15 +131,16 @@ RC_GTEST_PROP(SolveCells, HasTheLabelsOfAllSureCells, (std::uint64_t seed)) {
   std::set<Cell> cells{Cell{}};
   for (std::size_t i = random.below(60); i > 0; --i) cells.insert(random_cell(primitives, random));
   Labelled labelled = labelled_by(truth, cells, primitives);
-  for (std::size_t c = 1; c < cells.size(); ++c) {
+  for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!random.chance(0.2)) continue;
     labelled.labels.evidence[c] = 0;
-    labelled.labels.is_in[c] = random.chance(0.5);
+    if (c > 0) labelled.labels.is_in[c] = random.chance(0.5);
   }
   const std::optional<CellSolution> solution = labelled.solve();
   RC_ASSERT(solution.has_value());
   RC_ASSERT(has_labels(solution->tree, labelled, solution->least_evidence));
   RC_ASSERT(solution->least_leaves <= leaf_count(solution->tree));
+  RC_ASSERT(solution->least_leaves <= leaf_count(truth));
   RC_ASSERT(simplify(solution->tree) == solution->tree);
 }
 
@@ -165,6 +166,42 @@ RC_GTEST_PROP(SolveCells, IsNoLargerThanTheTruthWhereItIsMinimal, (std::uint64_t
   RC_ASSERT(solution->least_leaves <= leaf_count(truth));
   RC_ASSERT(!solution->is_minimal() || leaf_count(solution->tree) <= leaf_count(truth));
   RC_ASSERT(solution->open_cells.empty());
+}
+
+/// Twelve solids that all meet: what few points say of the cells between them takes some of them several times.
+Labelled dense_cluster(std::uint64_t seed) {
+  const Model model = make_family(Family::random, {.primitives = 12, .clique_size = 12, .seed = seed});
+  const PointCloud cloud =
+      sample_surface(*model.tree, model.primitives, {.count = 1500, .noise = k_noise, .seed = seed});
+  return label(cloud, model.primitives);
+}
+
+TEST(SolveCells, ClimbsWhereADecompositionIsNotMinimal) {
+  const CellSolveOptions options;
+  CellSolveOptions without = options;
+  without.climb.work_limit = 0;
+  std::size_t better = 0;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const Labelled labelled = dense_cluster(seed);
+    const std::optional<CellSolution> climbed = labelled.solve(options);
+    const std::optional<CellSolution> start = labelled.solve(without);
+    ASSERT_TRUE(climbed && start);
+    const auto total = [&](const CellSolution& of) {
+      return of.cost + options.leaf_cost * static_cast<double>(leaf_count(of.tree));
+    };
+    EXPECT_LE(total(*climbed), total(*start)) << seed;
+    EXPECT_TRUE(has_labels(climbed->tree, labelled, options.least_evidence.front())) << seed;
+    EXPECT_LE(climbed->least_leaves.value_or(0), leaf_count(climbed->tree)) << seed;
+    if (climbed->least_leaves) {
+      EXPECT_TRUE(has_labels(climbed->tree, labelled, climbed->least_evidence)) << seed;
+    }
+    if (start->is_minimal()) {
+      EXPECT_EQ(climbed->tree, start->tree) << seed;
+    }
+    better += total(*climbed) < total(*start) ? 1 : 0;
+  }
+  RecordProperty("better", static_cast<int>(better));
+  EXPECT_GT(better, 0U);
 }
 
 RC_GTEST_PROP(SolveCells, FindsReadOnceFormulas, (std::uint64_t seed)) {
@@ -284,6 +321,36 @@ TEST(SolveCells, ProvesThatACoreIsMinimal) {
   EXPECT_EQ(solution->cores, std::vector<std::size_t>{2});
 }
 
+/// A second copy of a primitive may stand for it: that is no reason to doubt that the tree is minimal.
+TEST(SolveCells, ProvesThatItIsMinimalBesideCopies) {
+  const CsgTree a = CsgTree::leaf(0);
+  const CsgTree b = CsgTree::leaf(1);
+  const CsgTree truth = unite(subtract(a, b), subtract(b, a));
+  const Labelled labelled = labelled_by(truth, {{}, {0, 2}, {1}, {0, 1, 2}}, 3);
+  const std::optional<CellSolution> solution = labelled.solve();
+  ASSERT_TRUE(solution.has_value());
+  EXPECT_TRUE(has_labels(solution->tree, labelled, 1));
+  EXPECT_EQ(leaf_count(solution->tree), 4U);
+  EXPECT_EQ(solution->least_leaves, 4U);
+}
+
+/// Of three primitives any two tell the cells apart, and which two are taken changes what the rest needs.
+TEST(SolveCells, ProvesWhatIsLeastWhateverIsLeftOut) {
+  RandomStream random(7);
+  std::size_t proved = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::set<Cell> cells{Cell{}};
+    while (cells.size() < 9) cells.insert(random_cell(6, random));
+    const CsgTree truth = random_chain(random_leaves(6, 7, random), random);
+    const Labelled labelled = labelled_by(truth, cells, 6);
+    const std::optional<CellSolution> solution = labelled.solve();
+    ASSERT_TRUE(solution.has_value());
+    EXPECT_LE(solution->least_leaves.value_or(0), leaf_count(truth));
+    proved += solution->is_minimal() ? 1 : 0;
+  }
+  EXPECT_GT(proved, 190U);
+}
+
 /// A sliver that only a point or two speak of is not worth a leaf.
 TEST(SolveCells, TreatsUnsureCellsAsItLikes) {
   const CsgTree truth = subtract(CsgTree::leaf(0), CsgTree::leaf(1));
@@ -301,6 +368,34 @@ TEST(SolveCells, TreatsUnsureCellsAsItLikes) {
   ASSERT_TRUE(exact.has_value());
   EXPECT_EQ(exact->tree, truth);
   EXPECT_TRUE(exact->open_cells.empty());
+}
+
+/// Clusters of twelve solids, more than 64 in all, and the same cluster by cluster.
+TEST(SolveCells, ClimbsCoreByCoreInLargeModels) {
+  const CellSolveOptions options;
+  CellSolveOptions without = options;
+  without.climb.work_limit = 0;
+  const auto total = [&](const CellSolution& of) {
+    return of.cost + options.leaf_cost * static_cast<double>(leaf_count(of.tree));
+  };
+  std::size_t better = 0;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const Model model = make_family(Family::random, {.primitives = 72, .clique_size = 12, .seed = seed});
+    const PointCloud cloud =
+        sample_surface(*model.tree, model.primitives, {.count = 9000, .noise = k_noise, .seed = seed});
+    const Labelled labelled = label(cloud, model.primitives);
+    const std::optional<CellSolution> climbed = labelled.solve(options);
+    const std::optional<CellSolution> start = labelled.solve(without);
+    ASSERT_TRUE(climbed && start);
+    EXPECT_LE(total(*climbed), total(*start)) << seed;
+    EXPECT_TRUE(has_labels(climbed->tree, labelled, options.least_evidence.front())) << seed;
+    EXPECT_LE(climbed->least_leaves.value_or(0), leaf_count(climbed->tree)) << seed;
+    better += total(*climbed) < total(*start) ? 1 : 0;
+    ASSERT_FALSE(climbed->steps.empty());
+    EXPECT_EQ(climbed->steps.front().size, start->steps.front().size);
+    EXPECT_EQ(climbed->steps.back().size, climbed->tree.size());
+  }
+  EXPECT_GT(better, 0U);
 }
 
 TEST(SolveCells, OfNothingIsEmpty) {

@@ -10,7 +10,7 @@ namespace cloud2csg {
 namespace {
 
 /// Five repeats of one model: durations about 100 ms, 1 % apart; trees of 9 nodes.
-PaperResults made_up() {
+PaperResults steady_results() {
   PaperResults results{.options = {.models = {"m"}}};
   for (const RunName& name : plan_runs(results.options)) {
     PaperRun run{.name = name, .finished = {}, .formula = {}};
@@ -23,7 +23,7 @@ PaperResults made_up() {
 }
 
 PaperResults changed(const std::function<void(PaperRun&)>& change) {
-  PaperResults results = made_up();
+  PaperResults results = steady_results();
   for (PaperRun& run : results.runs) change(run);
   return results;
 }
@@ -34,7 +34,7 @@ std::size_t count_of(const std::vector<Change>& changes, Verdict verdict) {
 }
 
 TEST(CompareResults, NothingChanged) {
-  const std::vector<Change> changes = compare_paper_results(made_up(), made_up());
+  const std::vector<Change> changes = compare_paper_results(steady_results(), steady_results());
   // Two samplings; durations of six modes, three more measures of two.
   EXPECT_EQ(changes.size(), 2U * (6 + 3 * 2));
   EXPECT_EQ(count_of(changes, Verdict::same), changes.size());
@@ -44,7 +44,7 @@ TEST(CompareResults, SlowerModeIsWorse) {
   const PaperResults slower = changed([](PaperRun& run) {
     if (run.name.mode == "SMTP" && run.name.sampling == Sampling::high) run.seconds.extraction *= 1.2;
   });
-  const std::vector<Change> changes = compare_paper_results(made_up(), slower);
+  const std::vector<Change> changes = compare_paper_results(steady_results(), slower);
   ASSERT_EQ(count_of(changes, Verdict::worse), 1U);
   EXPECT_EQ(count_of(changes, Verdict::same), changes.size() - 1);
   const auto worse = std::find_if(changes.begin(), changes.end(),
@@ -54,7 +54,7 @@ TEST(CompareResults, SlowerModeIsWorse) {
   EXPECT_EQ(worse->measure, "duration, ms");
   EXPECT_NEAR(worse->relative, 0.2, 1e-9);
   // The other way round it is better.
-  const std::vector<Change> back = compare_paper_results(slower, made_up());
+  const std::vector<Change> back = compare_paper_results(slower, steady_results());
   EXPECT_EQ(count_of(back, Verdict::better), 1U);
   EXPECT_EQ(count_of(back, Verdict::worse), 0U);
 }
@@ -64,18 +64,18 @@ TEST(CompareResults, ChangeWithinTheNoiseIsNone) {
   const PaperResults noisy = changed([](PaperRun& run) {
     if (run.name.seed == 5) run.seconds.extraction *= 2;
   });
-  EXPECT_EQ(count_of(compare_paper_results(made_up(), noisy), Verdict::worse), 0U);
+  EXPECT_EQ(count_of(compare_paper_results(steady_results(), noisy), Verdict::worse), 0U);
 }
 
 TEST(CompareResults, SureButSmallChangeIsNone) {
   const PaperResults a_bit = changed([](PaperRun& run) { run.seconds.extraction *= 1.08; });
-  EXPECT_EQ(count_of(compare_paper_results(made_up(), a_bit), Verdict::worse), 0U);
-  EXPECT_EQ(count_of(compare_paper_results(made_up(), a_bit, {.least_time_change = 0.05}), Verdict::worse), 12U);
+  EXPECT_EQ(count_of(compare_paper_results(steady_results(), a_bit), Verdict::worse), 0U);
+  EXPECT_EQ(count_of(compare_paper_results(steady_results(), a_bit, {.least_time_change = 0.05}), Verdict::worse), 12U);
 }
 
 TEST(CompareResults, LargerTreesAreWorse) {
   const PaperResults larger = changed([](PaperRun& run) { run.tree.size = 10; });
-  const std::vector<Change> changes = compare_paper_results(made_up(), larger);
+  const std::vector<Change> changes = compare_paper_results(steady_results(), larger);
   EXPECT_EQ(count_of(changes, Verdict::worse), 4U);  // BST and SST, low and high
   for (const Change& change : changes) {
     EXPECT_EQ(change.verdict == Verdict::worse, change.measure == "nodes") << change.measure;
@@ -83,30 +83,30 @@ TEST(CompareResults, LargerTreesAreWorse) {
 }
 
 TEST(CompareResults, OneRepeatTellsNothing) {
-  PaperResults single = made_up();
+  PaperResults single = steady_results();
   std::erase_if(single.runs, [](const PaperRun& run) { return run.name.seed > 1; });
-  const std::vector<Change> changes = compare_paper_results(made_up(), single);
+  const std::vector<Change> changes = compare_paper_results(steady_results(), single);
   EXPECT_EQ(count_of(changes, Verdict::unknown), changes.size());
 }
 
 TEST(CompareResults, OtherOptionsAreRefusedByName) {
-  PaperResults other = made_up();
+  PaperResults other = steady_results();
   other.options.high_points = 999'999;
   try {
-    (void)compare_paper_results(made_up(), other);
+    (void)compare_paper_results(steady_results(), other);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.parts().where, "high points");
   }
   // More repeats are more of the same.
-  other = made_up();
+  other = steady_results();
   other.options.repeats = 6;
-  EXPECT_NO_THROW((void)compare_paper_results(made_up(), other));
+  EXPECT_NO_THROW((void)compare_paper_results(steady_results(), other));
 }
 
 TEST(CompareResults, TableShowsTheChange) {
   const PaperResults slower = changed([](PaperRun& run) { run.seconds.extraction *= 1.5; });
-  const std::vector<Change> changes = compare_paper_results(made_up(), slower);
+  const std::vector<Change> changes = compare_paper_results(steady_results(), slower);
   const std::string text = changes_markdown(changes);
   EXPECT_NE(text.find("| duration, ms | 103.0 ± 1.6"), std::string::npos) << text;
   EXPECT_NE(text.find("+50.0 %"), std::string::npos) << text;

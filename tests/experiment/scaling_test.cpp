@@ -119,7 +119,7 @@ TEST_F(Scaling, ThreadsThatChangeATreeAreNamed) {
 }
 
 /// Results made up so that the search takes n^2 / 1000 milliseconds, all else nothing.
-ScalingResults made_up() {
+ScalingResults quadratic_results() {
   ScalingResults results{.options = {.families = {Family::grid},
                                      .primitives = {10, 100, 1000},
                                      .points = {1000, 100'000},
@@ -138,7 +138,7 @@ ScalingResults made_up() {
 }
 
 TEST_F(Scaling, TablesHoldExponentsAndSpeedUp) {
-  const ScalingResults results = made_up();
+  const ScalingResults results = quadratic_results();
   EXPECT_NEAR(fitted(results, Sweep::primitives, Family::grid, extraction_milliseconds()).exponent, 2, 1e-9);
   EXPECT_NEAR(fitted(results, Sweep::primitives, Family::grid, peak_memory()).exponent, 1, 1e-9);
   EXPECT_NEAR(fitted(results, Sweep::primitives_at_points, Family::grid, peak_memory()).exponent, 0, 1e-9);
@@ -155,7 +155,7 @@ TEST_F(Scaling, TablesHoldExponentsAndSpeedUp) {
 }
 
 TEST_F(Scaling, RunsThatWereCutOffAreLeftOutOfFits) {
-  ScalingResults results = made_up();
+  ScalingResults results = quadratic_results();
   for (ScalingRun& run : results.runs) {
     if (run.scaling_case.primitives != 1000) continue;
     run.complete = false;
@@ -167,7 +167,7 @@ TEST_F(Scaling, RunsThatWereCutOffAreLeftOutOfFits) {
 }
 
 TEST_F(Scaling, ReportIsWritten) {
-  const std::vector<std::string> notes = write_scaling_report(folder(), made_up());
+  const std::vector<std::string> notes = write_scaling_report(folder(), quadratic_results());
   const std::string text = read_text_file(folder() / "scaling.md");
   EXPECT_NE(text.find("Some CPU, 2 cores"), std::string::npos);
   EXPECT_NE(text.find("seeds 1 to 2"), std::string::npos);
@@ -177,7 +177,7 @@ TEST_F(Scaling, ReportIsWritten) {
   EXPECT_NE(script.find("grid ~ n^2.00"), std::string::npos) << script;
   EXPECT_NE(script.find("$line0 << END\n10 "), std::string::npos) << script;
   if (!notes.empty()) return;  // without gnuplot
-  for (const Figure& figure : scaling_figures(made_up())) {
+  for (const Figure& figure : scaling_figures(quadratic_results())) {
     EXPECT_NE(read_text_file(folder() / (figure.name + ".svg")).find("</svg>"), std::string::npos) << figure.name;
   }
 }

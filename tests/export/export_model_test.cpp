@@ -8,6 +8,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
+#include "mesh/model_extent.hpp"
 #include "support/every_type.hpp"
 #include "support/flange.hpp"
 
@@ -143,6 +144,70 @@ TEST(ExportModel, MeshesHaveTheModelsVolume) {
   EXPECT_NEAR(volume_of(mesh) / mesh_volume(model), 1, 0.01);
 }
 
+TriangleMesh written_mesh(const Model& model, const ExportOptions& options) {
+  const std::filesystem::path file = temporary("written.obj");
+  export_model(file, model, options);
+  TriangleMesh mesh = read_mesh(file);
+  std::filesystem::remove(file);
+  return mesh;
+}
+
+TEST(ExportModel, MeshesOfExactSolidsHaveFlatFacesAndTrueEdges) {
+  if (!has_brep()) GTEST_SKIP() << "built without OpenCASCADE";
+  const Model model = test::flange();
+  const ExportOptions coarse{.meshing = {.resolution = 32}};
+  const TriangleMesh mesh = written_mesh(model, coarse);
+  EXPECT_TRUE(is_watertight(mesh));
+  EXPECT_NEAR(volume_of(mesh) / mesh_volume(model), 1, 0.01);
+  constexpr double k_single_precision = 1e-4;  // of what is written, some 50 from the origin
+  for (const double value : implicit_value(*model.tree, model.primitives, mesh.vertices)) {
+    EXPECT_LT(std::abs(value), k_single_precision) << "every corner is on the surface";
+  }
+  const TriangleMesh finer = written_mesh(model, {.meshing = {.resolution = 256}});
+  EXPECT_GT(finer.triangles.size(), mesh.triangles.size());
+  const TriangleMesh cells = written_mesh(model, {.meshing = coarse.meshing, .exact_meshes = false});
+  EXPECT_GT(cells.triangles.size(), 2 * mesh.triangles.size()) << "planes need no cells";
+}
+
+TEST(ExportModel, MeshesOfFreeFormsAreContoured) {
+  const Model model = data_model("m1.json");
+  const MeshingOptions meshing{.resolution = 40};
+  const TriangleMesh contour =
+      mesh_surface(*model.tree, model.primitives, model_extent(*model.tree, model.primitives), meshing);
+  EXPECT_EQ(written_mesh(model, {.meshing = meshing}).triangles.size(), contour.triangles.size());
+}
+
+/// A block with a bore, a dent and a cone on top, off the origin.
+Model block_with_a_bore(double scale) {
+  const Eigen::Vector3d place = scale * Eigen::Vector3d(30, -20, 10);
+  const auto at = [&](double x, double z) { return Pose{.position = place + scale * Eigen::Vector3d(x, 0, z)}; };
+  Model model;
+  model.primitives = {
+      {.id = "block", .shape = Box{.size = scale * Eigen::Vector3d(4, 2, 1)}, .pose = at(0, 0)},
+      {.id = "cone", .shape = Cone{.radius_bottom = 0.8 * scale, .radius_top = 0, .height = scale}, .pose = at(-1, 1)},
+      {.id = "bore", .shape = Cylinder{.radius = 0.5 * scale, .height = 2 * scale}, .pose = at(1, 0)},
+      {.id = "dent", .shape = Sphere{.radius = 0.4 * scale}, .pose = at(0, 0.5)}};
+  const CsgTree body = unite(CsgTree::leaf(0), CsgTree::leaf(1));
+  model.tree = subtract(subtract(body, CsgTree::leaf(2)), CsgTree::leaf(3));
+  return model;
+}
+
+TEST(MeshBrep, IsClosedWhateverTheSizeAndPlace) {
+  if (!has_brep()) GTEST_SKIP() << "built without OpenCASCADE";
+  for (const double scale : {1e-3, 1.0, 1e4}) {
+    const Model model = block_with_a_bore(scale);
+    const BrepMesh made = mesh_brep(*model.tree, model.primitives);
+    EXPECT_TRUE(made.report.is_exact({})) << scale;
+    EXPECT_TRUE(is_watertight(made.mesh)) << scale;
+    EXPECT_NEAR(volume_of(made.mesh) / made.report.volume, 1, 5e-3) << scale;
+  }
+}
+
+TEST(MeshBrep, RefusesADeviationThatIsNone) {
+  const Model model = data_model("m2.json");
+  EXPECT_THROW((void)mesh_brep(*model.tree, model.primitives, {.mesh_deviation = 0}), Error);
+}
+
 bool is_script(const std::string& ending) {
   return ending == ".scad" || ending == ".csg" || ending == ".FCMacro" || ending == ".py";
 }
@@ -203,9 +268,9 @@ TEST(ExportModel, RefusesUnknownEndingsAndMissingTrees) {
     }
     return "no error";
   };
-  EXPECT_NE(
-      message_for("model.docx").find(".json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj or .dot"),
-      std::string::npos);
+  EXPECT_NE(message_for("model.docx")
+                .find(".json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj, .3mf or .dot"),
+            std::string::npos);
   model.tree.reset();
   EXPECT_NE(message_for("model.scad").find("a model with a tree"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(temporary("model.scad")));

@@ -14,6 +14,7 @@ namespace {
 
 using script::CirclePattern;
 using script::find_patterns;
+using script::GridPattern;
 using script::LinePattern;
 using script::Pattern;
 
@@ -95,6 +96,27 @@ RC_GTEST_PROP(Patterns, AreFoundWhereverTheyLie, ()) {
   RC_ASSERT(patterns.size() == 1U);
   RC_ASSERT(patterns[0].members.size() == static_cast<std::size_t>(count));
   RC_ASSERT(std::holds_alternative<CirclePattern>(patterns[0].motion) == is_circle);
+}
+
+RC_GTEST_PROP(Patterns, GridsAreOnePattern, ()) {
+  const Pose frame = test::any_pose(5);
+  const int columns = *rc::gen::inRange(2, 6);
+  const int rows = *rc::gen::inRange(2, 6);
+  // Not square: four at the corners of a square are on a circle.
+  const double across = columns == rows ? 1.7 : 1.0;
+  PrimitiveSet primitives;
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      const Pose place{.position = {1.0 * i, across * j, 0}};
+      primitives.push_back({.id = "p", .shape = Sphere{.radius = 0.2}, .pose = compose(frame, place)});
+    }
+  }
+  std::rotate(primitives.begin(), primitives.begin() + *rc::gen::inRange(0, columns * rows), primitives.end());
+  const std::vector<Pattern> patterns = find_patterns(primitives, all_of(primitives), 1e-6);
+  expect_sound(primitives, patterns, 1e-6);
+  RC_ASSERT(patterns.size() == 1U);
+  RC_ASSERT(patterns[0].members.size() == primitives.size());
+  RC_ASSERT(std::holds_alternative<GridPattern>(patterns[0].motion));
 }
 
 RC_GTEST_PROP(Patterns, OfAnySolidsAreSound, ()) {

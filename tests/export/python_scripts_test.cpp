@@ -129,7 +129,7 @@ std::string freecad() {
   return {};
 }
 
-double mesh_volume(const Model& model) {
+double volume_of_mesh(const Model& model) {
   return volume_of(
       mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives), {.resolution = 128}));
 }
@@ -150,7 +150,7 @@ print("KINDS", *(thing.TypeId for thing in document.Objects), "END")
     const test::Run run = test::run_in(folder, "HOME=. timeout 300 " + program + " read.py");
     const std::size_t place = run.output.find("VOLUME ");
     ASSERT_NE(place, std::string::npos) << run.output;
-    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / mesh_volume(model), 1, 0.01);
+    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / volume_of_mesh(model), 1, 0.01);
     EXPECT_NE(run.output.find(" Part::Sphere "), std::string::npos) << run.output;
   }
 }
@@ -168,7 +168,7 @@ TEST(FreeCadProgram, MakesTheTreesVolume) {
     const std::size_t place = run.output.find("VOLUME ");
     ASSERT_NE(place, std::string::npos) << run.output;
     EXPECT_NE(run.output.find("VALID True"), std::string::npos) << run.output;
-    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / mesh_volume(model), 1, 0.01);
+    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / volume_of_mesh(model), 1, 0.01);
   }
 }
 

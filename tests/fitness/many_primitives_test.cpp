@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "support/properties.hpp"
 #include "support/request_points.hpp"
 
 namespace cloud2csg {
@@ -148,16 +149,11 @@ void compare_with_plain_points(const test::Scene& scene, std::size_t requests, R
   }
 }
 
-/// In a property, RapidCheck is to see that something failed, so that it looks for a smaller case.
-void fail_property_when_failed() {
-  RC_ASSERT(!::testing::Test::HasFailure());
-}
-
 RC_GTEST_PROP(ManyPrimitives, AreJudgedByThePointsOfThePlainDefinition, (std::uint64_t seed)) {
   RandomStream random(seed);
   const test::Scene scene = random_wide_scene(33 + random.below(88), 1 + random.below(2000), random);
   compare_with_plain_points(scene, 1 + random.below(8), random);
-  fail_property_when_failed();
+  test::fail_property_when_failed();
 }
 
 /// More than a chunk of points.
@@ -174,7 +170,7 @@ RC_GTEST_PROP(FewPrimitives, AreJudgedByThePointsOfThePlainDefinition, (std::uin
   const test::Scene scene = random.chance(0.5) ? random_wide_scene(primitives, 1 + random.below(1000), random)
                                                : test::random_scene(primitives, 1 + random.below(600), random);
   compare_with_plain_points(scene, 1 + random.below(6), random);
-  fail_property_when_failed();
+  test::fail_property_when_failed();
 }
 
 TEST(FewPrimitives, StridesGoOnAcrossChunks) {
@@ -247,7 +243,7 @@ RC_GTEST_PROP(ManyPrimitives, TablesAreTheSameFromALargerOne, (std::uint64_t see
   const PointPass both = test::pass_over(scene, {part, whole});
   expect_equal_tables(both.tables[0], test::pass_over(scene, {part}).tables[0], random);
   expect_equal_tables(both.tables[1], test::pass_over(scene, {whole}).tables[0], random);
-  fail_property_when_failed();
+  test::fail_property_when_failed();
 }
 
 /// Single precision sees the same primitives but for points at the very limit of a tolerance or on an edge, which are

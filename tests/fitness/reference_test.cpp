@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "support/properties.hpp"
 #include "support/request_points.hpp"
 
 namespace cloud2csg {
@@ -50,11 +51,6 @@ void expect_reference(const RankClasses& table, const RankClassesRequest& reques
   }
 }
 
-/// In a property, RapidCheck is to see that something failed, so that it looks for a smaller case.
-void fail_property_when_failed() {
-  RC_ASSERT(!::testing::Test::HasFailure());
-}
-
 void compare_random_scene(std::size_t primitives, std::size_t points, std::size_t trees, RandomStream& random) {
   const test::Scene scene = test::random_scene(primitives, points, random);
   const RankClassesRequest whole{.primitives = test::all_of(scene.primitives), .all_points = true};
@@ -75,7 +71,7 @@ RC_GTEST_PROP(RankClassesReference, AFewPrimitives, (std::uint64_t seed)) {
   RandomStream random(seed);
   const std::size_t primitives = 1 + random.below(12);
   compare_random_scene(primitives, 1 + random.below(400), 6, random);
-  fail_property_when_failed();
+  test::fail_property_when_failed();
 }
 
 RC_GTEST_PROP(RankClassesReference, NoisyCloudsWhereScoresAreNotRoundNumbers, (std::uint64_t seed)) {
@@ -88,7 +84,7 @@ RC_GTEST_PROP(RankClassesReference, NoisyCloudsWhereScoresAreNotRoundNumbers, (s
   for (const ObjectiveOptions& weights : test::all_weights()) {
     expect_reference(test::pass_over(scene, {request}, weights).tables.front(), request, scene, 8, random);
   }
-  fail_property_when_failed();
+  test::fail_property_when_failed();
 }
 
 /// Around the limit of bytes, and the most that is promised.

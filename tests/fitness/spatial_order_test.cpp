@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/random.hpp"
+#include "support/properties.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -51,7 +52,7 @@ RC_GTEST_PROP(SpatialOrder, IsAPermutation, (std::uint64_t seed)) {
   }
   const std::size_t count = random.below(3000);
   expect_permutation(order_of(random_points(count, extent, random)), count);
-  RC_ASSERT(!::testing::Test::HasFailure());
+  test::fail_property_when_failed();
 }
 
 /// Several chunks of keys, and points that fall into one cell: these stay in their order.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/place_text.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -106,6 +108,24 @@ TEST(Points, SubviewIsARangeOfThePoints) {
   ASSERT_EQ(middle.size(), 3U);
   EXPECT_EQ(middle[0], Eigen::Vector3d(1, 1, 1));
   EXPECT_EQ(middle[2], Eigen::Vector3d(3, 3, 3));
+}
+
+TEST(PlaceText, IsAsFineAsWhatItIsIn) {
+  EXPECT_EQ(place_text({1.25, -0.5, 3}, 10), "(1.25, -0.5, 3)");
+  EXPECT_EQ(place_text({1.23456, 0, -0.00001}, 10), "(1.235, 0, 0)");
+  EXPECT_EQ(place_text({1000001.2345, 2e6, -1e6}, 10), "(1000001.235, 2000000, -1000000)");
+  EXPECT_EQ(place_text({123456, 7, 0.4}, 1e6), "(123456, 7, 0)");
+  EXPECT_EQ(place_text({1.5e-5, 0, 0}, 1e-4), "(0.000015, 0, 0)");
+  EXPECT_EQ(place_text({1, 2, 3}, 0), "(1, 2, 3)");
+}
+
+TEST(CrowdedPlace, IsInTheFullestCube) {
+  Points points;
+  for (int i = 0; i < 10; ++i) points.push_back({i * 1.0, 0, 0});
+  for (int i = 0; i < 4; ++i) points.push_back({7.2 + 0.1 * i, 0.1, 0});
+  const Eigen::Vector3d place = crowded_place(points, 1);
+  EXPECT_NEAR(place.x(), (7 + 7.2 + 7.3 + 7.4 + 7.5) / 5, 1e-12);
+  EXPECT_NEAR(place.y(), 0.08, 1e-12);
 }
 
 }  // namespace

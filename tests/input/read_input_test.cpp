@@ -97,10 +97,38 @@ TEST(MendMesh, TellsWhereItIsOpen) {
   EXPECT_EQ(find_edge_faults(mesh).open.place.z(), 1.0);
 }
 
-TEST(MendMesh, TellsOfTrianglesThatDisagree) {
-  TriangleMesh mesh = cube();
-  std::swap(mesh.triangles[5][0], mesh.triangles[5][1]);
-  EXPECT_TRUE(mentions(mend_mesh(mesh).warnings, "disagree on which side is outside at 3 edges"));
+TEST(MendMesh, TurnsTrianglesThatDisagree) {
+  for (std::size_t every = 2; every <= 6; ++every) {
+    TriangleMesh mesh = cube();
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += every) {
+      std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+    }
+    const MendedMesh mended = mend_mesh(mesh);
+    EXPECT_TRUE(mentions(mended.warnings, "disagreed with their neighbours")) << every;
+    EXPECT_FALSE(mentions(mended.warnings, "which side is outside at")) << every;
+    EXPECT_DOUBLE_EQ(volume_of(mended.mesh), 1.0) << every;
+    EXPECT_TRUE(is_watertight(mended.mesh)) << every;
+  }
+}
+
+TEST(MendMesh, TurnsPiecesThatAreInsideOut) {
+  const MendedMesh crossing = mend_mesh(both(cube(3.0), turned(cube()), {2.5, 1.0, 1.0}));
+  EXPECT_TRUE(mentions(crossing.warnings, "1 pieces of the mesh were inside out"));
+  EXPECT_DOUBLE_EQ(volume_of(crossing.mesh), 28.0);
+  const MendedMesh hollow = mend_mesh(turned(both(cube(3.0), turned(cube()), Vector3d::Ones())));
+  EXPECT_DOUBLE_EQ(volume_of(hollow.mesh), 26.0) << "a cavity stays one when all is turned";
+}
+
+TEST(MendMesh, LeavesOpenPiecesAsTheyAre) {
+  TriangleMesh sheets = cube();
+  // No two triangles share an edge any more: each is a piece of no volume.
+  TriangleMesh apart;
+  for (const auto& corners : sheets.triangles) {
+    const auto first = static_cast<std::uint32_t>(apart.vertices.size());
+    for (const std::uint32_t corner : corners) apart.vertices.push_back(sheets.vertices[corner]);
+    apart.triangles.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_EQ(mend_mesh(apart).mesh.triangles, apart.triangles);
 }
 
 TEST(MendMesh, TellsOfSelfIntersectionsButNotOfTouching) {
@@ -144,6 +172,25 @@ TEST(ReadCloudOrMesh, DrawsPointsFromEachMeshFormat) {
     EXPECT_EQ(input.mesh->vertices.size(), 8U) << name;
     EXPECT_EQ(outward_points(input.cloud), 500U) << name;
     EXPECT_TRUE(input.warnings.empty()) << name;
+  }
+}
+
+/// Corners of a unit cube a million units away, in single precision.
+TEST(ReadCloudOrMesh, WarnsOfMeshesThatAreTooFarAway) {
+  const TemporaryFolder folder;
+  for (const double distance : {0.0, 100.0, 1e6}) {
+    std::ofstream text(folder / "far.off");
+    const TriangleMesh mesh = cube();
+    text << "OFF\n8 12 0\n";
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Vector3d corner = mesh.vertices[i] + Vector3d::Constant(distance);
+      text << static_cast<long>(corner.x()) << ' ' << static_cast<long>(corner.y()) << ' '
+           << static_cast<long>(corner.z()) << '\n';
+    }
+    for (const auto& [a, b, c] : mesh.triangles) text << "3 " << a << ' ' << b << ' ' << c << '\n';
+    text.close();
+    const Input input = read_cloud_or_mesh(folder / "far.off", {.mesh_points = 100});
+    EXPECT_EQ(mentions(input.warnings, "read in steps of 0.12"), distance == 1e6) << distance;
   }
 }
 

@@ -185,12 +185,6 @@ RC_GTEST_PROP(MergeByDominance, GivesSimpleTreesOverThePrimitivesThatWereGiven, 
   }
 }
 
-PrimitiveSet letters() {
-  PrimitiveSet primitives = test::sphere_row(26);
-  for (std::size_t i = 0; i < primitives.size(); ++i) primitives[i].id = std::string(1, static_cast<char>('a' + i));
-  return primitives;
-}
-
 /// A tree, and ids of primitives of its clique that it leaves out.
 struct Partition {
   std::string tree;
@@ -201,7 +195,7 @@ MergeResult result_of(const std::vector<Partition>& partitions, const RunContext
   std::vector<CsgTree> trees;
   std::vector<Clique> cliques;
   for (const Partition& partition : partitions) {
-    trees.push_back(parse_tree(partition.tree, letters()));
+    trees.push_back(parse_tree(partition.tree, test::letters()));
     cliques.push_back(primitives_of(trees.back()));
     for (const char id : partition.left_out) cliques.back().push_back(static_cast<PrimitiveIndex>(id - 'a'));
     std::ranges::sort(cliques.back());
@@ -211,7 +205,7 @@ MergeResult result_of(const std::vector<Partition>& partitions, const RunContext
 
 std::vector<std::string> merged(const std::vector<Partition>& partitions) {
   std::vector<std::string> result;
-  for (const CsgTree& tree : result_of(partitions).trees) result.push_back(to_text(tree, letters()));
+  for (const CsgTree& tree : result_of(partitions).trees) result.push_back(to_text(tree, test::letters()));
   return result;
 }
 

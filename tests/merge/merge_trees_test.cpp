@@ -13,21 +13,15 @@
 namespace cloud2csg {
 namespace {
 
-PrimitiveSet letters() {
-  PrimitiveSet primitives = test::sphere_row(26);
-  for (std::size_t i = 0; i < primitives.size(); ++i) primitives[i].id = std::string(1, static_cast<char>('a' + i));
-  return primitives;
-}
-
 std::vector<CsgTree> parsed(const std::vector<std::string>& texts) {
   std::vector<CsgTree> trees;
-  for (const std::string& text : texts) trees.push_back(parse_tree(text, letters()));
+  for (const std::string& text : texts) trees.push_back(parse_tree(text, test::letters()));
   return trees;
 }
 
 std::vector<std::string> merged(const std::vector<std::string>& texts, MergeOrder order = MergeOrder::paper) {
   std::vector<std::string> result;
-  for (const CsgTree& tree : merge_trees(parsed(texts), order).trees) result.push_back(to_text(tree, letters()));
+  for (const CsgTree& tree : merge_trees(parsed(texts), order).trees) result.push_back(to_text(tree, test::letters()));
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "mesh/cell_topology.hpp"
@@ -157,6 +158,24 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
           "end_header\n0 0 0\n");
   refused("mesh.docx", "OFF\n");
   EXPECT_THROW((void)read_mesh(temporary("not_there.stl")), Error);
+}
+
+TEST(WriteMesh, ComesBackAsItWas) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices.set(3, {0.25, -1.5e-3, 1000.5});
+  for (const char* name : {"back.stl", "back.off", "back.obj", "back.3mf"}) {
+    const std::filesystem::path file = temporary(name);
+    write_mesh(file, mesh);
+    const TriangleMesh back = read_mesh(file);
+    EXPECT_EQ(back.triangles.size(), mesh.triangles.size()) << name;
+    EXPECT_TRUE(is_watertight(back)) << name;
+    EXPECT_NEAR(volume_of(back), volume_of(mesh), 1e-6 * volume_of(mesh)) << name;
+    EXPECT_TRUE(bounds_of(back.vertices).isApprox(bounds_of(mesh.vertices), 1e-6)) << name;
+    const std::string bytes = read_text_file(file);
+    write_mesh(file, mesh);
+    EXPECT_EQ(read_text_file(file), bytes) << name;
+    std::filesystem::remove(file);
+  }
 }
 
 TEST(WriteMesh, RefusesUnknownEndingsAndFolders) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -7,6 +8,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
+#include "cloud2csg/segmentation.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {
@@ -149,6 +151,27 @@ TEST(BadInput, ManyPointsOnNoPrimitiveAreWarnedAbout) {
   ASSERT_EQ(result.statistics.warnings.size(), 1U);
   EXPECT_NE(result.statistics.warnings[0].find("more than a tenth of the points"), std::string::npos);
   EXPECT_GT(result.statistics.unassigned_points, 400U);
+}
+
+/// So few points that some formulas miss them; all of them are on primitives.
+TEST(BadInput, PointsOffTheResultAreWarnedAbout) {
+  const Model model = test::paper_model("m0");
+  std::size_t warned = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 6, .noise = 0.01, .seed = seed});
+    const Extraction result = extract_csg(cloud, model.primitives);
+    const ExtractStatistics& statistics = result.statistics;
+    if (is_constant(result.tree) || 10 * statistics.unassigned_points > statistics.points) continue;
+    const double tolerance = segmentation_tolerances({}, statistics.noise).distance;
+    const bool is_off = statistics.fit.p95_distance > tolerance;
+    const bool has_warning = std::ranges::any_of(statistics.warnings, [](const std::string& warning) {
+      return warning.starts_with("more than a twentieth of the points is farther than");
+    });
+    EXPECT_EQ(has_warning, is_off) << seed;
+    warned += has_warning ? 1 : 0;
+  }
+  EXPECT_GT(warned, 0U);
+  EXPECT_LT(warned, 20U);
 }
 
 }  // namespace

@@ -75,10 +75,10 @@ TEST(Interruption, DuringTheSearchGivesTheBestSoFar) {
   }
 }
 
-class TimeLimit : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Paper, TimeLimit, ::testing::Values("m0", "m1", "m2", "m3"));
+class TimeLimitOfASearch : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Paper, TimeLimitOfASearch, ::testing::Values("m0", "m1", "m2", "m3"));
 
-TEST_P(TimeLimit, EndsEverySearchWithATree) {
+TEST_P(TimeLimitOfASearch, EndsEverySearchWithATree) {
   const Input input = small_input(GetParam());
   for (const Strategy strategy : {Strategy::automatic, Strategy::partition, Strategy::baseline}) {
     for (const double seconds : {1e-9, 0.05}) {
@@ -91,7 +91,7 @@ TEST_P(TimeLimit, EndsEverySearchWithATree) {
 }
 
 /// The tree of the cells comes with the pass over the points, which is always completed.
-TEST_P(TimeLimit, LeavesTheTreeOfTheCells) {
+TEST_P(TimeLimitOfASearch, LeavesTheTreeOfTheCells) {
   const Input input = small_input(GetParam());
   for (const Strategy strategy : {Strategy::automatic, Strategy::cells}) {
     const Extraction expected = extract_csg(input.cloud, input.model.primitives, {.strategy = strategy});
@@ -101,6 +101,16 @@ TEST_P(TimeLimit, LeavesTheTreeOfTheCells) {
     EXPECT_TRUE(result.statistics.complete);
     EXPECT_TRUE(result.statistics.warnings.empty());
   }
+}
+
+/// Also where the tree of the cells is the one that is taken.
+TEST_P(TimeLimitOfASearch, SaysThatPartitionsWereNotSearched) {
+  const Input input = small_input(GetParam());
+  const Extraction result =
+      extract_csg(input.cloud, input.model.primitives, {.cell_trust = 1, .time_limit_seconds = 1e-9});
+  EXPECT_FALSE(result.statistics.complete);
+  ASSERT_FALSE(result.statistics.warnings.empty());
+  EXPECT_EQ(result.statistics.warnings.back(), "stopped early: this is the best tree so far");
 }
 
 TEST(TimeLimitThatIsLong, ChangesNothing) {

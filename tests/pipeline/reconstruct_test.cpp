@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <stop_token>
 #include <string>
+#include <thread>
 
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/error.hpp"
@@ -26,7 +28,7 @@ Model plate() {
   return {.primitives = std::move(primitives), .tree = subtract(subtract(body, CsgTree::leaf(2)), CsgTree::leaf(3))};
 }
 
-PointCloud cloud_of(const Model& model, double noise, std::size_t count = 20'000) {
+PointCloud raw_cloud(const Model& model, double noise, std::size_t count = 20'000) {
   return sample_surface(*model.tree, model.primitives, {.count = count, .noise = noise, .seed = 5});
 }
 
@@ -47,7 +49,7 @@ double iou(const Reconstruction& result, const Model& truth) {
 TEST(Reconstruct, FindsThePlateWithItsHolesAndBoss) {
   const Model truth = plate();
   for (const double noise : {0.0, 0.008}) {
-    const Reconstruction result = reconstruct(cloud_of(truth, noise));
+    const Reconstruction result = reconstruct(raw_cloud(truth, noise));
     EXPECT_GT(iou(result, truth), 0.99);
     EXPECT_EQ(leaf_count(result.tree), 4U);
     ASSERT_TRUE(result.statistics.finding);
@@ -65,7 +67,7 @@ bool has_warning(const Reconstruction& result, const std::string& part) {
 /// A hole in the cloud that is as large as a face: the user is told of it.
 TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
   const Model truth{.primitives = {test::placed("block", Box{{4, 3, 3}}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
-  const PointCloud whole = cloud_of(truth, 0.0);
+  const PointCloud whole = raw_cloud(truth, 0.0);
   EXPECT_FALSE(has_warning(reconstruct(whole), "no points near"));
   PointCloud open;
   for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -95,7 +97,7 @@ TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
 
 TEST(Reconstruct, NeedsNoNormals) {
   const Model truth = plate();
-  PointCloud cloud = cloud_of(truth, 0.005, 30'000);
+  PointCloud cloud = raw_cloud(truth, 0.005, 30'000);
   cloud.normals = {};
   const Reconstruction result = reconstruct(cloud);
   EXPECT_TRUE(result.statistics.finding->normals_estimated);
@@ -103,7 +105,7 @@ TEST(Reconstruct, NeedsNoNormals) {
 }
 
 TEST(Reconstruct, DoesNotDependOnThreads) {
-  const PointCloud cloud = cloud_of(plate(), 0.01);
+  const PointCloud cloud = raw_cloud(plate(), 0.01);
   const Reconstruction one = reconstruct(cloud, {}, {.threads = 1});
   const Reconstruction two = reconstruct(cloud, {}, {.threads = 2});
   EXPECT_TRUE(one.tree == two.tree);
@@ -115,7 +117,7 @@ TEST(Reconstruct, DoesNotDependOnThreads) {
 
 TEST(Reconstruct, DoesNotDependOnUnits) {
   const Model truth = plate();
-  const PointCloud cloud = cloud_of(truth, 0.008);
+  const PointCloud cloud = raw_cloud(truth, 0.008);
   for (const double scale : {0.01, 3000.0}) {
     PointCloud other = cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -144,7 +146,7 @@ TEST(Reconstruct, MeasuresTheFitOfTheTreeThatItGives) {
   Model wavy{.primitives = {test::placed("ball", Sphere{.radius = 4}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
   wavy.primitives[0].displacement = Displacement{.frequency = 0.6};
   for (const bool is_wavy : {false, true}) {
-    const Reconstruction result = reconstruct(is_wavy ? cloud_of(wavy, 0.0, 3000) : cloud_of(plate(), 0.005));
+    const Reconstruction result = reconstruct(is_wavy ? raw_cloud(wavy, 0.0, 3000) : raw_cloud(plate(), 0.005));
     EXPECT_EQ(result.statistics.cells.has_value(), !is_wavy);
     const double noise = result.statistics.noise;
     const FitStatistics fit = measure_fit(result.tree, result.solids, result.cloud,
@@ -155,14 +157,75 @@ TEST(Reconstruct, MeasuresTheFitOfTheTreeThatItGives) {
 }
 
 TEST(Reconstruct, EndsWhenItsTimeIsOver) {
-  EXPECT_THROW((void)reconstruct(cloud_of(plate(), 0.01), {.extraction = {.time_limit_seconds = 0.0}}), Error);
+  EXPECT_THROW((void)reconstruct(raw_cloud(plate(), 0.01), {.extraction = {.time_limit_seconds = 0.0}}), Error);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW((void)reconstruct(cloud_of(plate(), 0.01), {}, {.stop = stop.get_token()}), Cancelled);
+  EXPECT_THROW((void)reconstruct(raw_cloud(plate(), 0.01), {}, {.stop = stop.get_token()}), Cancelled);
+}
+
+/// All stages that tell of their progress, in their order.
+std::vector<std::string> stages_of(const PointCloud& cloud) {
+  std::vector<std::string> stages;
+  const auto note = [&stages](const Progress& progress) {
+    if (std::ranges::find(stages, progress.stage) == stages.end()) stages.emplace_back(progress.stage);
+  };
+  (void)reconstruct(cloud, {}, {.on_progress = note});
+  return stages;
+}
+
+TEST(Reconstruct, HoldsItsTimeLimitInEveryStage) {
+  const PointCloud cloud = raw_cloud(plate(), 0.01, 5000);
+  const std::vector<std::string> stages = stages_of(cloud);
+  EXPECT_GE(stages.size(), 4U);
+  const CsgTree expected = reconstruct(cloud).tree;
+  constexpr double k_limit = 0.3;
+  for (const std::string& slow : stages) {
+    bool is_over = false;
+    const auto dawdle = [&](const Progress& progress) {
+      if (is_over || progress.stage != slow) return;
+      is_over = true;
+      std::this_thread::sleep_for(std::chrono::duration<double>(1.1 * k_limit));
+    };
+    try {
+      const Reconstruction result =
+          reconstruct(cloud, {.extraction = {.time_limit_seconds = k_limit}}, {.on_progress = dawdle});
+      // The tree of the cells comes with the pass over the points, which is always completed.
+      EXPECT_TRUE(!result.statistics.complete || result.tree == expected) << slow;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.parts().where, "--time-limit") << slow;
+    }
+  }
+}
+
+TEST(FindPrimitives, HoldsTheTimeLimitOfTheExtraction) {
+  EXPECT_THROW((void)find_primitives(raw_cloud(plate(), 0.01), {.extraction = {.time_limit_seconds = 0.0}}), Error);
+}
+
+TEST(FindPrimitives, WarnsOfAToleranceInWhichPartsAreLost) {
+  const auto says_so = [](double tolerance) {
+    const FoundPrimitives found =
+        find_primitives(raw_cloud(plate(), 0.0, 5000), {.detection = {.distance_tolerance = tolerance}});
+    return std::ranges::any_of(
+        found.warnings, [](const std::string& warning) { return warning.find("parts are lost") < warning.size(); });
+  };
+  EXPECT_FALSE(says_so(0.02));
+  EXPECT_TRUE(says_so(0.4));
+}
+
+TEST(FindPrimitives, HasATreeWhenItIsStoppedWhileSolidsAreChosen) {
+  std::stop_source stop;
+  const auto stop_at_solids = [&stop](const Progress& progress) {
+    if (progress.stage == "solids" && progress.done > 0) stop.request_stop();
+  };
+  const FoundPrimitives found = find_primitives(raw_cloud(test::paper_model("m0"), 0.005), {},
+                                                {.stop = stop.get_token(), .on_progress = stop_at_solids});
+  EXPECT_TRUE(stop.stop_requested());
+  EXPECT_FALSE(found.choice.solids.empty());
+  EXPECT_FALSE(is_constant(found.choice.tree));
 }
 
 TEST(FindPrimitives, GivesSolidsWhoseTreeIsNearTheCloud) {
-  const FoundPrimitives found = find_primitives(cloud_of(plate(), 0.005));
+  const FoundPrimitives found = find_primitives(raw_cloud(plate(), 0.005));
   EXPECT_FALSE(found.choice.solids.empty());
   EXPECT_LT(found.choice.disagreement, 0.03);
   for (const Primitive& solid : found.choice.solids) EXPECT_NO_THROW(validate(solid));
@@ -171,7 +234,7 @@ TEST(FindPrimitives, GivesSolidsWhoseTreeIsNearTheCloud) {
 /// M1's box has a sine on it, which is no surface that is looked for.
 TEST(ReconstructBesideKnown, GetsAModelWithAFreeFormRight) {
   const Model truth = test::paper_model("m1");
-  const PointCloud cloud = cloud_of(truth, 0.005, 50'000);
+  const PointCloud cloud = raw_cloud(truth, 0.005, 50'000);
   const Reconstruction result = reconstruct(cloud, {.known = {truth.primitives[0]}});
   EXPECT_GT(iou(result, truth), 0.998);
   EXPECT_EQ(leaf_count(result.tree), 4U) << to_text(result.tree, result.solids);
@@ -181,13 +244,13 @@ TEST(ReconstructBesideKnown, GetsAModelWithAFreeFormRight) {
   EXPECT_GT(result.statistics.finding->known_points, 10'000U);
   EXPECT_LT(iou(reconstruct(cloud), truth), 0.97) << "what is known makes the difference";
   // The end of the cylinder sticks out by less than twice the tolerance, which is not worth two leaves any more.
-  const PointCloud noisy = cloud_of(truth, 0.01, 50'000);
+  const PointCloud noisy = raw_cloud(truth, 0.01, 50'000);
   EXPECT_GT(iou(reconstruct(noisy, {.known = {truth.primitives[0]}}), truth), 0.99);
 }
 
 TEST(ReconstructBesideKnown, KeepsWhatIsKnownToTheLastBit) {
   const Model truth = plate();
-  const PointCloud cloud = cloud_of(truth, 0.008);
+  const PointCloud cloud = raw_cloud(truth, 0.008);
   for (const PrimitiveSet& known : {PrimitiveSet{truth.primitives[0]}, PrimitiveSet{truth.primitives[2]},
                                     PrimitiveSet{truth.primitives[1], truth.primitives[3]}, truth.primitives}) {
     const Reconstruction result = reconstruct(cloud, {.known = known});
@@ -207,12 +270,12 @@ TEST(ReconstructBesideKnown, KeepsWhatIsKnownToTheLastBit) {
 TEST(ReconstructBesideKnown, WarnsOfWhatThePointsDoNotBearOut) {
   const Model truth = plate();
   const PrimitiveSet known{truth.primitives[0], test::placed("ghost", Sphere{0.4}, {0, 1, 1.5})};
-  const Reconstruction result = reconstruct(cloud_of(truth, 0.005), {.known = known});
+  const Reconstruction result = reconstruct(raw_cloud(truth, 0.005), {.known = known});
   EXPECT_TRUE(has_warning(result, "'ghost'"));
   EXPECT_FALSE(has_warning(result, "'plate'"));
   EXPECT_GT(iou(result, truth), 0.99);
   EXPECT_EQ(result.solids[1].id, "ghost") << "it stays in the list";
-  const FoundPrimitives found = find_primitives(cloud_of(truth, 0.005), {.known = known});
+  const FoundPrimitives found = find_primitives(raw_cloud(truth, 0.005), {.known = known});
   EXPECT_TRUE(std::ranges::any_of(found.warnings, [](const std::string& warning) {
     return warning.find("known primitive 'ghost': 0 of") != std::string::npos;
   }));
@@ -220,13 +283,13 @@ TEST(ReconstructBesideKnown, WarnsOfWhatThePointsDoNotBearOut) {
 
 TEST(ReconstructBesideKnown, RefusesKnownPrimitivesThatAreNone) {
   const Model truth = plate();
-  const PointCloud cloud = cloud_of(truth, 0.0, 2000);
+  const PointCloud cloud = raw_cloud(truth, 0.0, 2000);
   EXPECT_THROW((void)reconstruct(cloud, {.known = {truth.primitives[0], truth.primitives[0]}}), Error);
   EXPECT_THROW((void)reconstruct(cloud, {.known = {test::placed("s", Sphere{-1}, {0, 0, 0})}}), Error);
 }
 
 TEST(FindPrimitives, SaysHowManyPointsLieOnEachSolid) {
-  const FoundPrimitives found = find_primitives(cloud_of(plate(), 0.005));
+  const FoundPrimitives found = find_primitives(raw_cloud(plate(), 0.005));
   ASSERT_EQ(found.points.size(), found.choice.solids.size());
   std::size_t sum = 0;
   for (std::size_t k = 0; k < found.points.size(); ++k) {
@@ -243,7 +306,7 @@ TEST(FindPrimitives, TakesGivenRadiiAndAxes) {
   SolidOptions solids;
   solids.regularity.radii = {0.4, 0.35, 0.6};
   solids.regularity.axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
-  const FoundPrimitives found = find_primitives(cloud_of(plate(), 0.008), {.solids = solids});
+  const FoundPrimitives found = find_primitives(raw_cloud(plate(), 0.008), {.solids = solids});
   std::vector<double> radii;
   for (const Primitive& solid : found.choice.solids) {
     if (const auto* cylinder = std::get_if<Cylinder>(&solid.shape)) radii.push_back(cylinder->radius);

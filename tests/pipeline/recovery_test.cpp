@@ -10,7 +10,7 @@
 namespace cloud2csg {
 namespace {
 
-PointCloud cloud_of(const Model& model, double noise, std::uint64_t seed, std::size_t count = 10'000) {
+PointCloud noisy_cloud(const Model& model, double noise, std::uint64_t seed, std::size_t count = 10'000) {
   return sample_surface(*model.tree, model.primitives, {.count = count, .noise = noise, .seed = seed});
 }
 
@@ -21,7 +21,7 @@ class RecoversThePapersModels : public ::testing::TestWithParam<ModelAndSeed> {
   void expect_recovered(double noise) {
     const auto& [name, seed] = GetParam();
     const Model model = test::paper_model(name);
-    const PointCloud cloud = cloud_of(model, noise, seed);
+    const PointCloud cloud = noisy_cloud(model, noise, seed);
     for (ExtractOptions options : test::with_and_without_cells()) {
       options.seed = seed;
       const Extraction result = extract_csg(cloud, model.primitives, options);
@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Paper, CliqueHistogram,
 TEST_P(CliqueHistogram, IsThatOfThePaper) {
   const Model model = test::paper_model(GetParam().name);
   for (const double noise : {0.0, 0.01}) {
-    const PointCloud cloud = cloud_of(model, noise, 3, 4000);
+    const PointCloud cloud = noisy_cloud(model, noise, 3, 4000);
     for (ExtractOptions options : test::with_and_without_cells()) {
       options.search = paper_ga_options();
       const Extraction result = extract_csg(cloud, model.primitives, options);
@@ -139,7 +139,7 @@ PointCloud scaled(PointCloud cloud, double factor) {
 TEST(ExtractCsg, GivesTheSameTreeAtEveryScale) {
   for (const char* name : {"m0", "m2"}) {
     const Model model = test::paper_model(name);
-    const PointCloud cloud = cloud_of(model, 0.005, 7, 6000);
+    const PointCloud cloud = noisy_cloud(model, 0.005, 7, 6000);
     for (const ExtractOptions& options : test::with_and_without_cells()) {
       const Extraction expected = extract_csg(cloud, model.primitives, options);
       for (const double factor : {0.01, 1000.0}) {

@@ -54,6 +54,16 @@ TEST(ExtractRefined, StopsBeforeTheFirstTreeAsExtractDoes) {
   EXPECT_THROW((void)extract_refined_csg(cloud, model.primitives, {}, {}, {.stop = stop.get_token()}), Cancelled);
 }
 
+TEST(ExtractRefined, SaysThatItsTimeWasOver) {
+  const Model model = test::paper_model("m2");
+  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 2000, .noise = 0.005, .seed = 2});
+  const PrimitiveSet given = wrong_sizes(model.primitives);
+  const RefinedExtraction result = extract_refined_csg(cloud, given, {.time_limit_seconds = 1e-9});
+  EXPECT_FALSE(result.extraction.statistics.complete);
+  EXPECT_EQ(result.extraction.statistics.warnings.back(), "stopped early: this is the best tree so far");
+  EXPECT_EQ(result.primitives[0].pose.position, given[0].pose.position);
+}
+
 /// A stop while refining leaves the tree that was there.
 TEST(ExtractRefined, StoppedWhileRefiningGivesTheFirstTree) {
   const Model model = test::paper_model("m2");

@@ -13,7 +13,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
+constexpr double k_unbounded = std::numeric_limits<double>::infinity();
 
 std::vector<PrimitiveIndex> first_indices(std::size_t count) {
   std::vector<PrimitiveIndex> all(count);
@@ -28,7 +28,7 @@ std::vector<AlignedBox> random_boxes(std::size_t count, RandomStream& random) {
     const Eigen::Vector3d middle = test::random_within(10, random);
     const Eigen::Vector3d half = Eigen::Vector3d::Constant(random.uniform(0, 2));
     boxes.emplace_back(middle - half, middle + half);
-    if (random.chance(0.05)) boxes.back().max().x() = k_infinity;
+    if (random.chance(0.05)) boxes.back().max().x() = k_unbounded;
   }
   return boxes;
 }
@@ -81,7 +81,7 @@ TEST(Regions, AreCutAcrossTheAxisThatHelps) {
 TEST(Regions, OfBoxesThatCannotBePartedAreFew) {
   const std::vector<AlignedBox> same(50, AlignedBox(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)));
   EXPECT_EQ(cut_into_regions(first_indices(50), same, 10).size(), 1U);
-  const Eigen::Vector3d infinite = Eigen::Vector3d::Constant(k_infinity);
+  const Eigen::Vector3d infinite = Eigen::Vector3d::Constant(k_unbounded);
   const std::vector<AlignedBox> everywhere(50, AlignedBox(-infinite, infinite));
   EXPECT_EQ(cut_into_regions(first_indices(50), everywhere, 10).size(), 1U);
   EXPECT_EQ(cut_into_regions({}, everywhere, 10).size(), 1U);

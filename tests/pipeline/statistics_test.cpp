@@ -29,7 +29,7 @@ TEST(StatisticsJson, HasEveryKeyOfTheContract) {
     EXPECT_GE(json["seconds"][key].get<double>(), 0.0) << key;
   }
   for (const char* key : {"generations", "evaluations"}) EXPECT_TRUE(json["search"].contains(key)) << key;
-  for (const char* key : {"size", "leaves", "depth"}) EXPECT_TRUE(json["tree"].contains(key)) << key;
+  for (const char* key : {"size", "leaves", "depth", "levels"}) EXPECT_TRUE(json["tree"].contains(key)) << key;
   for (const char* key : {"objective", "rms_distance", "p95_distance", "rms_angle_deg", "p95_angle_deg"}) {
     EXPECT_TRUE(json["fit"][key].is_number()) << key;
   }
@@ -50,6 +50,22 @@ TEST(StatisticsJson, NamesTheWaysOfTheMerge) {
   EXPECT_EQ(json["merge"]["ways"],
             (std::vector<std::string>{"single", "paper", "dominance", "largest_common_subtree", "joint", "search"}));
   EXPECT_EQ(json["warnings"], (std::vector<std::string>{"a \"quoted\" warning"}));
+}
+
+TEST(StatisticsJson, TellsTheStepsToTheTree) {
+  const auto names = [](const nlohmann::json& json) {
+    std::vector<std::string> result;
+    for (const nlohmann::json& step : json["steps"]) result.push_back(step["name"]);
+    return result;
+  };
+  const Extraction by_cells = extraction_of("m0");
+  const nlohmann::json cells = nlohmann::json::parse(to_json(by_cells.statistics));
+  EXPECT_EQ(names(cells), (std::vector<std::string>{"decomposition", "simplification"}));
+  EXPECT_EQ(cells["steps"].back()["size"], by_cells.tree.size());
+  EXPECT_EQ(cells["cells"]["least_leaves"], leaf_count(by_cells.tree));
+  const Extraction by_partitions = extraction_of("m0", {.strategy = Strategy::partition});
+  const nlohmann::json partitions = nlohmann::json::parse(to_json(by_partitions.statistics));
+  EXPECT_EQ(names(partitions), (std::vector<std::string>{"merged partitions", "simplification"}));
 }
 
 TEST(Statistics, MeasureTheTree) {

@@ -13,6 +13,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/model.hpp"
+#include "support/flange.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {
@@ -183,6 +184,40 @@ TEST(OpenScad, EvaluatesSimpleNumbersAndModules) {
   EXPECT_EQ(model.primitives[2].id, "boss_2");
 }
 
+TEST(OpenScad, UnitesTheTurnsOfALoop) {
+  const Model row = parse_openscad(R"(
+    step = [2, 0, 0];
+    difference() {
+      cube([9, 4, 4]);
+      for (i = [0 : 4 - 1]) translate(i * step + [1, 2, 0]) bore();
+    }
+    module bore() { half = 1 / 2; cylinder(h = 9, r = half, center = true); })");
+  EXPECT_EQ(to_text(*row.tree, row.primitives), "cube - (bore | bore_2 | bore_3 | bore_4)");
+  EXPECT_EQ(row.primitives[4].pose.position, Vector3d(7, 2, 0));
+  const Model grid = parse_openscad("for (i = [0:2], j = [i:-2:-1]) translate([i, j, 0]) sphere(.1);");
+  ASSERT_EQ(grid.primitives.size(), 5U) << "the ranges of later variables know the earlier ones";
+  EXPECT_EQ(grid.primitives[4].pose.position, Vector3d(2, 0, 0));
+  EXPECT_EQ(parse_openscad("for (i = [0:.1:.3]) translate([i, 0, 0]) sphere(1);").primitives.size(), 4U);
+  EXPECT_EQ(
+      parse_openscad("for (at = [[1, 2, 3], [4, 5, 6]]) translate(-at / 2) sphere(1);").primitives.back().pose.position,
+      Vector3d(-2, -2.5, -3));
+  const Model alone = parse_openscad("sphere(1); difference() { for (i = [1 : -1 : 2]) sphere(3); sphere(2); }");
+  EXPECT_EQ(to_text(*alone.tree, alone.primitives), "sphere") << "a loop without a turn is nothing";
+}
+
+TEST(OpenScad, RefusesLoopsThatAreNone) {
+  EXPECT_EQ(refusal("for (i = [3 : 0]) sphere(i);"),
+            "part.scad: line 1, column 10: expected a range that rises, found one that falls; give its step: [3 : -1 : "
+            "0], or [0 : 1 : -1] for none");
+  EXPECT_NE(refusal("for (i = 3) sphere(i);").find("expected a list or a range like [0 : 3], found 3"),
+            std::string::npos);
+  EXPECT_NE(refusal("for ([0 : 3]) sphere(1);").find("expected a variable and its values"), std::string::npos);
+  EXPECT_NE(refusal("for (i = [0 : 0 : 3]) sphere(1);").find("a step other than 0"), std::string::npos);
+  EXPECT_NE(refusal("sphere([0 : 3]);").find("expected a number, found a range"), std::string::npos);
+  EXPECT_NE(refusal("cube([1, 2] + [1]);").find("expected a list of 2, found a list of 1"), std::string::npos);
+  EXPECT_NE(refusal("cube([1, 2, 3] * [1, 2, 3]);").find("expected a number, found a list of 3"), std::string::npos);
+}
+
 TEST(OpenScad, SaysWhereAndWhatWasExpected) {
   EXPECT_EQ(refusal("cube(1)"),
             "part.scad: line 1, column 8: expected a solid, an operation or an assignment, found the end of the file");
@@ -190,8 +225,8 @@ TEST(OpenScad, SaysWhereAndWhatWasExpected) {
   EXPECT_EQ(refusal("cube(size = tall);"),
             "part.scad: line 1, column 13: expected a variable that has a value here, found 'tall'; flatten the file "
             "first: openscad -o flat.csg FILE.scad");
-  EXPECT_EQ(refusal("for (i = [0:3]) cube(i);"),
-            "part.scad: line 1, column 1: expected a solid or an operation, found 'for'; flatten the file first: "
+  EXPECT_EQ(refusal("if (true) cube(1);"),
+            "part.scad: line 1, column 1: expected a solid or an operation, found 'if'; flatten the file first: "
             "openscad -o flat.csg FILE.scad");
   EXPECT_NE(refusal("/* \xc3\xa4 */ hull() cube(1);").find("column 9: expected a solid, a transformation"),
             std::string::npos);
@@ -217,8 +252,8 @@ std::string repeated(const std::string& text, std::size_t count) {
 
 TEST(OpenScad, HostileNestingDoesNotOverflowTheStack) {
   constexpr std::size_t k_many = 300'000;
-  for (const char* opening :
-       {"union(){", "{", "translate([0,0,1])", "#", "*", "cube(", "cube([", "x=(", "x=-", "x=!"}) {
+  for (const char* opening : {"union(){", "{", "translate([0,0,1])", "for(i=[0:1])", "#", "*", "cube(", "cube([",
+                              "cube([0:", "x=(", "x=-", "x=!"}) {
     EXPECT_NE(refusal(repeated(opening, k_many)).find("expected"), std::string::npos) << opening;
   }
   EXPECT_NE(refusal("module a() { a(); } a();").find("calls in each other"), std::string::npos);
@@ -228,6 +263,12 @@ TEST(OpenScad, HostileNestingDoesNotOverflowTheStack) {
   }
   EXPECT_NE(refusal(doubling + "m59();").find("in all"), std::string::npos);
   EXPECT_NE(refusal("a0 = [1, 2]; a1 = [a0, a0]; cube(1);").find("the list 'a0'"), std::string::npos);
+  EXPECT_NE(refusal("a0 = [1, 2]; a1 = [a0 + a0, 1 * a0]; cube(1);").find("found a list"), std::string::npos);
+  EXPECT_NE(refusal("for (i = [0 : 1e-300 : 1]) ;").find("turns of a loop"), std::string::npos);
+  EXPECT_NE(refusal("for (i = [1 : 2000], j = [1 : 2000]) ;").find("in all"), std::string::npos);
+  std::string many = "for (i = [0 : 0]";
+  for (int i = 0; i < 2000; ++i) many += ", i = [0 : 0]";
+  EXPECT_NE(refusal(many + ") cube(1);").find("calls in each other"), std::string::npos);
   const Model sum = parse_openscad("cube(" + repeated("1+", k_many) + "1);");
   EXPECT_EQ(std::get<Box>(sum.primitives[0].shape).size.x(), k_many + 1.0) << "what is only long is read";
   EXPECT_EQ(parse_openscad(repeated("sphere(1);", 10'000)).primitives.size(), 1U);
@@ -237,7 +278,7 @@ TEST(OpenScad, EveryBeginningOfAFileIsReadOrRefusedWithItsPlace) {
   const std::string text = R"(w = [1, 2.5e0, .5]; // size
 module m() { rotate([0, 90, 0]) difference() { cube(w, center = true); sphere(d = w2 * 2); } }
 w2 = -(3 - 4) % 5; /* c */ m(); polyhedron(points = [[0,0,0], [1,0,0], [0,1,0], [0,0,1]],
-faces = [[0,1,2], [0,3,1], [0,2,3], [1,3,2]]); color("a\"b") multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0]]) cube(1);)";
+faces = [[0,1,2], [0,3,1], [0,2,3], [1,3,2]]); for (i = [0:1:2], j = [1,2]) color("a\"b") multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0]]) cube(1);)";
   EXPECT_EQ(refusal(text), "accepted");
   for (std::size_t length = 0; length < text.size(); ++length) {
     const std::string answer = refusal(text.substr(0, length));
@@ -249,7 +290,7 @@ RC_GTEST_PROP(OpenScadProperty, AnyChangedBytesAreReadOrRefused, (std::uint64_t 
   RandomStream random(seed);
   std::string text =
       "a = 2; difference() { translate([a, 0, 1]) cube([1, 2, a * 3], center = true); "
-      "rotate(a = 30, v = [1, 0, 0]) cylinder(h = 2, r1 = 1, r2 = 0.5, $fn = 30); }";
+      "for (i = [0:2]) rotate(a = 30 * i, v = [1, 0, 0]) cylinder(h = 2, r1 = 1, r2 = 0.5, $fn = 30); }";
   for (int change = 0; change < 4; ++change) {
     const std::string alphabet = "(){}[];,=+-*/%#!\"1a. \n\xc3";
     text[random.below(text.size())] = alphabet[random.below(alphabet.size())];
@@ -267,9 +308,10 @@ bool has_openscad() {
 }
 
 /// Where both models say the same, but for points so near to a surface that six digits decide.
-void expect_same_solid(const Model& expected, const Model& found, RandomStream& random) {
+void expect_same_solid(const Model& expected, const Model& found, RandomStream& random,
+                       const Vector3d& centre = Vector3d::Zero(), double reach = 2.5) {
   Points points;
-  for (int i = 0; i < 4000; ++i) points.push_back(test::random_within(2.5, random));
+  for (int i = 0; i < 4000; ++i) points.push_back(centre + test::random_within(reach, random));
   const std::vector<double> left = implicit_value(*expected.tree, expected.primitives, points);
   const std::vector<double> right = implicit_value(*found.tree, found.primitives, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -327,6 +369,38 @@ TEST(OpenScadRoundTrip, OurScriptsAreReadAsOpenScadFlattensThem) {
   }
   std::filesystem::remove(scad);
   std::filesystem::remove(csg);
+}
+
+/// A box with bores in three columns and four rows.
+Model bored_plate() {
+  Model model{.primitives = {{.id = "plate", .shape = Box{.size = {4, 5, 1}}}}};
+  CsgTree tree = CsgTree::leaf(0);
+  for (int i = 0; i < 12; ++i) {
+    const Vector3d place(i % 3 - 1.1, i / 3 - 1.5, 0);
+    model.primitives.push_back({.id = "bore " + std::to_string(i),
+                                .shape = Cylinder{.radius = 0.4, .height = 2},
+                                .pose = {.position = place}});
+    tree = subtract(tree, CsgTree::leaf(static_cast<PrimitiveIndex>(i + 1)));
+  }
+  model.tree = tree;
+  return model;
+}
+
+TEST(OpenScadRoundTrip, LoopsKeepTheirSolids) {
+  RandomStream random(1);
+  const Model flange = test::flange();
+  const std::string circle = to_openscad(*flange.tree, flange.primitives);
+  ASSERT_NE(circle.find("for (i = [0 : "), std::string::npos);
+  ASSERT_NE(circle.find("rotate(a = i * "), std::string::npos);
+  const Model flange_again = parse_openscad(circle);
+  expect_same_solid(flange, flange_again, random, {30, 20, 5}, 12);
+  EXPECT_EQ(flange_again.primitives.size(), flange.primitives.size());
+  const Model plate = bored_plate();
+  const std::string grid = to_openscad(*plate.tree, plate.primitives);
+  ASSERT_NE(grid.find(", j = [0 : "), std::string::npos);
+  const Model plate_again = parse_openscad(grid);
+  expect_same_solid(plate, plate_again, random);
+  EXPECT_EQ(leaf_count(*plate_again.tree), leaf_count(*plate.tree));
 }
 
 TEST(OpenScadRoundTrip, TheShippedModelsKeepTheirSolids) {

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,6 +72,43 @@ Part plate_with_holes() {
 
 TEST(ChooseSolids, FindsAPlateWithHoles) {
   expect_recovered(plate_with_holes(), 4);
+}
+
+/// So many holes along each side.
+Part plate_with_rows_of_holes(int count) {
+  const double length = count;
+  PrimitiveSet solids{test::placed("plate", Box{{length, length, 0.6}}, {0.5 * length, 0.5 * length, 0})};
+  std::string formula = "plate";
+  for (int x = 0; x < count; ++x) {
+    for (int y = 0; y < count; ++y) {
+      solids.push_back(
+          test::placed(fmt::format("hole_{}_{}", x, y).c_str(), Cylinder{0.3, 1.2}, {x + 0.5, y + 0.5, 0}));
+      formula += " - " + solids.back().id;
+    }
+  }
+  Part part{.solids = std::move(solids), .tree = {}, .cloud = {}, .surfaces = {}};
+  part.tree = parse_tree(formula, part.solids);
+  const auto points = static_cast<std::size_t>(300 * count * count);
+  part.cloud = sample_surface(part.tree, part.solids, {.count = points, .noise = 0.002, .seed = 3});
+  part.surfaces = test::known_surfaces(part.solids, part.cloud, 0.008, 30);
+  return part;
+}
+
+TEST(ChooseSolids, FindsHundredsOfHoles) {
+  const Part part = plate_with_rows_of_holes(16);
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces);
+  EXPECT_EQ(leaf_count(choice.tree), 257U);
+  EXPECT_LT(choice.disagreement, 0.03);
+  EXPECT_TRUE(choice.warnings.empty());
+}
+
+TEST(ChooseSolids, WarnsWhereItsGuardEndsTheChoice) {
+  const Part part = plate_with_rows_of_holes(3);
+  SolidOptions options = quick();
+  options.most_rules = 5;
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, options);
+  ASSERT_EQ(choice.warnings.size(), 1U);
+  EXPECT_NE(choice.warnings.front().find("more than 5 parts"), std::string::npos) << choice.warnings.front();
 }
 
 TEST(ChooseSolids, FindsABracketOfTwoBoxes) {
@@ -220,7 +258,7 @@ TEST(ChooseSolids, NeedsNoSurfaceWhereAllIsKnown) {
   const SolidChoice choice = choose_beside(part, part.solids);
   EXPECT_EQ(choice.solids.size(), 4U);
   EXPECT_EQ(leaf_count(choice.tree), 4U);
-  EXPECT_LT(choice.disagreement, 0.01);
+  EXPECT_LT(choice.disagreement, 0.03);
 }
 
 TEST(ChooseSolids, GivesNewSolidsIdsOfTheirOwn) {

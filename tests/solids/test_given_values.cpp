@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_tolerance = 0.02;
+constexpr double k_search_tolerance = 0.02;
 
 /// Points of a surface, with it as they were found.
 struct Found {
@@ -57,7 +57,7 @@ Found turned_square(double edge, double degrees) {
 }
 
 GivenSurfaces take(const Found& found, const RegularityOptions& options) {
-  return take_given_values(found.cloud, found.surfaces, options, k_tolerance);
+  return take_given_values(found.cloud, found.surfaces, options, k_search_tolerance);
 }
 
 TEST(TakeGivenValues, TakesTheNearestRadiusWithinTheTolerance) {

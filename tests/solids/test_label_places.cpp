@@ -44,6 +44,17 @@ TEST(LabelPlaces, KnowsThinWallsAndHoles) {
   EXPECT_GT(disagreement(parse_tree("block | wall", k_solids), k_solids, places), 0.05);
 }
 
+TEST(LabelPlaces, TellsTheWorstPlace) {
+  const LabelledPlaces places = places_of(tree(), 0.005);
+  // On the axis of the hole, and in the wall.
+  const Eigen::Vector3d unbored = worst_place(parse_tree("block | wall", k_solids), k_solids, places);
+  EXPECT_LT((unbored - Eigen::Vector3d(0, -0.5, unbored.z())).norm(), 0.5);
+  EXPECT_LT(std::abs(unbored.z()), 0.5);
+  const Eigen::Vector3d wanting = worst_place(parse_tree("block - hole", k_solids), k_solids, places);
+  EXPECT_LT(std::abs(wanting.y() - 1), 0.075);
+  EXPECT_GT(wanting.z(), 0.5);
+}
+
 TEST(LabelPlaces, WeighsTheVolumeOfTheSolidAsOne) {
   const LabelledPlaces places = places_of(CsgTree::leaf(0), 0.0);
   // Nothing in the solid: its volume, and half of what is beside its surface, is wrong.

@@ -57,6 +57,62 @@ TEST(Regularise, LeavesWhatIsFarFromRegular) {
   }
 }
 
+/// Six bores with counterbores around a hub of another radius, all off by some: they move together.
+TEST(Regularise, PutsAxesOfEqualCylindersIntoCircles) {
+  std::vector<DetectedSurface> surfaces{with_points(test::plane_at({0, 0, 1}, k_z), 1000),
+                                        with_points(cylinder_at({2, 3, 0}, k_z, 1), 900)};
+  for (int k = 0; k < 6; ++k) {
+    const double angle = k * std::numbers::pi / 3;
+    const double off = 0.2 * k_tolerance * (k % 3 - 1);
+    const Eigen::Vector3d place(2 + (2 + off) * std::cos(angle), 3 + (2 - off) * std::sin(angle), 0.5 * k);
+    surfaces.push_back(with_points(cylinder_at(place, k_z, 0.2), 50));
+    surfaces.push_back(with_points(cylinder_at(place, k_z, 0.3), 30));
+  }
+  const RegularSurfaces regular = regularise(surfaces, k_tolerance);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Eigen::Vector3d bore = regular.surfaces[2 + 2 * k].surface.position;
+    const Eigen::Vector3d counterbore = regular.surfaces[3 + 2 * k].surface.position;
+    const double angle = static_cast<double>(k) * std::numbers::pi / 3;
+    const double radius = std::hypot(bore.x() - 2, bore.y() - 3);
+    EXPECT_NEAR(bore.x(), 2 + radius * std::cos(angle), 1e-12);
+    EXPECT_NEAR(bore.y(), 3 + radius * std::sin(angle), 1e-12);
+    EXPECT_EQ(bore.z(), 0.5 * static_cast<double>(k));
+    EXPECT_EQ(bore, counterbore);
+    EXPECT_LE((bore - surfaces[2 + 2 * k].surface.position).norm(), k_tolerance);
+  }
+  EXPECT_EQ(regular.surfaces[1].surface.position, surfaces[1].surface.position) << "the hub is where it was";
+  const auto is_arranged = [](const Snap& snap) { return snap.kind == RegularityKind::arrangement; };
+  EXPECT_GE(std::ranges::count_if(regular.snaps, is_arranged), 8);
+}
+
+/// A grid turned as its plate is, one bore of which is known: that is not moved, and is in no grid.
+TEST(Regularise, PutsAxesIntoGridsAlongThePlate) {
+  const Eigen::Vector3d side = turned(k_x, k_z, 31);
+  const Eigen::Vector3d along = k_z.cross(side);
+  std::vector<DetectedSurface> surfaces{with_points(test::plane_at({9, 0, 0}, side), 1000)};
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double off = 0.3 * k_tolerance * ((i + j) % 3 - 1);
+      surfaces.push_back(with_points(cylinder_at((0.5 * i + off) * side + (0.4 * j - off) * along, k_z, 0.1), 50));
+    }
+  }
+  surfaces.push_back(with_points(cylinder_at(2.002 * side, k_z, 0.1), 50));
+  std::vector<FixedValues> fixed(surfaces.size());
+  fixed.back().position = true;
+  const RegularSurfaces regular = regularise(surfaces, k_tolerance, 1.0, fixed);
+  EXPECT_EQ(regular.surfaces.back().surface.position, surfaces.back().surface.position);
+  const auto place = [&](std::size_t i, std::size_t j) -> Eigen::Vector3d {
+    return regular.surfaces[1 + 3 * i + j].surface.position;
+  };
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_NEAR(side.dot(place(i, j)), side.dot(place(i, 0)), 1e-12);
+      EXPECT_NEAR(along.dot(place(i, j)), along.dot(place(0, j)), 1e-12);
+    }
+  }
+  EXPECT_NEAR(side.dot(place(3, 0) - place(2, 0)), side.dot(place(1, 0) - place(0, 0)), 1e-12);
+}
+
 TEST(Regularise, LaysDirectionsAlongAxesOfCoordinatesWhereThatMovesNothingFar) {
   // Two units apart: 0.2 degrees move one of them by 0.007.
   const Eigen::Vector3d up = turned(k_z, k_x, 0.2);

@@ -102,7 +102,7 @@ TEST(Family, GridOfTwentyIsTheModelOfThePaper) {
 }
 
 TEST(Family, RandomHasCliquesOfTheSizeAskedFor) {
-  for (std::size_t size = 2; size <= 12; ++size) {
+  for (std::size_t size = 2; size <= 20; ++size) {
     const Model model = make_family(Family::random, {.primitives = 10 * size, .clique_size = size});
     const std::vector<std::size_t> histogram = clique_histogram(maximal_cliques(overlaps(model)));
     ASSERT_EQ(histogram.size(), size);
@@ -160,7 +160,7 @@ TEST(Family, RefusesBadOptionsByName) {
   };
   EXPECT_EQ(refused({.primitives = 0}), "primitives");
   EXPECT_EQ(refused({.clique_size = 1}), "clique_size");
-  EXPECT_EQ(refused({.clique_size = 13}), "clique_size");
+  EXPECT_EQ(refused({.clique_size = 21}), "clique_size");
   EXPECT_EQ(refused({.clique_size = 4, .least_clique_size = 5}), "least_clique_size");
   EXPECT_EQ(refused({.levels = 0}), "levels");
 }

@@ -50,10 +50,23 @@ TEST(CsgTree, StoresChildrenBeforeTheirParent) {
   EXPECT_EQ(CsgTree(tree.subtree(tree.second_child(tree.root()))), complement(c()));
 }
 
+TEST(CsgTree, LevelsAreThoseOfOperationsWithManyOperands) {
+  EXPECT_EQ(levels(a()), 0U);
+  EXPECT_EQ(levels(unite(unite(a(), b()), unite(b(), c()))), 1U);
+  EXPECT_EQ(levels(intersect(a(), intersect(b(), c()))), 1U);
+  EXPECT_EQ(levels(intersect(a(), unite(b(), c()))), 2U);
+  EXPECT_EQ(levels(subtract(subtract(a(), b()), c())), 1U);
+  EXPECT_EQ(levels(subtract(a(), unite(b(), c()))), 1U);
+  EXPECT_EQ(levels(subtract(unite(a(), b()), c())), 2U);
+  EXPECT_EQ(levels(subtract(a(), subtract(b(), c()))), 2U);
+  EXPECT_EQ(levels(complement(complement(a()))), 2U);
+}
+
 TEST(CsgTree, MeasuresItself) {
   const CsgTree tree = subtract(unite(c(), a()), complement(intersect(c(), CsgTree::full())));
   EXPECT_EQ(depth(tree), 3U);
   EXPECT_EQ(depth(a()), 0U);
+  EXPECT_EQ(levels(tree), 3U);
   EXPECT_EQ(leaf_count(tree), 3U);
   EXPECT_EQ(primitives_of(tree), (std::vector<PrimitiveIndex>{0, 2}));
 }

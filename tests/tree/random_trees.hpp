@@ -24,6 +24,13 @@ inline PrimitiveSet sphere_row(std::size_t count) {
   return primitives;
 }
 
+/// The same, with ids a to z.
+inline PrimitiveSet letters() {
+  PrimitiveSet primitives = sphere_row(26);
+  for (std::size_t i = 0; i < primitives.size(); ++i) primitives[i].id = std::string(1, static_cast<char>('a' + i));
+  return primitives;
+}
+
 /// Runs a small stack program: 0 .. 3 push a leaf, 4 a constant, 5 .. 9 apply an operation. What is left is joined.
 inline CsgTree tree_of_program(const std::vector<std::pair<int, std::uint32_t>>& program) {
   std::vector<CsgTree> stack;

@@ -11,14 +11,8 @@
 namespace cloud2csg {
 namespace {
 
-PrimitiveSet letters() {
-  PrimitiveSet primitives = test::sphere_row(6);
-  for (std::size_t i = 0; i < primitives.size(); ++i) primitives[i].id = std::string(1, static_cast<char>('a' + i));
-  return primitives;
-}
-
 std::string simplified(const std::string& text) {
-  return to_text(simplify(parse_tree(text, letters())), letters());
+  return to_text(simplify(parse_tree(text, test::letters())), test::letters());
 }
 
 struct Rule {

@@ -82,7 +82,7 @@ export interface Statistics {
   primitives: number;
   noise: number;
   seconds: Record<string, number>;
-  tree: { size: number; leaves: number; depth: number };
+  tree: { size: number; leaves: number; depth: number; levels: number };
   fit: { objective: number; rms_distance: number; p95_distance: number; rms_angle_deg: number; p95_angle_deg: number };
   finding: Record<string, number | boolean> | null;
   cells: Record<string, unknown> | null;

@@ -41,7 +41,7 @@ function figuresOf(statistics: Statistics): [string, string][] {
     ["rms angle", `${figures(statistics.fit.rms_angle_deg)}°`],
     ["nodes", count(statistics.tree.size)],
     ["leaves", count(statistics.tree.leaves)],
-    ["depth", count(statistics.tree.depth)],
+    ["levels", count(statistics.tree.levels)],
     ["strategy", statistics.strategy],
     ["seed", String(statistics.seed)],
     ["threads", String(statistics.threads)],
@@ -67,6 +67,7 @@ const k_snapped: Record<string, string> = {
   offset: "planes made coplanar",
   axis: "axes made coaxial",
   radius: "radii made equal",
+  arrangement: "axes put into rows, grids or circles",
   "given direction": "directions made one of those given",
   "given radius": "radii made one of those given",
 };

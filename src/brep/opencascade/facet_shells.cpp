@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "brep/opencascade/points.hpp"
 
 namespace cloud2csg::brep {
 namespace {
@@ -25,10 +26,6 @@ using EdgeKey = std::pair<std::uint32_t, std::uint32_t>;  ///< smaller corner fi
 
 EdgeKey key_of(std::uint32_t from, std::uint32_t to) {
   return {std::min(from, to), std::max(from, to)};
-}
-
-gp_Pnt point_of(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 /// Twice the face's area along its normal.

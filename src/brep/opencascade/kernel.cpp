@@ -15,6 +15,7 @@
 #include "brep/opencascade/evaluate.hpp"
 #include "brep/opencascade/face_points.hpp"
 #include "brep/opencascade/make_body.hpp"
+#include "brep/opencascade/tessellate.hpp"
 #include "brep/opencascade/write_files.hpp"
 
 namespace cloud2csg::brep {
@@ -121,6 +122,15 @@ void write_brep(const Bodies& bodies, const KernelJob& job, KernelResult& result
   write_brep_file(job.file, shape);
 }
 
+void make_mesh(const Bodies& bodies, const KernelJob& job, KernelResult& result) {
+  const TopoDS_Shape shape = shape_of(bodies);
+  result.is_valid = is_valid(shape);
+  result.volume = std::pow(job.frame.scale, 3) * volume_of(shape);
+  result.solids = bodies.size();
+  result.faces = count_faces(shape);
+  result.mesh = tessellate(bodies, job.mesh_deviation);
+}
+
 /// Returns whether all is well, or could not be better with spheres in another form, or faces that are not joined.
 bool run_job(const KernelJob& job, const KernelHost& host, SphereForm spheres, KernelResult& result) {
   Evaluation evaluation = evaluate(job, host, spheres);
@@ -134,7 +144,11 @@ bool run_job(const KernelJob& job, const KernelHost& host, SphereForm spheres, K
     return write_step(joined_faces(bodies), job, host, result) ||
            (spheres == SphereForm::split && write_step(bodies, job, host, result));
   }
-  write_brep(bodies, job, result);
+  if (job.format == KernelFormat::mesh) {
+    make_mesh(joined_faces(bodies), job, result);
+  } else {
+    write_brep(bodies, job, result);
+  }
   return true;
 }
 

@@ -16,16 +16,13 @@
 #include <array>
 #include <gp_Ax3.hxx>
 
+#include "brep/opencascade/points.hpp"
 #include "cloud2csg/geometry.hpp"
 
 namespace cloud2csg::brep {
 namespace {
 
 using Corners = std::array<std::size_t, 3>;
-
-gp_Pnt point_of(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 gp_Dir direction_of(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};

@@ -5,7 +5,7 @@
 
 #include "base/temporary_file.hpp"
 
-namespace cloud2csg::brep {
+namespace cloud2csg {
 
 /// A file in the system's folder for temporary files, as long as this lives.
 class ScratchFile {
@@ -18,4 +18,4 @@ class ScratchFile {
   std::optional<TemporaryFile> file_ = {};
 };
 
-}  // namespace cloud2csg::brep
+}  // namespace cloud2csg

@@ -1,8 +1,8 @@
-#include "brep/scratch_file.hpp"
+#include "base/scratch_file.hpp"
 
 #include <system_error>
 
-namespace cloud2csg::brep {
+namespace cloud2csg {
 
 ScratchFile::ScratchFile() {
   std::error_code error;
@@ -15,4 +15,4 @@ ScratchFile::ScratchFile() {
   }
 }
 
-}  // namespace cloud2csg::brep
+}  // namespace cloud2csg

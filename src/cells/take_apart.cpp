@@ -1,0 +1,182 @@
+#include "cells/take_apart.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <ranges>
+#include <unordered_map>
+#include <utility>
+
+#include "cells/known_cells.hpp"
+#include "cloud2csg/simplify.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// Splits off what is wholly in, or wholly out.
+class Peeler {
+ public:
+  Peeler(std::vector<KnownCell> cells, std::size_t primitives)
+      : cells_(std::move(cells)), cells_of_(primitives), in_(primitives), out_(primitives) {
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      for (const PrimitiveIndex p : cells_[c].cell) {
+        cells_of_[p].push_back(c);
+        ++(cells_[c].is_in ? in_ : out_)[p];
+      }
+    }
+  }
+
+  /// What is split off first stands outermost. Differences first.
+  [[nodiscard]] std::vector<PeeledRound> peel() {
+    std::vector<PeeledRound> rounds;
+    bool are_in = false;
+    for (int idle = 0; idle < 2; are_in = !are_in) {
+      PeeledRound round{.are_in = are_in, .primitives = {}};
+      for (const PrimitiveIndex p : candidates(are_in)) {
+        // One whose cells have all been decided meanwhile is not needed.
+        if ((are_in ? in_ : out_)[p] == 0) continue;
+        round.primitives.push_back(p);
+        close_cells_of(p);
+      }
+      std::ranges::sort(round.primitives);
+      idle = round.primitives.empty() ? idle + 1 : 0;
+      if (!round.primitives.empty()) rounds.push_back(std::move(round));
+    }
+    return rounds;
+  }
+
+  [[nodiscard]] const std::vector<KnownCell>& cells() const { return cells_; }
+
+ private:
+  /// Those with most cells first: they may decide those of others.
+  [[nodiscard]] std::vector<PrimitiveIndex> candidates(bool are_in) const {
+    const std::vector<std::size_t>& right = are_in ? in_ : out_;
+    const std::vector<std::size_t>& wrong = are_in ? out_ : in_;
+    std::vector<PrimitiveIndex> found;
+    for (PrimitiveIndex p = 0; p < cells_of_.size(); ++p) {
+      if (right[p] > 0 && wrong[p] == 0) found.push_back(p);
+    }
+    std::ranges::stable_sort(found, std::greater<>(), [&right](PrimitiveIndex p) { return right[p]; });
+    return found;
+  }
+
+  void close_cells_of(PrimitiveIndex p) {
+    for (const std::size_t c : cells_of_[p]) {
+      KnownCell& known = cells_[c];
+      if (!known.is_open) continue;
+      known.is_open = false;
+      for (const PrimitiveIndex other : known.cell) --(known.is_in ? in_ : out_)[other];
+    }
+  }
+
+  std::vector<KnownCell> cells_;
+  std::vector<std::vector<std::size_t>> cells_of_;  // by primitive
+  std::vector<std::size_t> in_, out_;               // by primitive: open cells with it
+};
+
+/// The open cells over the primitives of a core.
+class CoreFinder {
+ public:
+  CoreFinder(const std::vector<KnownCell>& cells, std::size_t primitives) : cells_(cells), leader_(primitives) {
+    std::iota(leader_.begin(), leader_.end(), PrimitiveIndex{0});
+    for_each_open([this](const KnownCell& known) {
+      for (const PrimitiveIndex p : known.cell) leader_[leader_of(p)] = leader_of(known.cell.front());
+    });
+  }
+
+  /// Ascending by their first primitives; those of too many have no rows.
+  [[nodiscard]] std::vector<Core> cores() {
+    std::vector<bool> is_used(leader_.size(), false);
+    for_each_open([&](const KnownCell& known) {
+      for (const PrimitiveIndex p : known.cell) is_used[p] = true;
+    });
+    std::vector<Core> cores;
+    std::unordered_map<PrimitiveIndex, std::size_t> place;
+    for (PrimitiveIndex p = 0; p < leader_.size(); ++p) {
+      if (!is_used[p]) continue;
+      const auto [found, is_new] = place.try_emplace(leader_of(p), cores.size());
+      if (is_new) cores.push_back({.primitives = {}, .rows = {.on = {}, .off = {0}}});
+      cores[found->second].primitives.push_back(p);
+    }
+    for_each_open([&](const KnownCell& known) {
+      Core& core = cores[place.at(leader_of(known.cell.front()))];
+      if (core.primitives.size() > k_most_variables) return;
+      (known.is_in ? core.rows.on : core.rows.off).push_back(assignment_of(known.cell, core.primitives));
+    });
+    return cores;
+  }
+
+ private:
+  template <class Visit>
+  void for_each_open(const Visit& visit) const {
+    for (const KnownCell& known : cells_) {
+      if (known.is_open && !known.cell.empty()) visit(known);
+    }
+  }
+
+  PrimitiveIndex leader_of(PrimitiveIndex p) {
+    while (leader_[p] != p) p = leader_[p] = leader_[leader_[p]];
+    return p;
+  }
+
+  const std::vector<KnownCell>& cells_;
+  std::vector<PrimitiveIndex> leader_;
+};
+
+bool is_too_large(const Core& core) {
+  return core.primitives.size() > k_most_variables;
+}
+
+std::vector<CsgTree> leaves(const std::vector<PrimitiveIndex>& primitives) {
+  std::vector<CsgTree> trees;
+  trees.reserve(primitives.size());
+  for (const PrimitiveIndex p : primitives) trees.push_back(CsgTree::leaf(p));
+  return trees;
+}
+
+}  // namespace
+
+Assignment assignment_of(const Cell& cell, std::span<const PrimitiveIndex> primitives) {
+  Assignment row = 0;
+  for (std::size_t place = 0; place < primitives.size(); ++place) {
+    if (std::ranges::binary_search(cell, primitives[place])) row |= Assignment{1} << place;
+  }
+  return row;
+}
+
+std::optional<TakenApart> take_apart(const CellComplex& complex, const CellLabels& labels, double least_evidence) {
+  const std::size_t primitives = complex.points_of_primitive.size();
+  KnownCells known(complex, labels, least_evidence);
+  TakenApart parts{.is_inverted = labels.is_in.front(),
+                   .essential = known.essential(),
+                   .are_all_essential = known.are_all_essential(),
+                   .is_outside_sure = labels.evidence.front() >= least_evidence};
+  Peeler peeler(known.take_sorted(), primitives);
+  parts.rounds = peeler.peel();
+  parts.cores = CoreFinder(peeler.cells(), primitives).cores();
+  if (std::ranges::any_of(parts.cores, is_too_large)) return std::nullopt;
+  return parts;
+}
+
+std::optional<TakenApart> take_apart_only(const CellComplex& complex, const CellLabels& labels, double least_evidence) {
+  std::vector<KnownCell> known;
+  for (CellIndex c = 0; c < complex.cells.size(); ++c) {
+    if (labels.evidence[c] < least_evidence) continue;
+    known.push_back({complex.cells[c], labels.is_in[c] != labels.is_in.front()});
+  }
+  TakenApart parts{.is_inverted = labels.is_in.front(),
+                   .cores = CoreFinder(known, complex.points_of_primitive.size()).cores(),
+                   .is_outside_sure = labels.evidence.front() >= least_evidence};
+  if (std::ranges::any_of(parts.cores, is_too_large)) return std::nullopt;
+  return parts;
+}
+
+CsgTree put_together(const TakenApart& parts, std::span<const CsgTree> of_cores) {
+  CsgTree tree = unite_all(of_cores);
+  for (const auto& round : std::views::reverse(parts.rounds)) {
+    const CsgTree split = unite_all(leaves(round.primitives));
+    tree = round.are_in ? unite(tree, split) : subtract(tree, split);
+  }
+  return simplify(parts.is_inverted ? complement(tree) : tree);
+}
+
+}  // namespace cloud2csg
