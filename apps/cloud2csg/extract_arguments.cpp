@@ -128,8 +128,10 @@ void add_fit_arguments(CLI::App& app, ExtractArguments& arguments) {
   Group group(app, "Fit");
   group.number("--distance-tolerance", arguments.distance_tolerance,
                "Points nearer than this belong to a primitive (default: 3 x the measured noise)");
-  group.number("--angle-tolerance", arguments.angle_tolerance_deg,
-               "... when their normal is within so many degrees (default: 30)");
+  group
+      .add("--angle-tolerance", arguments.angle_tolerance_deg, "DEG",
+           "... when their normal is within so many degrees (default: 30)")
+      ->check(number_not_negative());
   group.number("--overlap-tolerance", arguments.overlap_tolerance,
                "Primitives nearer than this overlap (default: the measured noise)");
   group

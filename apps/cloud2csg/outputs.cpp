@@ -115,7 +115,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
     return app.add_option(name, value, help)->type_name(type)->group("Pictures")->capture_default_str();
   };
   add("--picture-width", options.width, "PIXELS", "Width of a .png; 0: a square for the cloud, one for the solid")
-      ->transform(whole_number(0, 4096));
+      ->transform(whole_number_or_0(16, 4096));
   add("--picture-height", options.height, "PIXELS", "Height of a .png")->transform(whole_number(16, 4096));
   add("--azimuth", options.azimuth_deg, "DEG", "Where the camera of a .png stands: turned from the x axis towards y")
       ->check(number_from_to(-360, 360));

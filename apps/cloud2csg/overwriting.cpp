@@ -33,7 +33,7 @@ struct Kind {
 /// Kinds of files that have a mark, or one of several. Binary .stl begins with anything; all others are text.
 constexpr std::array<Kind, 11> k_marked{
     {{".html", "HTML page", "<!doctype html>"},
-     {".json", "model or statistics of cloud2csg", "\"format\": \"cloud2csg\"", Beginning::within_it},
+     {".json", "model or statistics of cloud2csg", R"("format": "cloud2csg")", Beginning::within_it},
      {".json", "", "\"unassigned_points\":", Beginning::within_it},
      {".png", "PNG picture", "\x89PNG"},
      {".ply", "PLY file", "ply"},

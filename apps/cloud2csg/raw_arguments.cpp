@@ -86,6 +86,7 @@ void add_raw_arguments(CLI::App& app, RawArguments& arguments, const std::string
   app.add_option("--normal-tolerance", arguments.normal_tolerance_deg,
                  "... and how far their normals may be turned from the surface's (default: 25)")
       ->check(number_positive())
+      ->check(number_from_to(0, 90))
       ->type_name("DEG")
       ->group(group);
   app.add_option("--least-points", arguments.least_points,

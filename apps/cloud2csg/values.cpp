@@ -81,6 +81,12 @@ CLI::Validator whole_number_from(std::uint64_t least) {
   });
 }
 
+CLI::Validator whole_number_or_0(std::uint64_t least, std::uint64_t most) {
+  return validator(fmt::format("0, or a whole number from {} to {}", least, most), [least, most](std::string& text) {
+    return make_whole(text, 0, 0) || make_whole(text, least, most);
+  });
+}
+
 CLI::Validator number_not_negative() {
   return number_between("a finite number of 0 or more", 0, std::numeric_limits<double>::max());
 }

@@ -15,6 +15,8 @@ namespace cloud2csg::app {
 [[nodiscard]] CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 /// The same, as large as 64 bits hold.
 [[nodiscard]] CLI::Validator whole_number_from(std::uint64_t least);
+/// A whole number in a range, or 0.
+[[nodiscard]] CLI::Validator whole_number_or_0(std::uint64_t least, std::uint64_t most);
 
 /// A finite number of 0 or more.
 [[nodiscard]] CLI::Validator number_not_negative();

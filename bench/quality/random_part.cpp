@@ -44,6 +44,7 @@ std::vector<TableCell> row_of(const std::string& name, std::span<const Outcome> 
           share_text(summary.no_larger, summary),
           share_text(summary.right_and_no_larger, summary),
           share_text(summary.proved, summary),
+          share_text(summary.no_deeper, summary),
           iou_text(summary.worst_iou),
           ratio_text(summary.mean_ratio),
           milliseconds_text(summary.median_milliseconds),
@@ -56,7 +57,8 @@ Table table_of(const Setting& setting, const RandomModels& of, std::span<const O
       .name = of.name,
       .title = fmt::format("{}, {}", of.title, setting.name),
       .note = fmt::format("{} points a primitive, noise {}.\n{}", of.points_per_primitive, noise, legend(k_right)),
-      .columns = {"models", "right", "no larger", "both", "proved", "worst IoU", "mean ratio", "ms", "failures"}};
+      .columns = {"models", "right", "no larger", "both", "proved", "no deeper", "worst IoU", "mean ratio", "ms",
+                  "failures"}};
   std::set<Kind> kinds;
   for (const RandomModel& model : models) kinds.insert(kind(model));
   for (const Kind& one : kinds) {

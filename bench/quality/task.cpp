@@ -42,6 +42,7 @@ Outcome extract_and_judge(const Task& task, const Setting& setting) {
     if (!outcome.failure.empty()) return outcome;
     outcome.iou = task.judge->intersection_over_union(renumber(result.tree, task.judge_index));
     outcome.is_proved = result.statistics.cells && result.statistics.cells->is_minimal;
+    outcome.is_deeper = levels(result.tree) > levels(*task.truth.tree);
     outcome.size_ratio = static_cast<double>(result.tree.size()) / static_cast<double>(task.truth.tree->size());
   } catch (const std::exception& error) {
     outcome.failure = error.what();
@@ -117,6 +118,7 @@ Summary summarise(std::span<const Outcome> outcomes, double right) {
     const bool is_no_larger = outcome.size_ratio <= 1;
     summary.no_larger += is_no_larger ? 1 : 0;
     summary.proved += outcome.is_proved ? 1 : 0;
+    summary.no_deeper += outcome.is_deeper ? 0 : 1;
     summary.right_and_no_larger += is_right && is_no_larger ? 1 : 0;
     summary.worst_ratio = std::max(summary.worst_ratio, outcome.size_ratio);
     summary.mean_ratio += outcome.size_ratio;
@@ -147,8 +149,8 @@ std::string milliseconds_text(double milliseconds) {
 
 std::string legend(double right) {
   return fmt::format(
-      "right: IoU >= {}; no larger: nodes <= true nodes; proved: no smaller tree has the cells; ratio: nodes / true "
-      "nodes; ms: of the processor, median.",
+      "right: IoU >= {}; no larger: nodes <= true nodes; proved: no smaller tree has the cells; no deeper: levels <= "
+      "true levels; ratio: nodes / true nodes; ms: of the processor, median.",
       right);
 }
 

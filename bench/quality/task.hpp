@@ -36,6 +36,7 @@ struct Outcome {
   double size_ratio = 0;    ///< nodes / true nodes
   double milliseconds = 0;  ///< of the processor, as far as StageSeconds::extraction
   bool is_proved = false;   ///< no smaller tree has the cells
+  bool is_deeper = false;   ///< more levels than the true tree, as a person writes them
 };
 
 struct RunOptions {
@@ -56,7 +57,7 @@ struct RunOptions {
 constexpr double k_right = 0.995;
 
 struct Summary {
-  std::size_t count = 0, right = 0, no_larger = 0, right_and_no_larger = 0, proved = 0;
+  std::size_t count = 0, right = 0, no_larger = 0, right_and_no_larger = 0, proved = 0, no_deeper = 0;
   double worst_iou = 1, mean_iou = 0;                               ///< failures count as 0
   double worst_ratio = 0, mean_ratio = 0, median_milliseconds = 0;  ///< without failures
 };

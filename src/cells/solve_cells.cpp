@@ -126,7 +126,7 @@ class CellSolver {
     CellSolution& all = solution.of_all;
     if (std::ranges::find(tried_, all.tree) == tried_.end()) tried_.push_back(all.tree);
     all.cost = cost_of(complex_, cells_in(all.tree, complex_), labels_.density, labels_.options);
-    if (!best_ || total(all) <= total(best_->of_all)) best_ = std::move(solution);
+    if (!best_ || !is_better(best_->of_all, all)) best_ = std::move(solution);
   }
 
   /// Where primitives were left out, others might have been: only what all cells over all primitives need is proved.
@@ -155,7 +155,7 @@ class CellSolver {
                             : climb_core_by_core(complex_, labels_, best_->cores, tried_, options_, run_);
     const std::vector<bool> is_in = cells_in(climbed.tree, complex_);
     climbed.cost = cost_of(complex_, is_in, labels_.density, labels_.options);
-    if (total(climbed) >= total(best_->of_all)) return;
+    if (!is_better(climbed, best_->of_all)) return;
     if (!has_labels(is_in, labels_, climbed.least_evidence)) climbed.least_leaves.reset();
     best_->of_all = std::move(climbed);
   }
@@ -164,6 +164,10 @@ class CellSolver {
     return is_constant(best_->of_all.tree) || best_->of_all.is_minimal();
   }
   [[nodiscard]] double price_of(std::size_t leaves) const { return options_.leaf_cost * static_cast<double>(leaves); }
+  /// Costs less or, where both cost the same, has fewer levels.
+  [[nodiscard]] bool is_better(const CellSolution& solution, const CellSolution& other) const {
+    return std::pair(total(solution), levels(solution.tree)) < std::pair(total(other), levels(other.tree));
+  }
   [[nodiscard]] double total(const CellSolution& of) const { return of.cost + price_of(leaf_count(of.tree)); }
   void note(const char* step) { steps_.push_back({step, best_->of_all.tree.size()}); }
 

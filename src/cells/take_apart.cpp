@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 #include <unordered_map>
 #include <utility>
 
@@ -172,10 +171,10 @@ std::optional<TakenApart> take_apart_only(const CellComplex& complex, const Cell
 
 CsgTree put_together(const TakenApart& parts, std::span<const CsgTree> of_cores) {
   CsgTree tree = unite_all(of_cores);
-  for (const auto& round : std::views::reverse(parts.rounds)) {
+  std::for_each(parts.rounds.rbegin(), parts.rounds.rend(), [&tree](const PeeledRound& round) {
     const CsgTree split = unite_all(leaves(round.primitives));
     tree = round.are_in ? unite(tree, split) : subtract(tree, split);
-  }
+  });
   return simplify(parts.is_inverted ? complement(tree) : tree);
 }
 

@@ -76,7 +76,7 @@ class ReferenceExtractor {
     statistics_.tree = statistics_of(tree);
     if (!primitives_of(tree).empty()) {
       const Objective objective = resolve(options_.objective, cloud_.size(), prepared_.scale.noise);
-      statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.scale.noise, run_);
+      statistics_.fit = measure_fit(tree, input_, cloud_, objective, prepared_.scale, run_);
     }
     return {.tree = tree, .statistics = std::move(statistics_)};
   }

@@ -52,8 +52,9 @@ Pose motion_of(const LinePattern& line, std::size_t place) {
 }
 
 Pose motion_of(const GridPattern& grid, std::size_t place) {
-  return {.position = static_cast<double>(place % grid.columns) * grid.step +
-                      static_cast<double>(place / grid.columns) * grid.row_step};
+  const std::size_t row = place / grid.columns;
+  const std::size_t column = place % grid.columns;
+  return {.position = static_cast<double>(column) * grid.step + static_cast<double>(row) * grid.row_step};
 }
 
 Pose motion_of(const CirclePattern& circle, std::size_t place) {

@@ -144,6 +144,7 @@ AlignedBox bounds_of(const TriangleMesh& mesh, const Piece& piece) {
 /// Returns how many.
 std::size_t turn_pieces(TriangleMesh& mesh, const std::vector<Piece>& pieces) {
   std::vector<AlignedBox> boxes;
+  boxes.reserve(pieces.size());
   for (const Piece& piece : pieces) boxes.push_back(bounds_of(mesh, piece));
   std::size_t turned = 0;
   for (std::size_t p = 0; p < pieces.size(); ++p) {

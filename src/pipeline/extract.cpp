@@ -215,7 +215,7 @@ class Extractor {
 
   [[nodiscard]] FitStatistics fit_of(const CsgTree& tree, const RunContext& run) const {
     const Objective objective = resolve(options_.objective, cloud_.size(), scale_.noise);
-    return measure_fit(tree, input_, cloud_, objective, scale_.noise, without_stop(run), order_);
+    return measure_fit(tree, input_, cloud_, objective, scale_, without_stop(run), order_);
   }
 
   /// How a single search runs: its population in parallel, or not.

@@ -8,28 +8,47 @@
 #include "pipeline/point_fit.hpp"
 
 namespace cloud2csg {
+namespace {
+
+/// Whether a tree explains a point, which has a distance and an angle to it.
+class Explanation {
+ public:
+  explicit Explanation(const SegmentationTolerances& tolerances)
+      : largest_distance_(tolerances.distance), largest_angle_(std::acos(tolerances.cosine)) {}
+
+  [[nodiscard]] bool holds(double distance, double angle) const {
+    return std::abs(distance) <= largest_distance_ && angle <= largest_angle_;
+  }
+
+ private:
+  double largest_distance_, largest_angle_;
+};
+
+}  // namespace
+
 std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const PrimitiveSet& primitives,
                                               const PointCloud& cloud, const SegmentationTolerances& tolerances,
                                               const RunContext& run) {
   const std::vector<std::uint32_t> order = spatial_order(cloud.positions, bounds_of(cloud.positions), run);
   const PointFit points = measure_points(tree, primitives, cloud, tolerances.distance, {.order = order}, run);
-  const double largest_angle = std::acos(tolerances.cosine);
+  const Explanation explanation(tolerances);
   std::vector<std::uint32_t> unexplained;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    if (!(std::abs(points.signed_distances[i]) <= tolerances.distance) || !(points.angles[i] <= largest_angle))
-      unexplained.push_back(i);
+    if (!explanation.holds(points.signed_distances[i], points.angles[i])) unexplained.push_back(i);
   }
   return unexplained;
 }
 
 FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                          const Objective& objective, double noise, const RunContext& run,
+                          const Objective& objective, const NoiseScale& scale, const RunContext& run,
                           std::span<const std::uint32_t> order) {
-  PointFit points = measure_points(tree, primitives, cloud, noise, {.order = order}, run);
+  PointFit points = measure_points(tree, primitives, cloud, scale.noise, {.order = order}, run);
   FitStatistics fit;
   fit.objective = -objective.alpha * static_cast<double>(tree.size());
   for (double& distance : points.signed_distances) distance = std::abs(distance);
+  const Explanation explanation(scale.tolerances);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!explanation.holds(points.signed_distances[i], points.angles[i])) ++fit.unexplained_points;
     fit.objective += point_score(points.signed_distances[i], points.angles[i], objective);
   }
   fit.rms_distance = root_mean_square(points.signed_distances);

@@ -1,14 +1,16 @@
 #pragma once
 
 #include "cloud2csg/extract.hpp"
+#include "pipeline/preparation.hpp"
 
 namespace cloud2csg {
 
-/// How well the tree explains the cloud, point by point on the tree itself: nothing of the search's tables. `noise`
-/// tells how near most points are to the surface: a large tree is evaluated by what of it is that near first, block by
-/// block in the `order` of the points (empty: as they are), which is fast where neighbours are near each other.
+/// How well the tree explains the cloud, point by point on the tree itself: nothing of the search's tables. The
+/// noise tells how near most points are to the surface: a large tree is evaluated by what of it is that near first,
+/// block by block in the `order` of the points (empty: as they are), which is fast where neighbours are near each
+/// other.
 [[nodiscard]] FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                                        const Objective& objective, double noise, const RunContext& run,
+                                        const Objective& objective, const NoiseScale& scale, const RunContext& run,
                                         std::span<const std::uint32_t> order = {});
 
 }  // namespace cloud2csg

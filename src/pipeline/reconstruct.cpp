@@ -129,6 +129,14 @@ double cost_of(const CsgTree& tree, const SolidChoice& choice, const SolidOption
   return disagreement(tree, choice.solids, choice.places) + options.leaf_cost * static_cast<double>(leaf_count(tree));
 }
 
+/// With the noise that another tree was measured with.
+FitStatistics fit_with(double noise, const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
+                       const ExtractOptions& options, const RunContext& run) {
+  const NoiseScale scale{.noise = noise, .tolerances = segmentation_tolerances(options.segmentation, noise)};
+  return measure_fit(tree, primitives, cloud, resolve(options.objective, cloud.size(), noise), scale,
+                     without_stop(run));
+}
+
 /// The smallest tree over the chosen solids that the points bear out; or that of the choice, when it costs less.
 Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared, const ReconstructOptions& options,
                         const RunContext& run) {
@@ -144,9 +152,7 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
     statistics.steps = {{"choice of solids", result.tree.size()}};
     statistics.cells.reset();
     statistics.warnings.clear();  // they are about the other tree
-    const Objective objective = resolve(extraction.objective, prepared.cloud.size(), statistics.noise);
-    statistics.fit =
-        measure_fit(result.tree, choice.solids, prepared.cloud, objective, statistics.noise, without_stop(run));
+    statistics.fit = fit_with(statistics.noise, result.tree, choice.solids, prepared.cloud, extraction, run);
   }
   return result;
 }
@@ -154,12 +160,6 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
 double seconds_left(double limit, double gone) {
   constexpr double k_next_to_nothing = 1e-9;
   return std::max(k_next_to_nothing, limit - gone);
-}
-
-/// E of a tree, with the noise that another was measured with.
-double objective_with(double noise, const Reconstruction& found, const ExtractOptions& options, const RunContext& run) {
-  const Objective objective = resolve(options.objective, found.cloud.size(), noise);
-  return measure_fit(found.tree, found.solids, found.cloud, objective, noise, without_stop(run)).objective;
 }
 
 /// What was found out about the cloud is true of the refined tree as well.
@@ -176,7 +176,9 @@ void refine_found(Reconstruction& found, const ReconstructOptions& options, doub
   before.refine = after.refine;
   before.seconds.refine = after.seconds.refine;
   if (before.refine) before.refine->is_taken = false;
-  if (after.fit.objective <= objective_with(after.noise, found, extraction, run)) return;
+  if (after.fit.objective <= fit_with(after.noise, found.tree, found.solids, found.cloud, extraction, run).objective) {
+    return;
+  }
   for (const std::string& warning : after.warnings) {
     if (std::ranges::find(before.warnings, warning) == before.warnings.end()) before.warnings.push_back(warning);
   }

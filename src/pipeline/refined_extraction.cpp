@@ -30,17 +30,17 @@ class Comparison {
   Comparison(const PointCloud& cloud, const ExtractOptions& options, double noise, const RunContext& run)
       : cloud_(cloud),
         objective_(resolve(options.objective, cloud.size(), noise)),
-        noise_(noise),
+        scale_{.noise = noise, .tolerances = segmentation_tolerances(options.segmentation, noise)},
         run_(without_stop(run)) {}
 
   [[nodiscard]] FitStatistics operator()(const CsgTree& tree, const PrimitiveSet& primitives) const {
-    return measure_fit(tree, primitives, cloud_, objective_, noise_, run_);
+    return measure_fit(tree, primitives, cloud_, objective_, scale_, run_);
   }
 
  private:
   const PointCloud& cloud_;
   Objective objective_;
-  double noise_;
+  NoiseScale scale_;
   RunContext run_;
 };
 

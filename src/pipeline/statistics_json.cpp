@@ -165,7 +165,8 @@ std::string to_json(const ExtractStatistics& s) {
                        {"rms_distance", s.fit.rms_distance},
                        {"p95_distance", s.fit.p95_distance},
                        {"rms_angle_deg", s.fit.rms_angle_deg},
-                       {"p95_angle_deg", s.fit.p95_angle_deg}}},
+                       {"p95_angle_deg", s.fit.p95_angle_deg},
+                       {"unexplained_points", s.fit.unexplained_points}}},
                      {"warnings", s.warnings}};
   return json.dump(2) + "\n";
 }

@@ -126,7 +126,7 @@ class Arranger {
     for (const Index from : free_) {
       std::vector<Vector2d> around;
       for (const Index to : free_) {
-        if (to != from) around.push_back(places_[to] - places_[from]);
+        if (to != from) around.emplace_back(places_[to] - places_[from]);
       }
       const std::size_t near = std::min(k_neighbours, around.size());
       std::ranges::partial_sort(around, around.begin() + static_cast<std::ptrdiff_t>(near), {},

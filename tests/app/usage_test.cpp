@@ -128,6 +128,10 @@ TEST_F(Usage, ValuesAreChecked) {
                                       std::pair{"--angular-step", "171"}, std::pair{"--grazing-angle", "90"}}) {
     expect_failure(run({"scan", model, "-o", out, option, value}), 2, {option, "expected a number from", value});
   }
+  for (const auto& [option, value] : {std::pair{"--picture-width", "15"}, std::pair{"--picture-height", "0"},
+                                      std::pair{"--normal-tolerance", "91"}}) {
+    expect_failure(run({"detect", out, "-o", path("x.png"), option, value}), 2, {option, "expected", value});
+  }
   const std::vector<std::string> extract{"extract", "c.ply", "--primitives", model, "-o", "x.json"};
   const auto with = [&extract](std::vector<std::string> more) {
     more.insert(more.begin(), extract.begin(), extract.end());

@@ -35,6 +35,7 @@ void expect_truth(const Extraction& result, const Model& model, std::size_t poin
   EXPECT_GE(test::membership_iou(result.tree, *model.tree, model.primitives), 0.999)
       << to_text(result.tree, model.primitives);
   EXPECT_LE(result.tree.size(), simplify(*model.tree).size()) << to_text(result.tree, model.primitives);
+  EXPECT_LE(levels(result.tree), levels(*model.tree)) << to_text(result.tree, model.primitives);
   EXPECT_TRUE(result.statistics.complete);
   EXPECT_TRUE(result.statistics.warnings.empty());
   EXPECT_TRUE(result.statistics.partitions.empty());

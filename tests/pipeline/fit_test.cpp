@@ -14,6 +14,10 @@ namespace cloud2csg {
 namespace {
 
 constexpr double k_noise = 0.01;
+constexpr double k_most_degrees = 30;
+const NoiseScale k_scale{.noise = k_noise,
+                         .tolerances = segmentation_tolerances(
+                             {.distance_tolerance = k_noise, .angle_tolerance_deg = k_most_degrees}, k_noise)};
 constexpr Objective k_objective{.alpha = 5, .beta = 1 / k_noise, .gamma = 18 / std::numbers::pi};
 
 double root_mean_square(const std::vector<double>& values) {
@@ -37,6 +41,8 @@ FitStatistics plain_fit(const CsgTree& tree, const PrimitiveSet& primitives, con
     distances.push_back(std::abs(values[i]));
     angles.push_back(std::acos(std::clamp(slopes[i].normalized().dot(cloud.normals[i]), -1.0, 1.0)));
     fit.objective += point_score(distances.back(), angles.back(), k_objective);
+    const bool is_explained = distances.back() <= k_noise && angles.back() <= k_most_degrees * std::numbers::pi / 180;
+    fit.unexplained_points += is_explained ? 0 : 1;
   }
   fit.rms_distance = root_mean_square(distances);
   fit.p95_distance = quantile_95(distances);
@@ -48,7 +54,10 @@ FitStatistics plain_fit(const CsgTree& tree, const PrimitiveSet& primitives, con
 void expect_plain_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud) {
   const FitStatistics expected = plain_fit(tree, primitives, cloud);
   for (const int threads : {1, 3}) {
-    const FitStatistics fit = measure_fit(tree, primitives, cloud, k_objective, k_noise, {.threads = threads});
+    const FitStatistics fit = measure_fit(tree, primitives, cloud, k_objective, k_scale, {.threads = threads});
+    EXPECT_EQ(fit.unexplained_points,
+              unexplained_points(tree, primitives, cloud, k_scale.tolerances, {.threads = threads}).size());
+    EXPECT_EQ(fit.unexplained_points, expected.unexplained_points);
     EXPECT_NEAR(fit.objective, expected.objective, 1e-9 * static_cast<double>(cloud.size()));
     EXPECT_NEAR(fit.rms_distance, expected.rms_distance, 1e-12 * expected.rms_distance);
     EXPECT_EQ(fit.p95_distance, expected.p95_distance);

@@ -149,8 +149,9 @@ TEST(Reconstruct, MeasuresTheFitOfTheTreeThatItGives) {
     const Reconstruction result = reconstruct(is_wavy ? raw_cloud(wavy, 0.0, 3000) : raw_cloud(plate(), 0.005));
     EXPECT_EQ(result.statistics.cells.has_value(), !is_wavy);
     const double noise = result.statistics.noise;
-    const FitStatistics fit = measure_fit(result.tree, result.solids, result.cloud,
-                                          resolve(ObjectiveOptions{}, result.cloud.size(), noise), noise, {});
+    const FitStatistics fit =
+        measure_fit(result.tree, result.solids, result.cloud, resolve(ObjectiveOptions{}, result.cloud.size(), noise),
+                    {.noise = noise, .tolerances = segmentation_tolerances({}, noise)}, {});
     EXPECT_NEAR(result.statistics.fit.rms_distance, fit.rms_distance, 1e-9);
     EXPECT_NEAR(result.statistics.fit.objective / fit.objective, 1, 1e-9);
   }

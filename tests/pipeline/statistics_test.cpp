@@ -30,7 +30,8 @@ TEST(StatisticsJson, HasEveryKeyOfTheContract) {
   }
   for (const char* key : {"generations", "evaluations"}) EXPECT_TRUE(json["search"].contains(key)) << key;
   for (const char* key : {"size", "leaves", "depth", "levels"}) EXPECT_TRUE(json["tree"].contains(key)) << key;
-  for (const char* key : {"objective", "rms_distance", "p95_distance", "rms_angle_deg", "p95_angle_deg"}) {
+  for (const char* key :
+       {"objective", "rms_distance", "p95_distance", "rms_angle_deg", "p95_angle_deg", "unexplained_points"}) {
     EXPECT_TRUE(json["fit"][key].is_number()) << key;
   }
   EXPECT_EQ(json["strategy"], "auto");

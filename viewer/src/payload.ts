@@ -83,7 +83,14 @@ export interface Statistics {
   noise: number;
   seconds: Record<string, number>;
   tree: { size: number; leaves: number; depth: number; levels: number };
-  fit: { objective: number; rms_distance: number; p95_distance: number; rms_angle_deg: number; p95_angle_deg: number };
+  fit: {
+    objective: number;
+    rms_distance: number;
+    p95_distance: number;
+    rms_angle_deg: number;
+    p95_angle_deg: number;
+    unexplained_points: number;
+  };
   finding: Record<string, number | boolean> | null;
   cells: Record<string, unknown> | null;
   refine: {

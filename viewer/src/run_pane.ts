@@ -38,6 +38,7 @@ function figuresOf(statistics: Statistics): [string, string][] {
     ["noise σ", figures(statistics.noise)],
     ["rms distance", figures(statistics.fit.rms_distance)],
     ["95 % within", figures(statistics.fit.p95_distance)],
+    ["unexplained", count(statistics.fit.unexplained_points)],
     ["rms angle", `${figures(statistics.fit.rms_angle_deg)}°`],
     ["nodes", count(statistics.tree.size)],
     ["leaves", count(statistics.tree.leaves)],
