@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_noise = 0.003;
+constexpr double k_scatter = 0.003;
 
 /// What became of a cloud: a tree with warnings, or a refusal.
 struct Ending {
@@ -40,7 +40,7 @@ Ending ending_of(const PointCloud& cloud, std::optional<double> seconds = {}) {
 }
 
 PointCloud points_of(const Model& model, std::size_t count) {
-  PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = count, .noise = k_noise, .seed = 3});
+  PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = count, .noise = k_scatter, .seed = 3});
   cloud.normals = {};
   return cloud;
 }
@@ -52,7 +52,7 @@ PointCloud sheet(const std::function<double(double, double)>& height) {
   for (int i = 0; i < 2500; ++i) {
     const double x = random.uniform(-2, 2);
     const double y = random.uniform(-2, 2);
-    cloud.positions.push_back({x, y, height(x, y) + k_noise * random.normal()});
+    cloud.positions.push_back({x, y, height(x, y) + k_scatter * random.normal()});
   }
   return cloud;
 }
