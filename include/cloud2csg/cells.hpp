@@ -115,7 +115,7 @@ struct CellLabels {
 
 struct CellSolveOptions {
   /// Of cells whose labels cost fewer points to change, the formula may make what it likes. Descending; each is tried,
-  /// and that formula taken that costs least, leaves included; of equals, the one of fewer levels.
+  /// and that formula taken that costs least, leaves included.
   std::vector<double> least_evidence = {12, 3, 1, 0.3};
   double leaf_cost = 3;  ///< of a leaf, in points
   /// Where the formula that was taken may not be minimal, a minimal one is looked for, core by core.

@@ -88,12 +88,9 @@ CsgTree climb(const CellComplex& complex, const CellLabels& labels, LabelCosts c
   std::optional<Evolution> best;
   for (const CsgTree& start : starts) {
     Evolution climbed = local_search(objective, over_places(start, part.primitives), options.climb, run);
-    climbed.tree = simplify(climbed.tree);
-    if (!best || std::pair(-climbed.score, levels(climbed.tree)) < std::pair(-best->score, levels(best->tree))) {
-      best = std::move(climbed);
-    }
+    if (!best || climbed.score > best->score) best = std::move(climbed);
   }
-  return renumber(best->tree, part.primitives);
+  return renumber(simplify(best->tree), part.primitives);
 }
 
 /// Which cells each core decides.

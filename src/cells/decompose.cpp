@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
-#include <numeric>
 #include <optional>
 #include <unordered_set>
 
@@ -60,19 +58,16 @@ KnownRows rows_with(const KnownRows& rows, std::size_t variable, bool value) {
   return {rows_with(rows.on, variable, value), rows_with(rows.off, variable, value)};
 }
 
-/// The variables that are true in any row.
-Assignment in_any(const Assignments& rows) {
-  return std::accumulate(rows.begin(), rows.end(), Assignment{0}, std::bit_or<>());
-}
-
-/// The variables that are true in all rows.
-Assignment in_all(const Assignments& rows) {
-  return std::accumulate(rows.begin(), rows.end(), ~Assignment{0}, std::bit_and<>());
-}
-
-/// One that is always true says nothing.
 Assignment variables_of(const KnownRows& rows) {
-  return (in_any(rows.on) | in_any(rows.off)) & ~(in_all(rows.on) & in_all(rows.off));
+  Assignment any = 0;
+  Assignment all = ~Assignment{0};
+  for (const Assignments* some : {&rows.on, &rows.off}) {
+    for (const Assignment row : *some) {
+      any |= row;
+      all &= row;
+    }
+  }
+  return any & ~all;  // one that is always true says nothing
 }
 
 template <class Visit>
@@ -97,11 +92,6 @@ bool is_true(const CsgTree& formula, Assignment row) {
   std::vector<bool> values(k_most_variables);
   for_each_variable(row, [&values](std::size_t variable) { values[variable] = true; });
   return contains(formula, values);
-}
-
-/// Fewer leaves or, with as many, fewer levels.
-bool is_simpler(const CsgTree& tree, const CsgTree& other) {
-  return std::pair(leaf_count(tree), levels(tree)) < std::pair(leaf_count(other), levels(other));
 }
 
 /// Disjoint sets of variables such that the function is a union of functions of one each.
@@ -193,26 +183,25 @@ class Decomposer {
   }
 
  private:
-  /// Splits off a variable that decides alone. What is taken away goes first: differences stand outermost.
+  /// Splits off a variable that decides alone.
   std::optional<CsgTree> split_variable(const KnownRows& rows) {
-    const Assignment variables = variables_of(rows);
-    const auto split = [&](Assignment candidates, bool value, const auto& join) -> std::optional<CsgTree> {
-      candidates &= variables;
-      if (candidates == 0) return std::nullopt;
-      const auto variable = static_cast<std::size_t>(std::countr_zero(candidates));
-      return join(solve(rows_with(rows, variable, value)), CsgTree::leaf(static_cast<PrimitiveIndex>(variable)));
-    };
-    using Tree = const CsgTree&;
-    if (auto tree = split(~in_any(rows.on), false, [](Tree rest, Tree leaf) { return subtract(rest, leaf); })) {
-      return tree;
-    }
-    if (auto tree = split(~in_any(rows.off), false, [](Tree rest, Tree leaf) { return unite(rest, leaf); })) {
-      return tree;
-    }
-    if (auto tree = split(in_all(rows.on), true, [](Tree rest, Tree leaf) { return intersect(leaf, rest); })) {
-      return tree;
-    }
-    return split(in_all(rows.off), true, [](Tree rest, Tree leaf) { return unite(complement(leaf), rest); });
+    std::optional<CsgTree> result;
+    for_each_variable(variables_of(rows), [&](std::size_t variable) {
+      if (result) return;
+      const CsgTree leaf = CsgTree::leaf(static_cast<PrimitiveIndex>(variable));
+      const KnownRows with = rows_with(rows, variable, true);
+      const KnownRows without = rows_with(rows, variable, false);
+      if (with.on.empty()) {
+        result = subtract(solve(without), leaf);
+      } else if (with.off.empty()) {
+        result = unite(solve(without), leaf);
+      } else if (without.on.empty()) {
+        result = intersect(leaf, solve(with));
+      } else if (without.off.empty()) {
+        result = unite(complement(leaf), solve(with));
+      }
+    });
+    return result;
   }
 
   std::optional<CsgTree> split_blocks(const KnownRows& rows) {
@@ -223,7 +212,7 @@ class Decomposer {
     if (of_union.blocks().size() > 1) best = unite_blocks(rows, of_union.blocks());
     if (of_intersection.blocks().size() > 1 && (!best || budget_ > 0)) {
       const CsgTree other = complement(unite_blocks(negated, of_intersection.blocks()));
-      if (!best || is_simpler(other, *best)) best = other;
+      if (!best || leaf_count(other) < leaf_count(*best)) best = other;
     }
     return best;
   }
@@ -256,7 +245,7 @@ class Decomposer {
     for_each_variable(variables_of(rows), [&](std::size_t variable) {
       if (best && budget_ == 0) return;
       const CsgTree tree = branch_on(rows, variable);
-      if (!best || is_simpler(tree, *best)) best = tree;
+      if (!best || leaf_count(tree) < leaf_count(*best)) best = tree;
     });
     return *best;
   }
@@ -267,7 +256,7 @@ class Decomposer {
     const KnownRows without = rows_with(rows, variable, false);
     std::optional<CsgTree> best = unite(intersect(leaf, solve(with)), subtract(solve(without), leaf));
     const auto consider = [&](const std::optional<CsgTree>& tree) {
-      if (tree && is_simpler(*tree, *best)) best = tree;
+      if (tree && leaf_count(*tree) < leaf_count(*best)) best = tree;
     };
     if (budget_ == 0) return *best;
     const auto inside = [&leaf](const CsgTree& part) { return intersect(leaf, part); };

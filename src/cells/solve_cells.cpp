@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cells/climb_on_cells.hpp"
+#include "cells/few_levels.hpp"
 #include "cells/take_apart.hpp"
 #include "cells/tree_cells.hpp"
 #include "cloud2csg/cells.hpp"
@@ -93,6 +94,7 @@ class CellSolver {
       note("climbing");
     }
     CellSolution result = std::move(best_->of_all);
+    result.tree = with_few_levels(result.tree, complex_);
     result.is_complete = result.is_minimal() || !run_.stop.stop_requested();
     for (CellIndex cell = 0; cell < complex_.cells.size(); ++cell) {
       if (labels_.evidence[cell] < least_evidence) result.open_cells.push_back(cell);
@@ -126,7 +128,7 @@ class CellSolver {
     CellSolution& all = solution.of_all;
     if (std::ranges::find(tried_, all.tree) == tried_.end()) tried_.push_back(all.tree);
     all.cost = cost_of(complex_, cells_in(all.tree, complex_), labels_.density, labels_.options);
-    if (!best_ || !is_better(best_->of_all, all)) best_ = std::move(solution);
+    if (!best_ || total(all) <= total(best_->of_all)) best_ = std::move(solution);
   }
 
   /// Where primitives were left out, others might have been: only what all cells over all primitives need is proved.
@@ -155,7 +157,7 @@ class CellSolver {
                             : climb_core_by_core(complex_, labels_, best_->cores, tried_, options_, run_);
     const std::vector<bool> is_in = cells_in(climbed.tree, complex_);
     climbed.cost = cost_of(complex_, is_in, labels_.density, labels_.options);
-    if (!is_better(climbed, best_->of_all)) return;
+    if (total(climbed) >= total(best_->of_all)) return;
     if (!has_labels(is_in, labels_, climbed.least_evidence)) climbed.least_leaves.reset();
     best_->of_all = std::move(climbed);
   }
@@ -164,10 +166,6 @@ class CellSolver {
     return is_constant(best_->of_all.tree) || best_->of_all.is_minimal();
   }
   [[nodiscard]] double price_of(std::size_t leaves) const { return options_.leaf_cost * static_cast<double>(leaves); }
-  /// Costs less or, where both cost the same, has fewer levels.
-  [[nodiscard]] bool is_better(const CellSolution& solution, const CellSolution& other) const {
-    return std::pair(total(solution), levels(solution.tree)) < std::pair(total(other), levels(other.tree));
-  }
   [[nodiscard]] double total(const CellSolution& of) const { return of.cost + price_of(leaf_count(of.tree)); }
   void note(const char* step) { steps_.push_back({step, best_->of_all.tree.size()}); }
 

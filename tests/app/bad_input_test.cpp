@@ -145,7 +145,7 @@ TEST_F(BadInput, FullDiskLeavesNothingBehind) {
 
 TEST_F(BadInput, AllOutputsOrNone) {
   const std::string limit = "ulimit -f 32";
-  const std::string older = file("m.json", R"({"an": "older result"})");
+  const std::string older = file("m.json", R"({"format": "cloud2csg", "of": "an older result"})");
   expect_failure(
       run({"convert", shipped("m1.json"), "-o", older, "-o", path("m.stl"), "-o", path("m.dot"), "--quiet"}, limit), 1,
       {path("m.stl") + ":", "cannot be written"});
@@ -161,7 +161,7 @@ TEST_F(BadInput, AllOutputsOrNone) {
                      limit),
                  1, {path("m.off") + ":", "cannot be written"});
   EXPECT_EQ(files(), (std::vector<std::string>{"c.ply", "m.json"}));
-  EXPECT_EQ(read_file(older), R"({"an": "older result"})");
+  EXPECT_EQ(read_file(older), R"({"format": "cloud2csg", "of": "an older result"})");
 }
 
 }  // namespace

@@ -120,18 +120,6 @@ RC_GTEST_PROP(EssentialVariables, TellTwoRowsApartAlone, (std::uint64_t seed)) {
   RC_ASSERT(essential_variables(rows) == expected);
 }
 
-TEST(Decompose, TakesAwayLast) {
-  // (2 | 3) - 0 - 1, where 3 and 0 share nothing: as good as ((2 - 0) | 3) - 1.
-  constexpr Assignment k_first = 1, k_second = 2, k_body = 4, k_other = 8;
-  const KnownRows rows{.on = {k_body, k_other, k_body | k_other},
-                       .off = {0, k_first, k_second, k_body | k_first, k_body | k_second, k_other | k_second}};
-  const CsgTree tree = decompose(rows);
-  EXPECT_TRUE(agrees(tree, rows));
-  EXPECT_EQ(leaf_count(tree), 4U);
-  EXPECT_EQ(levels(tree), 2U);
-  EXPECT_EQ(tree.nodes().back().operation(), Operation::difference);
-}
-
 TEST(Decompose, OfAConstantHasNoVariables) {
   EXPECT_EQ(decompose({}), CsgTree::empty());
   EXPECT_EQ(decompose({.on = {}, .off = {0, 1, 2}}), CsgTree::empty());
