@@ -120,9 +120,9 @@ struct CellSolveOptions {
   double leaf_cost = 3;  ///< of a leaf, in points
   /// Where the formula that was taken may not be minimal, a minimal one is looked for, core by core.
   MinimalFormulaOptions minimal = {.table_limit = std::size_t{1} << 18U, .combination_limit = 20'000'000};
-  /// Where it is not proved to be minimal, local searches go on from all that was tried, on what the cells and leaves
-  /// of a tree cost: over all of up to 64 primitives, of more core by core. The limits are those of each search; no
-  /// work, no climbing.
+  /// Where it is not proved to be minimal, or its cells cost more than the labels by a leaf, local searches go on from
+  /// all that was tried, on what the cells and leaves of a tree cost: over all of up to 64 primitives, of more core by
+  /// core. The limits are those of each search; no work, no climbing.
   LocalSearchOptions climb = {.work_limit = 4e8};
 };
 

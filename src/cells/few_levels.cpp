@@ -1,12 +1,9 @@
 #include "cells/few_levels.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <utility>
-
-#include "cloud2csg/restrict.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -26,52 +23,50 @@ void append(std::vector<CsgTree>& list, std::vector<CsgTree> more) {
   list.insert(list.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// Tells at which cells trees hold.
-class Cells {
+/// Which primitives share a cell. What two trees, each of which holds within its primitives only, have in common is
+/// where one of the first's shares a cell with one of the second's. A cell of many that was not found does not change
+/// that.
+class Neighbours {
  public:
-  explicit Cells(const CellComplex& complex)
-      : cells_(complex.cells),
-        everywhere_(complex.points_of_primitive.size(), true),
-        cells_of_(complex.points_of_primitive.size()) {
-    for (CellIndex cell = 0; cell < cells_.size(); ++cell) {
-      for (const PrimitiveIndex p : cells_[cell]) cells_of_[p].push_back(cell);
+  explicit Neighbours(const CellComplex& complex)
+      : nowhere_(complex.points_of_primitive.size(), false), of_(complex.points_of_primitive.size()) {
+    for (const Cell& cell : complex.cells) {
+      for (const PrimitiveIndex p : cell) of_[p].insert(of_[p].end(), cell.begin(), cell.end());
     }
+    for (std::vector<PrimitiveIndex>& neighbours : of_) sort_unique(neighbours);
   }
 
-  [[nodiscard]] bool hold(const CsgTree& tree, const Cell& cell) const {
-    const CsgNode root = tree.nodes().back();
-    if (root.is_leaf()) return std::ranges::binary_search(cell, root.primitive());
-    return contains(restrict_to(tree, cell), everywhere_);
+  /// All that share a cell with one of the tree's, ascending.
+  [[nodiscard]] std::vector<PrimitiveIndex> of(const CsgTree& tree) const {
+    std::vector<PrimitiveIndex> all;
+    for (const PrimitiveIndex p : primitives_of(tree)) all.insert(all.end(), of_[p].begin(), of_[p].end());
+    sort_unique(all);
+    return all;
   }
 
-  /// Where it holds; none is outside of all its primitives.
-  [[nodiscard]] std::vector<CellIndex> of(const CsgTree& tree) const {
-    std::vector<CellIndex> cells;
-    for (const PrimitiveIndex p : primitives_of(tree)) {
-      cells.insert(cells.end(), cells_of_[p].begin(), cells_of_[p].end());
-    }
-    std::ranges::sort(cells);
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    std::erase_if(cells, [&](CellIndex cell) { return !hold(tree, cells_[cell]); });
-    return cells;
-  }
-
-  [[nodiscard]] const Cell& operator[](CellIndex cell) const { return cells_[cell]; }
+  [[nodiscard]] bool is_within_its_primitives(const CsgTree& tree) const { return !contains(tree, nowhere_); }
 
  private:
-  const std::vector<Cell>& cells_;
-  std::vector<bool> everywhere_;
-  std::vector<std::vector<CellIndex>> cells_of_;  // by primitive
+  static void sort_unique(std::vector<PrimitiveIndex>& primitives) {
+    std::ranges::sort(primitives);
+    primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+  }
+
+  std::vector<bool> nowhere_;
+  std::vector<std::vector<PrimitiveIndex>> of_;  // by primitive
 };
 
 /// What is united, in groups that nothing which is taken away joins.
 class Groups {
  public:
-  Groups(const Written& written, const Cells& cells)
-      : written_(written), cells_(cells), leader_(written.united.size()), group_of_taken_(written.taken.size(), 0) {
+  Groups(const Written& written, const Neighbours& neighbours)
+      : written_(written),
+        neighbours_(neighbours),
+        leader_(written.united.size()),
+        group_of_taken_(written.taken.size(), 0) {
     std::iota(leader_.begin(), leader_.end(), std::size_t{0});
-    const auto is_everywhere = [&](const CsgTree& tree) { return cells.hold(tree, {}); };
-    if (std::ranges::any_of(written.united, is_everywhere) || std::ranges::any_of(written.taken, is_everywhere)) {
+    const auto is_bounded = [&](const CsgTree& tree) { return neighbours.is_within_its_primitives(tree); };
+    if (!std::ranges::all_of(written.united, is_bounded) || !std::ranges::all_of(written.taken, is_bounded)) {
       std::ranges::fill(leader_, 0);
       return;
     }
@@ -102,16 +97,11 @@ class Groups {
  private:
   void join_what_is_cut_by(std::size_t taken) {
     std::optional<std::size_t> first;
-    for (const CellIndex index : cells_.of(written_.taken[taken])) {
-      for (const PrimitiveIndex p : cells_[index]) {
-        for (auto [at, end] = std::ranges::equal_range(owners_, p, {}, &Owner::first); at != end; ++at) {
-          if (first && leader_of(at->second) == leader_of(*first)) continue;
-          if (!cells_.hold(written_.united[at->second], cells_[index])) continue;
-          if (first)
-            join(*first, at->second);
-          else
-            first = at->second;
-        }
+    for (const PrimitiveIndex p : neighbours_.of(written_.taken[taken])) {
+      for (auto owner = std::ranges::lower_bound(owners_, Owner{p, 0}); owner != owners_.end() && owner->first == p;
+           ++owner) {
+        if (!first) first = owner->second;
+        join(*first, owner->second);
       }
     }
     group_of_taken_[taken] = first.value_or(0);
@@ -131,7 +121,7 @@ class Groups {
   using Owner = std::pair<PrimitiveIndex, std::size_t>;  // a primitive, and which of what is united has it
 
   const Written& written_;
-  const Cells& cells_;
+  const Neighbours& neighbours_;
   std::vector<Owner> owners_;
   std::vector<std::size_t> leader_, group_of_taken_;
 };
@@ -139,7 +129,7 @@ class Groups {
 /// From the leaves up.
 class Writer {
  public:
-  explicit Writer(const CellComplex& complex) : cells_(complex) {}
+  explicit Writer(const CellComplex& complex) : neighbours_(complex) {}
 
   CsgTree write(const CsgTree& tree) {
     for (const CsgNode node : tree.nodes()) add(node);
@@ -184,18 +174,18 @@ class Writer {
   /// As operands of a union, where groups save a level each time.
   std::vector<CsgTree> united(Written written) {
     if (written.taken.empty()) return std::move(written.united);
-    return Groups(written, cells_).trees();
+    return Groups(written, neighbours_).trees();
   }
 
   /// By itself, where they need not.
   CsgTree alone(const Written& written) {
     const CsgTree outermost = tree_of(written);
     if (written.taken.empty()) return outermost;
-    const CsgTree in_groups = unite_all(Groups(written, cells_).trees());
+    const CsgTree in_groups = unite_all(Groups(written, neighbours_).trees());
     return levels(in_groups) < levels(outermost) ? in_groups : outermost;
   }
 
-  Cells cells_;
+  Neighbours neighbours_;
   std::vector<Written> stack_;
 };
 

@@ -89,7 +89,7 @@ class CellSolver {
       note("minimal formulas");
     }
     if (!is_as_small_as_can_be() && !best_->cores.parts.needs_its_parts()) prove_without_choices(least_evidence);
-    if (!is_as_small_as_can_be() && options_.climb.work_limit > 0) {
+    if (!is_as_cheap_as_can_be() && options_.climb.work_limit > 0) {
       climb();
       note("climbing");
     }
@@ -121,23 +121,28 @@ class CellSolver {
 
   void try_with(double least_evidence, const MinimalFormulaOptions* minimal) {
     std::optional<TakenApart> parts = take_apart(complex_, labels_, least_evidence);
-    if (parts) keep_if_best(solve_sure_cells(std::move(*parts), least_evidence, minimal, run_));
+    if (!parts) return;
+    Solution solution = solve(std::move(*parts), least_evidence, minimal);
+    if (!best_ || total(solution.of_all) <= total(best_->of_all)) best_ = std::move(solution);
   }
 
-  void keep_if_best(Solution solution) {
+  /// With what it costs.
+  Solution solve(TakenApart parts, double least_evidence, const MinimalFormulaOptions* minimal) {
+    Solution solution = solve_sure_cells(std::move(parts), least_evidence, minimal, run_);
     CellSolution& all = solution.of_all;
     if (std::ranges::find(tried_, all.tree) == tried_.end()) tried_.push_back(all.tree);
     all.cost = cost_of(complex_, cells_in(all.tree, complex_), labels_.density, labels_.options);
-    if (!best_ || total(all) <= total(best_->of_all)) best_ = std::move(solution);
+    return solution;
   }
 
   /// Where primitives were left out, others might have been: only what all cells over all primitives need is proved.
   void prove_without_choices(double least_evidence) {
     std::optional<TakenApart> parts = take_apart_only(complex_, labels_, least_evidence);
     if (!parts || !parts->needs_its_parts() || !std::ranges::all_of(parts->cores, is_small)) return;
-    Solution solution = solve_sure_cells(std::move(*parts), least_evidence, &options_.minimal, run_);
+    Solution solution = solve(std::move(*parts), least_evidence, &options_.minimal);
     const std::optional<std::size_t> least = solution.of_all.least_leaves;
-    keep_if_best(std::move(solution));
+    // As good is not enough: what it makes of the cells that are open is as arbitrary.
+    if (total(solution.of_all) < total(best_->of_all)) best_ = std::move(solution);
     CellSolution& best = best_->of_all;
     if (best.least_evidence == least_evidence) best.least_leaves = std::max(best.least_leaves, least);
     note("minimal formulas over all");
@@ -164,6 +169,11 @@ class CellSolver {
 
   [[nodiscard]] bool is_as_small_as_can_be() const {
     return is_constant(best_->of_all.tree) || best_->of_all.is_minimal();
+  }
+  /// But for less than a leaf: no labels cost less than those of the cut.
+  [[nodiscard]] bool is_as_cheap_as_can_be() const {
+    const CellSolution& best = best_->of_all;
+    return is_constant(best.tree) || (best.is_minimal() && best.cost < labels_.cost + options_.leaf_cost);
   }
   [[nodiscard]] double price_of(std::size_t leaves) const { return options_.leaf_cost * static_cast<double>(leaves); }
   [[nodiscard]] double total(const CellSolution& of) const { return of.cost + price_of(leaf_count(of.tree)); }

@@ -187,18 +187,18 @@ test("the tree is used by the keyboard", async () => {
   const { page, close } = await open();
   const focused = () => page.evaluate(() => document.activeElement?.getAttribute("aria-label"));
   await page.getByRole("tree").getByRole("treeitem").first().focus();
-  assert.match(await focused(), /^Difference/);
+  assert.match(await focused(), /^Union of 12/);
   await page.keyboard.press("ArrowDown");
-  assert.match(await focused(), /^Union/);
+  assert.match(await focused(), /^Difference of 2/);
   await page.keyboard.press("ArrowLeft");
   assert.equal(await page.locator("#node-1").getAttribute("aria-expanded"), "false");
-  assert.ok(await page.getByRole("treeitem", { name: "Cylinder_0" }).isHidden());
+  assert.ok(await page.getByRole("treeitem", { name: "Cylinder_2" }).isHidden());
   await page.keyboard.press("ArrowDown");
-  assert.match(await focused(), /^minus Sphere/);
+  assert.match(await focused(), /^Cylinder_0/);
   await page.keyboard.press("ArrowUp");
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("ArrowRight");
-  assert.match(await focused(), /^Difference of 2/);
+  assert.match(await focused(), /^Cylinder_2/);
   await page.keyboard.type("Box_3");
   assert.match(await focused(), /^Box_3/);
   await page.keyboard.press("Enter");
@@ -208,7 +208,7 @@ test("the tree is used by the keyboard", async () => {
   await page.keyboard.press("End");
   assert.match(await focused(), /^minus Sphere/);
   await page.keyboard.press("Home");
-  assert.match(await focused(), /^Difference/);
+  assert.match(await focused(), /^Union of 12/);
   // One stop for the whole tree.
   assert.equal(await page.locator('[role="treeitem"][tabindex="0"]').count(), 1);
   await page.keyboard.press("Escape");
