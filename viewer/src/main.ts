@@ -42,7 +42,7 @@ function header(report: Report, store: Store): HTMLElement {
   const facts = [
     cloud ? plural(cloud.points, "point") : null,
     plural(primitives.length, "primitive"),
-    plural(solid.nodes.length, "node"),
+    plural(solid.nodes.filter((node) => node.primitive !== null).length, "leaf", "leaves"),
     deviation ? `rms ${figures(deviation.all.rms)}` : null,
   ].filter((fact) => fact !== null);
   return h(
