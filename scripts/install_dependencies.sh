@@ -8,7 +8,7 @@ packages=(
   libceres-dev libembree-dev libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtomlplusplus-dev libfmt-dev
   libocct-data-exchange-dev zlib1g-dev libpng-dev libmeshoptimizer-dev libcpp-httplib-dev
   pybind11-dev python3-dev python3-numpy python3-pytest
-  libgtest-dev librapidcheck-dev libbenchmark-dev openscad gnuplot-nox chromium groff-base zsh fish
+  libgtest-dev librapidcheck-dev libbenchmark-dev openscad freecad-python3 gnuplot-nox chromium groff-base zsh fish
 )
 # The page of reports is built by Node.js. One that is there already, from wherever, is used; Debian's npm is large.
 command -v node >/dev/null || packages+=(nodejs)

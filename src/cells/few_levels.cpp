@@ -179,9 +179,9 @@ class Writer {
 
   /// By itself, where they need not.
   CsgTree alone(const Written& written) {
-    const CsgTree outermost = tree_of(written);
+    CsgTree outermost = tree_of(written);
     if (written.taken.empty()) return outermost;
-    const CsgTree in_groups = unite_all(Groups(written, neighbours_).trees());
+    CsgTree in_groups = unite_all(Groups(written, neighbours_).trees());
     return levels(in_groups) < levels(outermost) ? in_groups : outermost;
   }
 

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "base/atomic_file.hpp"
+#include "cloud2csg/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "mesh/model_extent.hpp"
@@ -152,6 +153,27 @@ print("KINDS", *(thing.TypeId for thing in document.Objects), "END")
     ASSERT_NE(place, std::string::npos) << run.output;
     EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / volume_of_mesh(model), 1, 0.01);
     EXPECT_NE(run.output.find(" Part::Sphere "), std::string::npos) << run.output;
+  }
+}
+
+TEST(FreeCadProgram, OpensStepFilesOfTheTreesVolume) {
+  const std::string program = freecad();
+  if (program.empty()) GTEST_SKIP() << "needs FreeCAD's freecadcmd (Debian: freecad-python3)";
+  if (!has_brep()) GTEST_SKIP() << "built without OpenCASCADE";
+  for (const Model& model : {test::paper_model("m0"), test::paper_model("m2"), test::flange()}) {
+    const test::ScratchFolder folder;
+    const ExportReport report = export_model(folder.file("part.step"), model);
+    ASSERT_TRUE(report.brep.has_value());
+    write_text_file(folder.file("read.py"), R"(import Part
+shape = Part.Shape()
+shape.read("part.step")
+print("VOLUME", shape.Volume, "SOLIDS", len(shape.Solids), "VALID", shape.isValid())
+)");
+    const test::Run run = test::run_in(folder, "HOME=. timeout 300 " + program + " read.py");
+    const std::size_t place = run.output.find("VOLUME ");
+    ASSERT_NE(place, std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("VALID True"), std::string::npos) << run.output;
+    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / report.brep->tree_volume, 1, 1e-3);
   }
 }
 
