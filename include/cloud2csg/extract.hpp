@@ -45,7 +45,7 @@ struct ExtractOptions {
   GaOptions search = {};                       ///< its seed is not used: see below
   /// automatic: try cells first, and take their tree where the points contradict at most what is missing here to 1 of
   /// what they say, and enough say something. Elsewhere partitions are searched too, and the tree of the higher E is
-  /// taken. Above 1: no cells.
+  /// taken. 0: the tree of the cells wherever there is one; above 1: no cells.
   double cell_trust = 0.97;
   SampleCounts cell_samples = {};
   LabelOptions cell_labels = {};

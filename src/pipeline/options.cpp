@@ -120,7 +120,8 @@ void validate(const ExtractOptions& options) {
     require(std::isfinite(*options.overlap_tolerance) && *options.overlap_tolerance >= 0, "overlap_tolerance",
             fmt::format("expected a number >= 0, found {}", *options.overlap_tolerance));
   }
-  require_positive(options.cell_trust, "cell_trust");
+  require(std::isfinite(options.cell_trust) && options.cell_trust >= 0, "cell_trust",
+          fmt::format("expected a number >= 0, found {}", options.cell_trust));
   require(options.cell_samples.base >= 1, "cell_samples.base", "expected 1 or more, found 0");
   require(options.cell_labels.absence >= 0, "cell_labels.absence", "expected a number >= 0");
   require(options.cell_labels.absence_in_scans >= 0, "cell_labels.absence_in_scans", "expected a number >= 0");

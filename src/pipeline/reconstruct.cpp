@@ -137,13 +137,17 @@ FitStatistics fit_with(double noise, const CsgTree& tree, const PrimitiveSet& pr
                      without_stop(run));
 }
 
+/// There is a tree already to fall back on: no need to search partitions where the cells say little, or are
+/// contradicted.
+ExtractOptions with_cells_alone(ExtractOptions options) {
+  options.cell_trust = 0;
+  return options;
+}
+
 /// The smallest tree over the chosen solids that the points bear out; or that of the choice, when it costs less.
 Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared, const ReconstructOptions& options,
                         const RunContext& run) {
-  ExtractOptions extraction = options.extraction;
-  // There is a tree already to fall back on: no need to search partitions where the cells' is contradicted.
-  constexpr double k_any_trust = 1e-9;
-  if (extraction.strategy == Strategy::automatic) extraction.cell_trust = k_any_trust;
+  const ExtractOptions extraction = with_cells_alone(options.extraction);
   Extraction result = extract_csg(prepared.cloud, choice.solids, extraction, run);
   if (cost_of(choice.tree, choice, options.solids) < cost_of(result.tree, choice, options.solids)) {
     result.tree = choice.tree;
@@ -167,7 +171,7 @@ void refine_found(Reconstruction& found, const ReconstructOptions& options, doub
                   const RunContext& run) {
   ExtractStatistics& before = found.statistics;
   if (!options.refine || !before.complete) return;
-  ExtractOptions extraction = options.extraction;
+  ExtractOptions extraction = with_cells_alone(options.extraction);
   if (extraction.time_limit_seconds) {
     extraction.time_limit_seconds = seconds_left(*extraction.time_limit_seconds, seconds_gone);
   }
