@@ -16,7 +16,7 @@
 namespace cloud2csg::app {
 namespace {
 
-constexpr std::streamsize k_looked_at = 512;
+constexpr std::streamsize k_looked_at = 4096;
 
 enum class Beginning : std::uint8_t {
   is_it,     ///< the file begins so, letters in either case
@@ -33,7 +33,7 @@ struct Kind {
 /// Kinds of files that have a mark, or one of several. Binary .stl begins with anything; all others are text.
 constexpr std::array<Kind, 11> k_marked{
     {{".html", "HTML page", "<!doctype html>"},
-     {".json", "model or statistics of cloud2csg", R"("format": "cloud2csg")", Beginning::within_it},
+     {".json", "model or statistics of cloud2csg", R"("format":"cloud2csg")", Beginning::within_it},
      {".json", "", "\"unassigned_points\":", Beginning::within_it},
      {".png", "PNG picture", "\x89PNG"},
      {".ply", "PLY file", "ply"},
@@ -56,9 +56,21 @@ bool is_same_letter(char a, char b) {
   return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
 }
 
+bool has(std::string_view text, std::string_view mark, Beginning beginning) {
+  const auto at = std::search(text.begin(), text.end(), mark.begin(), mark.end(), is_same_letter);
+  return beginning == Beginning::within_it ? at != text.end() : at == text.begin();
+}
+
+/// JSON is the same with spaces or without.
+std::string without_spaces(std::string_view text) {
+  std::string kept(text);
+  std::erase_if(kept, [](unsigned char letter) { return std::isspace(letter) != 0; });
+  return kept;
+}
+
 bool bears(std::string_view begin, const Kind& kind) {
-  const auto at = std::search(begin.begin(), begin.end(), kind.mark.begin(), kind.mark.end(), is_same_letter);
-  return kind.beginning == Beginning::within_it ? at != begin.end() : at == begin.begin();
+  if (kind.ending == ".json") return has(without_spaces(begin), kind.mark, kind.beginning);
+  return has(begin, kind.mark, kind.beginning);
 }
 
 }  // namespace

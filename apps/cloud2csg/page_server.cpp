@@ -19,6 +19,8 @@ constexpr int k_wrong_method = 405;
 constexpr int k_forbidden = 403;
 
 bool is_own_host(const std::string& host, int port) {
+  constexpr int k_not_named = 80;  // browsers leave it out
+  if (port == k_not_named && (host == k_loopback || host == "localhost")) return true;
   const std::string with_port = fmt::format(":{}", port);
   return host == k_loopback + with_port || host == "localhost" + with_port;
 }

@@ -13,8 +13,10 @@ namespace {
 
 constexpr std::string_view k_token_start = "cloud2csg-name-";
 
-bool is_printable_ascii(std::uint32_t code) {
-  return code >= 0x20 && code < 0x7F;
+/// An apostrophe may be doubled, says the standard; but some readers, OpenCASCADE's too, take it for the string's end
+/// where a bracket or comma follows.
+bool stands_for_itself(std::uint32_t code) {
+  return code >= 0x20 && code < 0x7F && code != '\'';
 }
 
 std::string escaped(std::uint32_t code) {
@@ -36,12 +38,12 @@ std::string step_string(std::string_view utf8) {
     const Utf8Character character =
         first_character(utf8).value_or(Utf8Character{.code = static_cast<unsigned char>(utf8[0]), .bytes = 1});
     utf8.remove_prefix(character.bytes);
-    if (!is_printable_ascii(character.code)) {
+    if (!stands_for_itself(character.code)) {
       out += escaped(character.code);
       continue;
     }
     const char plain = static_cast<char>(character.code);
-    out.append(plain == '\'' || plain == '\\' ? 2 : 1, plain);
+    out.append(plain == '\\' ? 2 : 1, plain);
   }
   return out + "'";
 }

@@ -42,6 +42,12 @@ TEST_F(Overwriting, LeavesOtherFilesAlone) {
   }
 }
 
+TEST_F(Overwriting, ModelsMayBeWithoutSpaces) {
+  const std::string older = file("compact.json", R"({"format":"cloud2csg","version":1,"primitives":[]})");
+  const Outcome written = run({"convert", shipped("m1.json"), "-o", older});
+  EXPECT_EQ(written.status, 0) << written.err;
+}
+
 TEST_F(Overwriting, StatisticsTakeTheirOwnKind) {
   ASSERT_EQ(run({"sample", shipped("m1.json"), "-n", "500", "-o", path("c.ply")}).status, 0);
   for (int k = 0; k < 2; ++k) {

@@ -9,7 +9,7 @@ namespace {
 
 TEST(StepString, EscapesWhatTheStandardSays) {
   EXPECT_EQ(step_string("plain (1)"), "'plain (1)'");
-  EXPECT_EQ(step_string("it's"), "'it''s'");
+  EXPECT_EQ(step_string("it's ('a')"), "'it\\X\\27s (\\X\\27a\\X\\27)'");
   EXPECT_EQ(step_string("a\\b"), "'a\\\\b'");
   EXPECT_EQ(step_string("a\nb\t"), "'a\\X\\0Ab\\X\\09'");
   EXPECT_EQ(step_string("Größe"), "'Gr\\X\\F6\\X\\DFe'");

@@ -156,25 +156,45 @@ print("KINDS", *(thing.TypeId for thing in document.Objects), "END")
   }
 }
 
+/// What FreeCAD sees in a .step file: "VOLUME x SOLIDS n VALID True".
+std::string seen_in_step(const test::ScratchFolder& folder, const std::string& program) {
+  write_text_file(folder.file("read.py"), R"(import Part
+shape = Part.Shape()
+shape.read("part.step")
+print("VOLUME", shape.Volume, "SOLIDS", len(shape.Solids), "VALID", shape.isValid())
+)");
+  const std::string output = test::run_in(folder, "HOME=. timeout 300 " + program + " read.py").output;
+  const std::size_t place = output.find("VOLUME ");
+  EXPECT_NE(place, std::string::npos) << output;
+  return place == std::string::npos ? "" : output.substr(place, output.find('\n', place) - place);
+}
+
 TEST(FreeCadProgram, OpensStepFilesOfTheTreesVolume) {
   const std::string program = freecad();
   if (program.empty()) GTEST_SKIP() << "needs FreeCAD's freecadcmd (Debian: freecad-python3)";
   if (!has_brep()) GTEST_SKIP() << "built without OpenCASCADE";
   for (const Model& model : {test::paper_model("m0"), test::paper_model("m2"), test::flange()}) {
     const test::ScratchFolder folder;
-    const ExportReport report = export_model(folder.file("part.step"), model);
+    const ExportReport report = export_model(folder.file("part.step"), model, {.brep = {.name = "a part ('a')"}});
     ASSERT_TRUE(report.brep.has_value());
-    write_text_file(folder.file("read.py"), R"(import Part
-shape = Part.Shape()
-shape.read("part.step")
-print("VOLUME", shape.Volume, "SOLIDS", len(shape.Solids), "VALID", shape.isValid())
-)");
-    const test::Run run = test::run_in(folder, "HOME=. timeout 300 " + program + " read.py");
-    const std::size_t place = run.output.find("VOLUME ");
-    ASSERT_NE(place, std::string::npos) << run.output;
-    EXPECT_NE(run.output.find("VALID True"), std::string::npos) << run.output;
-    EXPECT_NEAR(std::stod(run.output.substr(place + 7)) / report.brep->tree_volume, 1, 1e-3);
+    const std::string seen = seen_in_step(folder, program);
+    ASSERT_NE(seen.find("VALID True"), std::string::npos) << seen;
+    EXPECT_NEAR(std::stod(seen.substr(7)) / report.brep->tree_volume, 1, 1e-3) << seen;
   }
+}
+
+TEST(FreeCadProgram, SeesTheSameSolidsWhateverTheirNames) {
+  const std::string program = freecad();
+  if (program.empty()) GTEST_SKIP() << "needs FreeCAD's freecadcmd (Debian: freecad-python3)";
+  if (!has_brep()) GTEST_SKIP() << "built without OpenCASCADE";
+  const test::ScratchFolder folder;
+  Model model = test::flange();
+  export_model(folder.file("part.step"), model, {.brep = {.name = "part", .with_primitives = true}});
+  const std::string harmless = seen_in_step(folder, program);
+  model.primitives[0].id = "rod ('left')";
+  model.primitives[1].id = "6', long";
+  export_model(folder.file("part.step"), model, {.brep = {.name = "a part ('a')", .with_primitives = true}});
+  EXPECT_EQ(seen_in_step(folder, program), harmless);
 }
 
 TEST(FreeCadProgram, MakesTheTreesVolume) {
