@@ -27,7 +27,7 @@ TEST(StepString, TakesBrokenTextForLatin1) {
 TEST(StepNames, TakeThePlaceOfTheirTokens) {
   const std::array<std::string, 2> names{"it's", "cloud2csg-name-0"};
   const std::string text = "A('" + name_token(0) + "','" + name_token(1) + "','" + name_token(0) + "');";
-  EXPECT_EQ(with_names(text, names), "A('it''s','cloud2csg-name-0','it''s');");
+  EXPECT_EQ(with_names(text, names), R"(A('it\X\27s','cloud2csg-name-0','it\X\27s');)");
 }
 
 TEST(StepNames, LeaveAllElseAsItIs) {
