@@ -122,12 +122,13 @@ void DetectCommand::run(std::stop_token stop) const {
   fmt::print("{}", table);
   for (const std::string& warning : input.warnings) session.display().note("warning: " + warning);
   for (const std::string& warning : found.warnings) session.display().note("warning: " + warning);
-  session.display().note(
-      fmt::format("{} surfaces, {} of {} points on none; {} values snapped; {} solids; noise {:.3g}, "
-                  "tolerance {:.3g}",
-                  found.detection.surfaces.size(), found.detection.unexplained, found.prepared.cloud.size(),
-                  found.choice.snaps.size(), found.choice.solids.size(), found.prepared.scale.noise,
-                  found.detection.distance_tolerance));
+  const LargestChange largest = largest_change(found.choice.snaps);
+  session.display().note(fmt::format(
+      "{} surfaces, {} of {} points on none; {} values snapped, by at most {:.2g} and {:.2g} deg; {} solids; "
+      "noise {:.3g}, tolerance {:.3g}",
+      found.detection.surfaces.size(), found.detection.unexplained, found.prepared.cloud.size(),
+      found.choice.snaps.size(), largest.shift, largest.turn_deg, found.choice.solids.size(),
+      found.prepared.scale.noise, found.detection.distance_tolerance));
 }
 
 void add_options(CLI::App& app, DetectCommand& command) {

@@ -35,7 +35,6 @@ struct Extracted {
   PointCloud points;
   PrimitiveSet solids;
   Extraction result;
-  std::vector<Snap> snaps = {};  // of the surfaces that the solids were made of
 };
 
 struct ExtractCommand {
@@ -124,7 +123,6 @@ void ExtractCommand::report(Extracted extracted, std::vector<ReportDownload> dow
                 .model = {.primitives = std::move(extracted.solids), .tree = extracted.result.tree},
                 .cloud = std::move(extracted.points),
                 .statistics = outcome,
-                .snaps = std::move(extracted.snaps),
                 .parameters = parameters,
                 .downloads = std::move(downloads)};
   const std::vector<ReportParameter> in_force = parameters_of(arguments.options());
@@ -158,8 +156,7 @@ Extracted ExtractCommand::extract(Input input, const PrimitiveSet& given, const 
   Reconstruction found = naming(files, [&] { return reconstruct(input.cloud, from_raw, run); });
   return {.points = std::move(found.cloud),
           .solids = std::move(found.solids),
-          .result = {.tree = std::move(found.tree), .statistics = std::move(found.statistics)},
-          .snaps = std::move(found.snaps)};
+          .result = {.tree = std::move(found.tree), .statistics = std::move(found.statistics)}};
 }
 
 std::vector<std::string> ExtractCommand::check_files() const {

@@ -47,14 +47,16 @@ std::string refine_line(const RefineStatistics& s) {
 
 /// How the primitives were found.
 std::vector<std::string> finding_lines(const FindingStatistics& s, const StageSeconds& seconds) {
-  const auto [planes, spheres, cylinders, cones, tori] = s.surfaces;
+  const auto count = [&s](SurfaceType type) { return std::ranges::count(s.surfaces, type); };
+  const LargestChange largest = largest_change(s.snaps);
   std::vector<std::string> lines{
       fmt::format("scale        diagonal {:.4g}, spacing {:.3g}, noise {:.3g}: tolerance {:.3g}{}", s.diagonal,
                   s.spacing, s.noise, s.tolerance, s.normals_estimated ? "; normals estimated" : ""),
-      fmt::format("surfaces     {} planes, {} spheres, {} cylinders, {} cones, {} tori; {} points on none", planes,
-                  spheres, cylinders, cones, tori, s.unexplained_points),
-      fmt::format("regular      {} values snapped, by at most {:.2g} and {:.2g} deg", s.snaps, s.largest_shift,
-                  s.largest_turn_deg),
+      fmt::format("surfaces     {} planes, {} spheres, {} cylinders, {} cones, {} tori; {} points on none",
+                  count(SurfaceType::plane), count(SurfaceType::sphere), count(SurfaceType::cylinder),
+                  count(SurfaceType::cone), count(SurfaceType::torus), s.unexplained_points),
+      fmt::format("regular      {} values snapped, by at most {:.2g} and {:.2g} deg", s.snaps.size(), largest.shift,
+                  largest.turn_deg),
       fmt::format("found in     {:.2f} s: clean {:.2f}, normals {:.2f}, detect {:.2f}, solids {:.2f}",
                   seconds.clean + seconds.normals + seconds.detect + seconds.solids, seconds.clean, seconds.normals,
                   seconds.detect, seconds.solids)};

@@ -13,6 +13,8 @@
 #include "cloud2csg/objective.hpp"
 #include "cloud2csg/refine.hpp"
 #include "cloud2csg/segmentation.hpp"
+#include "cloud2csg/solids.hpp"
+#include "cloud2csg/surface.hpp"
 
 /// The whole method: a cloud and fitted primitives in, one tree out.
 namespace cloud2csg {
@@ -136,14 +138,12 @@ struct FindingStatistics {
   bool normals_estimated = false;    ///< those given were of no use, or there were none
   double diagonal = 0, spacing = 0;  ///< see Scale
   double noise = 0, tolerance = 0;   ///< of the points; how far they may be from their surface
-  /// Planes, spheres, cylinders, cones, tori.
-  std::array<std::size_t, 5> surfaces = {};
-  std::size_t known = 0, known_points = 0;         ///< primitives that were known, and the points on them
-  std::size_t unexplained_points = 0;              ///< on no surface, and no known primitive
-  std::size_t snaps = 0;                           ///< what was made regular
-  double largest_turn_deg = 0, largest_shift = 0;  ///< ... and by how much
-  double disagreement = 0;                         ///< see SolidChoice
-  bool is_tree_of_choice = false;                  ///< the tree is the one that the solids were chosen with
+  std::vector<SurfaceType> surfaces = {};   ///< that were found, the order is that of Snap::surface
+  std::size_t known = 0, known_points = 0;  ///< primitives that were known, and the points on them
+  std::size_t unexplained_points = 0;       ///< on no surface, and no known primitive
+  std::vector<Snap> snaps = {};             ///< what was made regular, and by how much
+  double disagreement = 0;                  ///< see SolidChoice
+  bool is_tree_of_choice = false;           ///< the tree is the one that the solids were chosen with
 };
 
 struct TreeStatistics {

@@ -53,7 +53,6 @@ struct Reconstruction {
   PrimitiveSet solids;  ///< those known, then as chosen, with evidence
   CsgTree tree;         ///< over them
   ExtractStatistics statistics;
-  std::vector<Snap> snaps = {};  ///< what was made regular
 };
 
 /// find_primitives(), then extract_csg() over them. The tree is that of the extraction, or the one that the solids were

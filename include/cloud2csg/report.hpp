@@ -33,7 +33,6 @@ struct Report {
   Model model = {};         ///< with a tree
   std::optional<PointCloud> cloud = {};
   std::optional<ExtractStatistics> statistics = {};
-  std::vector<Snap> snaps = {};  ///< of the surfaces that the solids were made of
   std::vector<ReportParameter> parameters = {};
   std::vector<ReportDownload> downloads = {};
   std::vector<std::string> warnings = {};  ///< beyond those of the statistics

@@ -89,6 +89,13 @@ struct Snap {
   double change = 0;          ///< of a direction in degrees, of the others in units of length
 };
 
+/// Of directions in degrees, of all others in units of length; 0 where there are none.
+struct LargestChange {
+  double turn_deg = 0, shift = 0;
+};
+/// O(snaps).
+[[nodiscard]] LargestChange largest_change(std::span<const Snap> snaps);
+
 struct RegularSurfaces {
   std::vector<DetectedSurface> surfaces = {};  ///< as many as there were, in the same order
   std::vector<Snap> snaps = {};

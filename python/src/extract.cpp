@@ -26,7 +26,6 @@ struct Result {
   std::shared_ptr<Cloud> cloud;
   std::shared_ptr<Model> model;
   ExtractStatistics statistics;
-  std::vector<Snap> snaps = {};
 };
 
 struct Request {
@@ -79,8 +78,7 @@ Result extract_raw(const Cloud& cloud, const Request& request, const RunContext&
   auto used = std::make_shared<Cloud>(std::move(found.cloud), cloud.is_exact());
   return {.cloud = std::move(used),
           .model = std::make_shared<Model>(Model{.primitives = std::move(found.solids), .tree = std::move(found.tree)}),
-          .statistics = std::move(found.statistics),
-          .snaps = std::move(found.snaps)};
+          .statistics = std::move(found.statistics)};
 }
 
 Result extract(const py::object& cloud, const py::object& primitives, const AnyOptions& options,
@@ -118,8 +116,7 @@ Report report_of(const Result& result, const std::string& title) {
           .source = fmt::format("{} points", result.cloud->points().size()),
           .model = *result.model,
           .cloud = result.cloud->points(),
-          .statistics = result.statistics,
-          .snaps = result.snaps};
+          .statistics = result.statistics};
 }
 
 std::string repr_of(const Result& self) {

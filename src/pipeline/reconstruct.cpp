@@ -112,15 +112,8 @@ FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t known,
                                .known = known,
                                .known_points = count_of(of_known),
                                .unexplained_points = found.detection.unexplained,
-                               .snaps = found.choice.snaps.size()};
-  for (const DetectedSurface& s : found.detection.surfaces) {
-    ++statistics.surfaces[static_cast<std::size_t>(s.surface.type)];
-  }
-  for (const Snap& snap : found.choice.snaps) {
-    const bool is_turn = snap.kind == RegularityKind::direction || snap.kind == RegularityKind::given_direction;
-    double& largest = is_turn ? statistics.largest_turn_deg : statistics.largest_shift;
-    largest = std::max(largest, snap.change);
-  }
+                               .snaps = found.choice.snaps};
+  for (const DetectedSurface& s : found.detection.surfaces) statistics.surfaces.push_back(s.surface.type);
   return statistics;
 }
 
@@ -352,8 +345,7 @@ Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& op
   Reconstruction result{.cloud = std::move(found.prepared.cloud),
                         .solids = std::move(found.choice.solids),
                         .tree = std::move(extraction.tree),
-                        .statistics = std::move(statistics),
-                        .snaps = std::move(found.choice.snaps)};
+                        .statistics = std::move(statistics)};
   refine_found(result, rest, extracting.seconds(), run);
   StageSeconds& seconds = result.statistics.seconds;
   seconds.clean = found.prepared.clean_seconds;

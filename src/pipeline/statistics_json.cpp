@@ -100,8 +100,21 @@ Json refine_json(const RefineStatistics& s) {
           {"regularities", std::move(regularities)}};
 }
 
+/// Each with the surface that was changed, by its number among them, from 0, and its type.
+Json snaps_json(const FindingStatistics& s) {
+  Json list = Json::array();
+  for (const Snap& snap : s.snaps) {
+    list.push_back({{"kind", to_string(snap.kind)},
+                    {"surface", snap.surface},
+                    {"type", type_name(s.surfaces[snap.surface])},
+                    {"change", snap.change}});
+  }
+  return list;
+}
+
 Json finding_json(const FindingStatistics& s) {
-  const auto [planes, spheres, cylinders, cones, tori] = s.surfaces;
+  const auto count = [&s](SurfaceType type) { return std::ranges::count(s.surfaces, type); };
+  const LargestChange largest = largest_change(s.snaps);
   return {{"raw_points", s.raw_points},
           {"added_points", s.added_points},
           {"normals_estimated", s.normals_estimated},
@@ -109,18 +122,18 @@ Json finding_json(const FindingStatistics& s) {
           {"spacing", s.spacing},
           {"noise", s.noise},
           {"tolerance", s.tolerance},
-          {"surfaces", planes + spheres + cylinders + cones + tori},
-          {"planes", planes},
-          {"spheres", spheres},
-          {"cylinders", cylinders},
-          {"cones", cones},
-          {"tori", tori},
+          {"surfaces", s.surfaces.size()},
+          {"planes", count(SurfaceType::plane)},
+          {"spheres", count(SurfaceType::sphere)},
+          {"cylinders", count(SurfaceType::cylinder)},
+          {"cones", count(SurfaceType::cone)},
+          {"tori", count(SurfaceType::torus)},
           {"unexplained_points", s.unexplained_points},
           {"known", s.known},
           {"known_points", s.known_points},
-          {"snaps", s.snaps},
-          {"largest_turn_deg", s.largest_turn_deg},
-          {"largest_shift", s.largest_shift},
+          {"largest_turn_deg", largest.turn_deg},
+          {"largest_shift", largest.shift},
+          {"snaps", snaps_json(s)},
           {"disagreement", s.disagreement},
           {"is_tree_of_choice", s.is_tree_of_choice}};
 }

@@ -75,14 +75,6 @@ Json overlap_json(const PrimitiveSet& primitives, double tolerance, const RunCon
   return {{"tolerance", tolerance}, {"edges", std::move(edges)}, {"clique_count", count}, {"cliques", cliques}};
 }
 
-Json snaps_json(std::span<const Snap> snaps) {
-  Json list = Json::array();
-  for (const Snap& snap : snaps) {
-    list.push_back({{"kind", to_string(snap.kind)}, {"surface", snap.surface}, {"change", snap.change}});
-  }
-  return list;
-}
-
 Json parameters_json(std::span<const ReportParameter> parameters) {
   Json list = Json::array();
   for (const ReportParameter& p : parameters) {
@@ -128,7 +120,6 @@ std::string gather_payload(const Report& report, const ReportOptions& options, c
   loud.report("report", 2, k_steps);
   json["overlap"] = overlap_json(model.primitives, tolerance, run);
   json["statistics"] = report.statistics ? Json::parse(to_json(*report.statistics)) : Json(nullptr);
-  json["snaps"] = snaps_json(report.snaps);
   json["parameters"] = parameters_json(report.parameters);
   json["warnings"] = report.warnings;
   json["downloads"] = downloads_json(report, payload);

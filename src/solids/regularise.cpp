@@ -335,6 +335,16 @@ std::string_view to_string(RegularityKind kind) {
   return k_names[static_cast<std::size_t>(kind)];
 }
 
+LargestChange largest_change(std::span<const Snap> snaps) {
+  LargestChange largest;
+  for (const Snap& snap : snaps) {
+    const bool is_turn = snap.kind == RegularityKind::direction || snap.kind == RegularityKind::given_direction;
+    double& change = is_turn ? largest.turn_deg : largest.shift;
+    change = std::max(change, snap.change);
+  }
+  return largest;
+}
+
 RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
                            double angle_tolerance_deg, std::span<const FixedValues> fixed) {
   return Regulariser(surfaces, distance_tolerance, angle_tolerance_deg, fixed).run();

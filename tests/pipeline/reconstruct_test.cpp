@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -53,10 +54,27 @@ TEST(Reconstruct, FindsThePlateWithItsHolesAndBoss) {
     EXPECT_GT(iou(result, truth), 0.99);
     EXPECT_EQ(leaf_count(result.tree), 4U);
     ASSERT_TRUE(result.statistics.finding);
-    EXPECT_EQ(result.statistics.finding->surfaces[0], 7U);
-    EXPECT_EQ(result.statistics.finding->surfaces[2], 3U);
+    EXPECT_EQ(std::ranges::count(result.statistics.finding->surfaces, SurfaceType::plane), 7);
+    EXPECT_EQ(std::ranges::count(result.statistics.finding->surfaces, SurfaceType::cylinder), 3);
     EXPECT_LT(result.statistics.finding->disagreement, 0.03);
   }
+}
+
+TEST(Reconstruct, ItsStatisticsListWhatWasMadeRegular) {
+  const ExtractStatistics statistics = reconstruct(raw_cloud(plate(), 0.008)).statistics;
+  const auto json = nlohmann::json::parse(to_json(statistics))["finding"];
+  ASSERT_FALSE(json["snaps"].empty());
+  double turn = 0;
+  double shift = 0;
+  for (const auto& snap : json["snaps"]) {
+    ASSERT_LT(snap["surface"].get<std::size_t>(), json["surfaces"].get<std::size_t>());
+    EXPECT_EQ(snap["type"], type_name(statistics.finding->surfaces[snap["surface"].get<std::size_t>()]));
+    double& largest = snap["kind"] == "direction" ? turn : shift;
+    largest = std::max(largest, snap["change"].get<double>());
+  }
+  EXPECT_GT(turn, 0);
+  EXPECT_EQ(turn, json["largest_turn_deg"].get<double>());
+  EXPECT_EQ(shift, json["largest_shift"].get<double>());
 }
 
 bool has_warning(const Reconstruction& result, const std::string& part) {

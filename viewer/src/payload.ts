@@ -72,6 +72,14 @@ export interface CloudEntry {
   owners: Section;
 }
 
+/** A value of a surface, which is known by its number and type, that was made regular. */
+export interface Snap {
+  kind: string;
+  surface: number;
+  type: string;
+  change: number;
+}
+
 export interface Statistics {
   strategy: string;
   threads: number;
@@ -91,7 +99,7 @@ export interface Statistics {
     p95_angle_deg: number;
     unexplained_points: number;
   };
-  finding: Record<string, number | boolean> | null;
+  finding: { snaps: Snap[]; [field: string]: unknown } | null;
   cells: Record<string, unknown> | null;
   refine: {
     is_taken: boolean;
@@ -111,7 +119,6 @@ export interface ReportText {
   deviation?: Deviation;
   overlap: { tolerance: number; edges: [number, number][]; clique_count: number; cliques: number[][] } | null;
   statistics: Statistics | null;
-  snaps: { kind: string; surface: number; change: number }[];
   parameters: { group: string; name: string; value: string }[];
   warnings: string[];
   downloads: { name: string; content: Section }[];

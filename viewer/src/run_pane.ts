@@ -75,9 +75,9 @@ const k_snapped: Record<string, string> = {
 
 function regularities(report: Report): HTMLElement {
   const items: HTMLElement[] = [];
-  const kinds = [...new Set(report.text.snaps.map((snap) => snap.kind))];
-  for (const kind of kinds) {
-    const changes = report.text.snaps.filter((snap) => snap.kind === kind).map((snap) => snap.change);
+  const snaps = report.text.statistics?.finding?.snaps ?? [];
+  for (const kind of new Set(snaps.map((snap) => snap.kind))) {
+    const changes = snaps.filter((snap) => snap.kind === kind).map((snap) => snap.change);
     const unit = kind.endsWith("direction") ? "°" : "";
     items.push(
       h(
