@@ -17,6 +17,7 @@ case "${1:-}" in
   lint) packages+=(git clang clang-format clang-tidy python3) ;;
   instructions) packages+=(valgrind) ;;
   reference) packages=(doxygen python3) ;;
+  clean-debian) packages=(debootstrap) ;;
 esac
 
 missing=()
