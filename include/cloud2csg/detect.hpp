@@ -38,6 +38,7 @@ struct DetectedSurface {
   Surface surface;
   std::vector<std::uint32_t> points;  ///< that lie on it and are nearer to no other, ascending
   double rms = 0;                     ///< of their distances, in the cloud's units
+  double turn_deg = 0;                ///< standard deviation of the axis in its worst direction, by these points
 };
 
 struct Detection {

@@ -111,7 +111,8 @@ struct FixedValues {
 /// tolerance: a part that lies so is easier to edit. A value that several share is the mean by their points, so what
 /// has more is moved less. Parallel axes of cylinders of equal radius are put into rows and grids of equal steps and
 /// into circles of equal angles (regular_places.hpp). Turned surfaces keep their position, which should be near their
-/// points. `fixed` has one a surface, or none. O(surfaces^2).
+/// points. Where a surface's own points leave its direction more open (DetectedSurface::turn_deg), it is turned up to
+/// three standard deviations, at most three times the angle. `fixed` has one a surface, or none. O(surfaces^2).
 [[nodiscard]] RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
                                          double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
                                          std::span<const FixedValues> fixed = {});

@@ -58,7 +58,7 @@ std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimit
   const auto value = [](const std::optional<GrownSurface>& g) { return preference(g->surface.type) * g->support; };
   const auto best =
       std::max_element(grown.begin(), grown.end(), [&](const auto& a, const auto& b) { return value(a) < value(b); });
-  return with_simplest_type(std::move(**best), points, limits);
+  return with_simplest_type(with_widest_type(std::move(**best), points, limits), points, limits);
 }
 
 /// Takes one surface after the other, until many draws find none.
@@ -99,9 +99,20 @@ double rms_distance(const GrownSurface& grown, const WorkCloud& work) {
   });
 }
 
+/// What its points leave open of the axis, in degrees: a short piece of a pipe says little.
+double turn_of(const GrownSurface& grown, const WorkCloud& work) {
+  constexpr std::size_t k_points = 1000;  // of more, the axis is as sure as it need be
+  std::vector<Eigen::Vector3d> positions;
+  for (const OrientedPoint& p : work.some_of(grown.points, k_points)) positions.push_back(p.position);
+  const std::optional<SurfaceFit> fit = fit_surface(grown.surface, positions);
+  return fit ? fit->uncertainty.axis * 180 / std::numbers::pi : 0;
+}
+
 DetectedSurface detected(const GrownSurface& grown, const WorkCloud& work) {
-  DetectedSurface result{
-      .surface = in_the_cloud(grown.surface, work), .points = {}, .rms = rms_distance(grown, work) * work.diagonal};
+  DetectedSurface result{.surface = in_the_cloud(grown.surface, work),
+                         .points = {},
+                         .rms = rms_distance(grown, work) * work.diagonal,
+                         .turn_deg = turn_of(grown, work)};
   result.points.reserve(grown.points.size());
   for (const std::uint32_t i : grown.points) result.points.push_back(work.index[i]);
   std::sort(result.points.begin(), result.points.end());

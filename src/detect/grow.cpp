@@ -79,6 +79,30 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
   return best.points.empty() ? std::nullopt : std::optional(std::move(best));
 }
 
+GrownSurface with_widest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
+  constexpr std::array k_most_flexible{SurfaceType::cone, SurfaceType::torus};
+  if (grown.surface.type == SurfaceType::plane) return grown;
+  // Beyond the points that it has: these lie on it as well as they can, and hide what it should be.
+  SearchLimits wide = limits;
+  wide.agreement.distance *= 4;
+  const std::vector<OrientedPoint> around =
+      points.cloud().some_of(connected_points(grown.surface, points, wide), k_sample);
+  const auto value = [](const Surface& surface, double support) { return preference(surface.type) * support; };
+  for (const SurfaceType type : k_most_flexible) {
+    if (preference(type) >= preference(grown.surface.type)) continue;
+    const std::optional<Surface> other = estimate_plausible(type, around, limits.agreement);
+    if (!other || value(*other, support_of(*other, around, limits.agreement)) <=
+                      value(grown.surface, support_of(grown.surface, around, limits.agreement))) {
+      continue;
+    }
+    std::optional<GrownSurface> result = grow_surface(*other, points, limits);
+    if (result && value(result->surface, result->support) > value(grown.surface, grown.support)) {
+      grown = std::move(*result);
+    }
+  }
+  return grown;
+}
+
 GrownSurface with_simplest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
   constexpr std::array k_simplest_first{SurfaceType::plane, SurfaceType::sphere, SurfaceType::cylinder,
                                         SurfaceType::cone};

@@ -31,6 +31,10 @@ struct GrownSurface {
 [[nodiscard]] std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints& points,
                                                        const SearchLimits& limits);
 
+/// A cone or torus that the surface is a strip of, when that explains more. Locally nothing tells a slender cone from a
+/// cylinder.
+[[nodiscard]] GrownSurface with_widest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits);
+
 /// The same points as a surface of a simpler type, when that explains nearly as many.
 [[nodiscard]] GrownSurface with_simplest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits);
 

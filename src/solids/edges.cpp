@@ -55,9 +55,22 @@ std::vector<double> plane_offsets(const Eigen::Vector3d& direction, std::span<co
   return offsets;
 }
 
+/// Where a bent pipe goes over into a straight one along the direction: there is no edge, but the bend ends in a plane
+/// through its axis.
+std::vector<double> bend_offsets(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces) {
+  std::vector<double> offsets;
+  for (const DetectedSurface& detected : surfaces) {
+    const Surface& surface = detected.surface;
+    if (surface.type == SurfaceType::torus && are_orthogonal(surface.axis, direction)) {
+      offsets.push_back(surface.position.dot(direction));
+    }
+  }
+  return offsets;
+}
+
 /// The middle and both sides of what is round across the direction.
 std::vector<double> round_offsets(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces) {
-  std::vector<double> offsets;
+  std::vector<double> offsets = bend_offsets(direction, surfaces);
   for (const DetectedSurface& detected : surfaces) {
     const Surface& surface = detected.surface;
     const bool is_across = surface.type == SurfaceType::cylinder && are_orthogonal(surface.axis, direction);
@@ -167,6 +180,9 @@ Bins edges_along_axis(const DetectedSurface& surface, const Points& positions,
   std::vector<double> edges;
   for (const double offset : plane_offsets(axis, surfaces)) {
     add_distinct(edges, {offset - origin}, rules.plane_tolerance);
+  }
+  for (const double offset : bend_offsets(axis, surfaces)) {
+    add_distinct(edges, {offset - origin}, rules.derived_tolerance);
   }
   add_distinct(edges, reach_of(surface, positions), rules.derived_tolerance);
   auto [low, high] = extent(rules.bounds, axis);

@@ -16,13 +16,13 @@ struct EdgeRules {
   double derived_tolerance = 0;  ///< what curved surfaces suggest nearer to an edge than this is that edge
 };
 
-/// Edges along a direction: planes across it and, where there are any, the middles and sides of curved surfaces. Two at
-/// least, ascending.
+/// Edges along a direction: planes across it and, where there are any, the middles and sides of curved surfaces, and
+/// where bends end. Two at least, ascending.
 [[nodiscard]] Bins edges_along(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces,
                                const EdgeRules& rules);
 
-/// Edges along the axis of a cylinder or cone, measured from its position: planes across it, and how far its own points
-/// reach. Those of a cone begin at its apex or beyond.
+/// Edges along the axis of a cylinder or cone, measured from its position: planes across it, where bends end, and how
+/// far its own points reach. Those of a cone begin at its apex or beyond.
 [[nodiscard]] Bins edges_along_axis(const DetectedSurface& surface, const Points& positions,
                                     std::span<const DetectedSurface> surfaces, const EdgeRules& rules);
 

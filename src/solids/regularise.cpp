@@ -13,6 +13,9 @@
 namespace cloud2csg {
 namespace {
 
+constexpr double k_deviations = 3;       // that a direction may be off
+constexpr double k_most_tolerances = 3;  // ... but no more than this many times what surer ones may
+
 bool has_direction(SurfaceType type) {
   return type != SurfaceType::sphere;
 }
@@ -81,6 +84,12 @@ class Regulariser {
     if (change > 0) result_.snaps.push_back({.kind = kind, .surface = i, .change = change});
   }
 
+  /// Larger where its points leave more open.
+  [[nodiscard]] double sine_tolerance_of(std::uint32_t i) const {
+    const double sine = std::sin(result_.surfaces[i].turn_deg * std::numbers::pi / 180);
+    return std::clamp(k_deviations * sine, sine_tolerance_, k_most_tolerances * sine_tolerance_);
+  }
+
   std::vector<DirectionCluster> clusters() {
     std::vector<DirectionCluster> found;
     for (const std::uint32_t i : order(&FixedValues::direction)) {
@@ -88,7 +97,7 @@ class Regulariser {
       const Eigen::Vector3d axis = surface(i).axis;
       const double weight = weight_of(result_.surfaces[i]);
       const auto same = std::ranges::find_if(found, [&](const DirectionCluster& cluster) {
-        return cluster.direction.cross(axis).norm() <= sine_tolerance_;
+        return cluster.direction.cross(axis).norm() <= sine_tolerance_of(i);
       });
       if (same == found.end()) {
         found.push_back({.direction = axis, .weight = weight, .is_fixed = fixed_[i].direction, .surfaces = {i}});

@@ -65,6 +65,33 @@ TEST(DetectSurfaces, FindsConcaveSpheresConesAndTori) {
   EXPECT_NEAR(tori[0].minor_radius, 0.25, 0.01);
 }
 
+/// A strip of a slender cone is a cylinder, as far as its points can tell.
+TEST(DetectSurfaces, TakesSlenderConesForOneSurfaceEach) {
+  const test::Part cup = test::without_others(
+      {test::placed("outside", Cone{.radius_bottom = 2.5, .radius_top = 3.2, .height = 7}, {0, 0, 0}),
+       test::placed("inside", Cone{.radius_bottom = 2.25, .radius_top = 2.95, .height = 7}, {0, 0, 0.4})});
+  for (const double noise : {0.0, 0.02}) {
+    const Detection detection = detect(cloud_of(cup, noise, 40'000), noise);
+    EXPECT_EQ(count_of(detection, SurfaceType::plane), 3U);
+    EXPECT_EQ(detection.surfaces.size(), 5U);
+    for (const Surface& cone : by_radius(detection, SurfaceType::cone)) {
+      EXPECT_NEAR(cone.half_angle, std::atan(0.1), 0.003);
+    }
+  }
+}
+
+TEST(DetectSurfaces, SaysHowSureTheDirectionOfAShortPieceIs) {
+  const test::Part plate = test::plate_with_holes();
+  const Detection detection = detect(cloud_of(plate, 0.02, 20'000), 0.02);
+  for (const DetectedSurface& found : detection.surfaces) {
+    const double sine = found.surface.axis.cwiseAbs().maxCoeff();
+    const double off_deg = std::acos(std::min(sine, 1.0)) * 180 / std::numbers::pi;
+    EXPECT_GT(found.turn_deg, 0);
+    EXPECT_LT(off_deg, 5 * found.turn_deg) << type_name(found.surface.type);
+    EXPECT_LT(found.turn_deg, found.surface.type == SurfaceType::plane ? 0.3 : 2);
+  }
+}
+
 TEST(DetectSurfaces, TakesFacesInOnePlaneForOne) {
   // Three blocks on a base, equally high.
   PrimitiveSet primitives{test::placed("base", Box{{8, 2, 1}}, {0, 0, 0})};

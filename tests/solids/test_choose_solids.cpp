@@ -161,6 +161,16 @@ TEST(ChooseSolids, FindsAConeAndATorus) {
                    2);
 }
 
+/// Nothing is seen of where the bend goes over into the straight pipes.
+TEST(ChooseSolids, FindsABentPipe) {
+  const Part pipe =
+      part_of({test::placed("bend", Torus{3, 1}, {0, 0, 0}), test::placed("quarter", Box{{6, 6, 4}}, {3, 3, 0}),
+               turned(test::placed("down", Cylinder{1, 2.5}, {3, -1.25, 0}), {1, 0, 0}, 90),
+               turned(test::placed("left", Cylinder{1, 2.5}, {-1.25, 3, 0}), {0, 1, 0}, 90)},
+              "(bend & quarter) | down | left");
+  expect_recovered(pipe, 4);
+}
+
 TEST(ChooseSolids, DoesNotDependOnScaleOrPlace) {
   const Part part = plate_with_holes();
   Part large = part;

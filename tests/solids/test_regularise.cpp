@@ -57,6 +57,21 @@ TEST(Regularise, LeavesWhatIsFarFromRegular) {
   }
 }
 
+/// A short piece of a bore is turned farther than what is sure of its direction.
+TEST(Regularise, TurnsWhatIsUnsureFarther) {
+  DetectedSurface bore = with_points(cylinder_at({0, 0, 0}, turned(k_z, k_x, 2), 1), 100);
+  const DetectedSurface face = with_points(test::plane_at({0, 0, 1}, k_z), 1000);
+  for (const double sure_to_deg : {0.1, 0.8}) {
+    bore.turn_deg = sure_to_deg;
+    const RegularSurfaces regular = regularise(std::vector{face, bore}, k_tolerance);
+    const bool is_parallel = regular.surfaces[0].surface.axis.cross(regular.surfaces[1].surface.axis).norm() < 1e-9;
+    EXPECT_EQ(is_parallel, sure_to_deg > 0.5);
+  }
+  bore.surface.axis = turned(k_z, k_x, 4);
+  bore.turn_deg = 10;
+  EXPECT_TRUE(regularise(std::vector{face, bore}, k_tolerance).snaps.empty()) << "what is not known is not made up";
+}
+
 /// Six bores with counterbores around a hub of another radius, all off by some: they move together.
 TEST(Regularise, PutsAxesOfEqualCylindersIntoCircles) {
   std::vector<DetectedSurface> surfaces{with_points(test::plane_at({0, 0, 1}, k_z), 1000),
