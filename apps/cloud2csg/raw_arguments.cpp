@@ -45,7 +45,7 @@ ReconstructOptions RawArguments::options(const ExtractOptions& extraction, const
   ReconstructOptions options{.extraction = extraction};
   options.preparation.clean.remove_outliers = !keeps_outliers;
   options.preparation.clean.point_budget = point_budget;
-  options.close_unseen_side = !leaves_open;
+  options.close_unseen = !leaves_open;
   options.preparation.keep_normals = !estimates_normals;
   // Points drawn from a mesh lie on it, and so do not have to be looked at.
   options.preparation.is_exact = input.mesh.has_value() && !estimates_normals;
@@ -109,8 +109,10 @@ void add_raw_arguments(CLI::App& app, RawArguments& arguments, const std::string
       ->group(group);
   app.add_flag("--keep-outliers", arguments.keeps_outliers, "Do not look for outliers: the cloud is clean")
       ->group(group);
-  app.add_flag("--leave-open", arguments.leaves_open,
-               "Do not close a side without any points, as that on which a scanned part stood, by a plane")
+  app.add_flag(
+         "--leave-open", arguments.leaves_open,
+         "Do not close a side without any points, as that on which a scanned part stood, by a plane, nor go on with "
+         "walls of bores that no sensor saw")
       ->group(group);
   app.add_option("--point-budget", arguments.point_budget, "Larger clouds are thinned to about so many points")
       ->transform(whole_number_from(1000))

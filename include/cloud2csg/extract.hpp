@@ -134,7 +134,7 @@ struct CellStatistics {
 /// Of the way from a raw cloud to primitives.
 struct FindingStatistics {
   std::size_t raw_points = 0;        ///< that were given; those that were left out are not in ExtractStatistics::points
-  std::size_t added_points = 0;      ///< on a side that has none, by which it was closed
+  std::size_t added_points = 0;      ///< on a side that has none, and on hidden walls
   bool normals_estimated = false;    ///< those given were of no use, or there were none
   double diagonal = 0, spacing = 0;  ///< see Scale
   double noise = 0, tolerance = 0;   ///< of the points; how far they may be from their surface

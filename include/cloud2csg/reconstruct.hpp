@@ -18,9 +18,10 @@ struct ReconstructOptions {
   PrimitiveSet known = {};
   PrepareOptions preparation = {};
   DetectOptions detection = {};
-  /// Close a side that is missing as a whole, as that on which the part stood, by a plane: else nothing tells how far
-  /// the solid reaches there. Not where primitives are known.
-  bool close_unseen_side = true;
+  /// Close a side that is missing as a whole, as that on which the part stood, by a plane, and go on with the walls of
+  /// bores where no sensor could see them: else nothing tells how far the solid reaches there. Not where primitives are
+  /// known.
+  bool close_unseen = true;
   SolidOptions solids = {};
   ExtractOptions extraction = {};
   /// Then move and size the solids to where the points are, as in extract_refined_csg(), and take them and the tree
@@ -31,7 +32,7 @@ struct ReconstructOptions {
 struct FoundPrimitives {
   PreparedCloud prepared;        ///< the cloud that everything else speaks of
   Detection detection;           ///< the surfaces that it lies on, beyond what lies on known primitives
-  std::size_t added_points = 0;  ///< on a side that was not seen: the last ones of the cloud
+  std::size_t added_points = 0;  ///< on what was not seen, a side or walls: the last ones of the cloud
   SolidChoice choice;            ///< those known, a few solids that surfaces bound, with evidence, and a tree over them
   std::vector<SurfacePoints> points;  ///< of the prepared cloud, that lie on each of these solids
   double detect_seconds = 0, choose_seconds = 0;

@@ -183,8 +183,10 @@ void bind_finding(py::module_& module) {
           "Primitives that are known, which are kept as they are: only what the points show beyond them is detected.")
       .nested("preparation", &ReconstructOptions::preparation, "The cloud is cleaned and oriented.")
       .nested("detection", &ReconstructOptions::detection, "Surfaces are detected.")
-      .field("close_unseen_side", &ReconstructOptions::close_unseen_side,
-             "Close a side that is missing as a whole, as that on which the part stood, by a plane.")
+      .field("close_unseen", &ReconstructOptions::close_unseen,
+             "Close a side that is missing as a whole, as that on which the part stood, by a plane, and go on with the "
+             "walls "
+             "of bores where no sensor could see them.")
       .nested("solids", &ReconstructOptions::solids, "Solids are chosen.")
       .nested("extraction", &ReconstructOptions::extraction, "A tree over them is extracted.")
       .field("refine", &ReconstructOptions::refine,

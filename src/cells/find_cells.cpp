@@ -6,10 +6,10 @@
 
 #include "cells/crossings.hpp"
 #include "cells/infinity.hpp"
-#include "cells/sensor_views.hpp"
 #include "cells/sight_lines.hpp"
 #include "cells/surface_samples.hpp"
 #include "fitness/spatial_order.hpp"
+#include "segment/sensor_views.hpp"
 
 namespace cloud2csg {
 namespace {

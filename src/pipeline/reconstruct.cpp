@@ -17,6 +17,7 @@
 #include "pipeline/detect_rest.hpp"
 #include "pipeline/fit.hpp"
 #include "pipeline/time_limit.hpp"
+#include "solids/hidden_walls.hpp"
 #include "solids/unseen_side.hpp"
 
 namespace cloud2csg {
@@ -206,12 +207,33 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   DetectedSurface plane{.surface = {.position = side->points.positions[0], .axis = side->normal}, .points = {}};
   plane.points.resize(side->points.size());
   std::iota(plane.points.begin(), plane.points.end(), static_cast<std::uint32_t>(cloud.size()));
-  found.added_points = side->points.size();
+  found.added_points += side->points.size();
   append(cloud, side->points);
   found.detection.surfaces.push_back(std::move(plane));
   found.warnings.push_back(fmt::format(
       "the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed by a plane",
       side->normal.x(), side->normal.y(), side->normal.z(), 100 * side->share));
+}
+
+/// Adds the walls that nobody could see to the cloud, and their points to the surfaces.
+void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
+  PointCloud& cloud = found.prepared.cloud;
+  const std::vector<HiddenWall> walls = find_hidden_walls(cloud, found.detection.surfaces, found.prepared.scale, run);
+  if (walls.empty()) return;
+  const auto largest = std::ranges::max_element(walls, {}, &HiddenWall::area);
+  const Eigen::Vector3d middle = bounds_of(largest->points.positions).center();
+  for (const HiddenWall& wall : walls) {
+    std::vector<std::uint32_t>& own = found.detection.surfaces[wall.surface].points;
+    own.resize(own.size() + wall.points.size());
+    std::iota(own.end() - static_cast<std::ptrdiff_t>(wall.points.size()), own.end(),
+              static_cast<std::uint32_t>(cloud.size()));
+    found.added_points += wall.points.size();
+    append(cloud, wall.points);
+  }
+  found.warnings.push_back(
+      fmt::format("no sensor saw far into {} hole{}, the largest near {}: the walls are taken to go on between what "
+                  "was seen of them",
+                  walls.size(), walls.size() == 1 ? "" : "s", place_text(middle, found.prepared.scale.diagonal)));
 }
 
 /// Warns of known primitives that a tree does without, unless they are named already.
@@ -253,7 +275,10 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   check_detection(rest, found.prepared, found.warnings);
   found.detection = std::move(rest.detection);
   // What is known has ends of its own.
-  if (options.close_unseen_side && options.known.empty()) close_unseen_side(found, run);
+  if (options.close_unseen && options.known.empty()) {
+    close_unseen_side(found, run);
+    close_hidden_walls(found, run);
+  }
   found.detect_seconds = watch.lap();
 
   run.report("solids", 0, 0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -93,7 +94,7 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
     open.positions.push_back(whole.positions[i]);
     open.normals.push_back(whole.normals[i]);
   }
-  const Reconstruction result = reconstruct(open, {.close_unseen_side = false});
+  const Reconstruction result = reconstruct(open, {.close_unseen = false});
   EXPECT_GT(iou(result, truth), 0.9);
   EXPECT_TRUE(has_warning(result, "no points near"));
   EXPECT_FALSE(has_warning(result, "closed by a plane"));
@@ -111,6 +112,35 @@ TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
   EXPECT_GT(iou(result, truth), 0.97);
   EXPECT_TRUE(has_warning(result, "closed by a plane"));
   EXPECT_GT(result.statistics.finding->added_points, 5000U);
+}
+
+/// Of bores as long as this the middle is seen by no sensor.
+TEST(Reconstruct, TakesTheWallsOfADeepBoreToGoOn) {
+  const Model truth{.primitives = {test::placed("bar", Box{{2, 2, 12}}, {0, 0, 0}),
+                                   test::placed("bore", Cylinder{.radius = 0.6, .height = 14}, {0, 0, 0})},
+                    .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))};
+  const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.count = 60'000});
+  const Reconstruction result = reconstruct(scan);
+  EXPECT_EQ(leaf_count(result.tree), 2U);
+  EXPECT_GT(iou(result, truth), 0.97);
+  EXPECT_TRUE(has_warning(result, "no sensor saw far into 1 hole,"));
+  EXPECT_GT(result.statistics.finding->added_points, 500U);
+  EXPECT_LT(iou(reconstruct(scan, {.close_unseen = false}), truth), 0.95);
+}
+
+/// Coaxial holes with air between them, which sensors saw through.
+TEST(Reconstruct, TakesHolesOfTwoEarsForNoBore) {
+  Model truth{
+      .primitives = {test::placed("base", Box{{4, 6, 1}}, {0, 0, 0}), test::placed("ear", Box{{4, 1, 4}}, {0, -2.5, 2}),
+                     test::placed("other", Box{{4, 1, 4}}, {0, 2.5, 2}),
+                     test::placed("pin", Cylinder{.radius = 0.8, .height = 9}, {0, 0, 2.4})},
+      .tree = {}};
+  truth.primitives[3].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
+  truth.tree = parse_tree("(base | ear | other) - pin", truth.primitives);
+  const Reconstruction result = reconstruct(scan_model(*truth.tree, truth.primitives, {.count = 60'000}));
+  EXPECT_GT(iou(result, truth), 0.98);
+  EXPECT_FALSE(has_warning(result, "no sensor saw"));
+  EXPECT_EQ(result.statistics.finding->added_points, 0U);
 }
 
 TEST(Reconstruct, NeedsNoNormals) {

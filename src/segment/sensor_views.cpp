@@ -1,4 +1,4 @@
-#include "cells/sensor_views.hpp"
+#include "segment/sensor_views.hpp"
 
 #include <algorithm>
 #include <array>
