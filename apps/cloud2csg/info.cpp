@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/visible_text.hpp"
 #include "cloud2csg/compare.hpp"
 #include "command.hpp"
 
@@ -94,7 +95,7 @@ std::string plain(const std::string& name, const Json& value) {
   if (value.is_null()) return "-";
   if (name == "bounds") return fmt::format("({}) to ({})", coordinates(value[0]), coordinates(value[1]));
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return visible_text(value.get<std::string>());
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
   return value.dump();
 }

@@ -11,6 +11,8 @@
 #include <exception>
 #include <utility>
 
+#include "base/visible_text.hpp"
+
 namespace cloud2csg::app {
 namespace {
 
@@ -72,8 +74,12 @@ ProgressDisplay::~ProgressDisplay() {
   if (std::uncaught_exceptions() == 0) {
     finish();
   } else if (has_bar() && !stage_.empty()) {
-    fmt::print(out_, "{}", k_clear_line);
+    put(std::string(k_clear_line));
   }
+}
+
+void ProgressDisplay::put(const std::string& text) const {
+  std::fputs(text.c_str(), out_);
 }
 
 void ProgressDisplay::update(const Progress& progress) {
@@ -116,14 +122,14 @@ void ProgressDisplay::draw(const Progress& progress, ProgressClock::time_point n
   } else if (progress.done > 0) {
     line += fmt::format("{} {}  {}", progress.done, progress.unit, rate_text(progress.done, progress.unit, seconds));
   }
-  fmt::print(out_, "{}", line);
+  put(line);
   std::fflush(out_);
 }
 
 void ProgressDisplay::note(std::string_view line) {
   if (style_ == ProgressStyle::none) return;
   finish();
-  fmt::print(out_, "{}\n", line);
+  put(visible_text(line) + "\n");
 }
 
 void ProgressDisplay::finish() {
@@ -135,7 +141,7 @@ void ProgressDisplay::finish() {
     const std::string rate = rate_text(count_, unit_, seconds);
     line += fmt::format("  {} {}{}{}", count_, unit_, rate.empty() ? "" : ", ", rate);
   }
-  fmt::print(out_, "{}\n", line);
+  put(line + "\n");
   std::fflush(out_);
   stage_start_ = now;
   last_drawn_ = {};

@@ -46,6 +46,8 @@ class ProgressDisplay {
   void finish();
 
  private:
+  /// Work does not end because nobody reads of its progress: nothing is thrown.
+  void put(const std::string& text) const;
   [[nodiscard]] bool has_bar() const { return style_ == ProgressStyle::bar || style_ == ProgressStyle::color_bar; }
   [[nodiscard]] std::string bar(const Progress& progress, double seconds) const;
   void draw(const Progress& progress, ProgressClock::time_point now);

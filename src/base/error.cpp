@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "base/visible_text.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -13,7 +15,7 @@ std::string one_line(const Error::Parts& parts) {
     line += *part;
   }
   if (!parts.remedy.empty()) line += "; " + parts.remedy;
-  return line;
+  return visible_text(line);
 }
 
 }  // namespace

@@ -33,4 +33,12 @@ struct Utf8Character {
   return Utf8Character{.code = code, .bytes = bytes};
 }
 
+/// Whether a character only takes its place in a line: no control, no end of a line, nothing that turns the direction
+/// of reading, by which code can look like a comment.
+[[nodiscard]] inline bool is_plain_character(std::uint32_t code) {
+  const auto between = [code](std::uint32_t first, std::uint32_t last) { return code >= first && code <= last; };
+  return code >= 0x20 && !between(0x7F, 0x9F) && code != 0x61C && !between(0x200E, 0x200F) &&
+         !between(0x2028, 0x202E) && !between(0x2066, 0x2069);
+}
+
 }  // namespace cloud2csg

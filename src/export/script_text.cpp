@@ -46,12 +46,8 @@ std::vector<Character> characters_of(std::string_view text) {
   return characters;
 }
 
-/// Whether a character only takes its place in a line: no control, no end of a line, nothing that turns the direction
-/// of reading, by which code can look like a comment.
 bool is_plain_text(std::uint32_t code) {
-  const auto between = [code](std::uint32_t first, std::uint32_t last) { return code >= first && code <= last; };
-  return code >= 0x20 && !between(0x7F, 0x9F) && !between(0x2028, 0x202E) && !between(0x2066, 0x2069) &&
-         code != k_no_character;
+  return is_plain_character(code) && code != k_no_character;
 }
 
 }  // namespace
