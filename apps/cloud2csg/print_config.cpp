@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "catalogue.hpp"
 #include "config_file.hpp"
@@ -35,7 +36,9 @@ std::string flag_line(const CLI::App& command, const CLI::Option& flag, const st
   const CLI::Option* const opposite = command.get_option_no_throw("--no-" + key);
   if (flag.count() > 0) return key + " = true\n";
   if (opposite == nullptr) return key + " = false\n";
-  return opposite->count() > 0 ? key + " = false\n" : "# " + key + " = true\n";
+  if (opposite->count() > 0) return key + " = false\n";
+  const bool is_off = opposite->get_description().find("(default)") != std::string::npos;
+  return fmt::format("# {} = {}\n", key, !is_off);
 }
 
 /// "key = value", or as a comment where nothing is given and the help says what happens then.
@@ -46,13 +49,25 @@ std::string value_line(const CLI::Option& option, const std::string& key) {
   return (excludes_a_given_one(option) ? "# " : "") + line;
 }
 
+/// All options, those of a group together where its first is.
+std::vector<const CLI::Option*> by_group(const CLI::App& command) {
+  const std::vector<const CLI::Option*> options = command.get_options();
+  std::vector<const CLI::Option*> sorted;
+  for (const CLI::Option* first : options) {
+    if (std::ranges::find(sorted, first) != sorted.end()) continue;
+    std::ranges::copy_if(options, std::back_inserter(sorted),
+                         [&](const CLI::Option* other) { return other->get_group() == first->get_group(); });
+  }
+  return sorted;
+}
+
 }  // namespace
 
 std::string config_text(CLI::App& command) {
   std::string text =
       fmt::format("# For --config. What begins with # is as the text over it says.\n\n[{}]\n", table_name(command));
   std::string group;
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CLI::Option* option : by_group(command)) {
     const std::vector<std::string>& names = option->get_lnames();
     if (names.empty() || option == command.get_help_ptr()) continue;
     const std::string& key = names.front();

@@ -17,6 +17,15 @@ class Config : public ProgramTest {
   }
 };
 
+TEST_F(Config, PrintsEachGroupOnceAndTrueDefaults) {
+  const std::string text = printed({"extract"});
+  const std::size_t fit = text.find("\n## Fit\n");
+  ASSERT_NE(fit, std::string::npos) << text;
+  EXPECT_EQ(text.find("\n## Fit\n", fit + 1), std::string::npos) << text;
+  EXPECT_NE(text.find("\n# strangers = false\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n# polish = true\n"), std::string::npos) << text;
+}
+
 TEST_F(Config, WhatIsPrintedIsReadAsTheSame) {
   const std::vector<std::vector<std::string>> all{
       {"extract"},
