@@ -25,9 +25,10 @@ struct ConvertCommand {
 };
 
 void ConvertCommand::run(std::stop_token stop) const {
+  check_model_input(model);
   for (const std::string& file : outputs) check_output(file, model_endings());
   check_distinct(outputs);
-  validate(drawing);
+  check_pictures(drawing);
   Session session(running, std::move(stop));
   const Model read = read_model(model);
   if (std::any_of(outputs.begin(), outputs.end(), needs_tree)) (void)tree_of(read, model);

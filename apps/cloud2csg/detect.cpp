@@ -80,12 +80,13 @@ std::vector<Colour> colours_of(const FoundPrimitives& found) {
 }
 
 void DetectCommand::check_files() const {
+  check_cloud_and_primitives(cloud, primitives);
   for (const std::string& file : outputs) check_output(file, k_endings);
   std::vector<std::string> files = outputs;
   files.push_back(cloud);
   if (!primitives.empty()) files.push_back(primitives);
   check_distinct(files);
-  validate(drawing);
+  check_pictures(drawing);
 }
 
 void DetectCommand::run(std::stop_token stop) const {

@@ -160,8 +160,9 @@ Extracted ExtractCommand::extract(Input input, const PrimitiveSet& given, const 
 }
 
 std::vector<std::string> ExtractCommand::check_files() const {
+  check_cloud_and_primitives(cloud, primitives);
   for (const std::string& file : outputs) check_output(file, model_endings());
-  if (statistics) check_output(*statistics, k_statistics_endings);
+  if (statistics) check_output(*statistics, k_statistics_endings, Content::statistics);
   if (unexplained) check_output(*unexplained, cloud_endings());
   std::vector<std::string> written = outputs;
   if (unexplained) written.push_back(*unexplained);
@@ -170,7 +171,7 @@ std::vector<std::string> ExtractCommand::check_files() const {
   all.push_back(cloud);
   if (!primitives.empty()) all.push_back(primitives);
   check_distinct(all);
-  validate(drawing);
+  check_pictures(drawing);
   return written;
 }
 

@@ -1,12 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
+#include "base/visible_text.hpp"
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
 #include "config_file.hpp"
@@ -22,8 +28,28 @@ constexpr int k_failed = 1;
 constexpr int k_wrong_usage = 2;
 
 int complain(int status, std::string_view message) {
-  fmt::print(stderr, "cloud2csg: {}\n", message);
+  const std::string line = "cloud2csg: " + visible_text(message) + "\n";
+  std::fputs(line.c_str(), stderr);  // throws nothing when nobody reads it
   return status;
+}
+
+/// Ends like other tools whose reader has had enough: by the signal, without a word.
+void end_if_unread(int error_number) {
+  if (error_number != EPIPE) return;
+  std::signal(SIGPIPE, SIG_DFL);
+  std::raise(SIGPIPE);
+}
+
+/// The exit status when everything on standard output has been written.
+int flushed() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return k_done;
+  end_if_unread(errno);
+  return complain(k_failed, "standard output cannot be written");
+}
+
+int print(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) < 0) end_if_unread(errno);
+  return flushed();
 }
 
 void describe(CLI::App& program) {
@@ -35,7 +61,7 @@ void describe(CLI::App& program) {
   program.footer(example("  cloud2csg extract scan.ply -o part.scad -o report.html\n"
                          "  cloud2csg extract scan.ply --config part.toml -o part.step\n"
                          "  cloud2csg convert part.json -o part.stl") +
-                 "\n\n'cloud2csg COMMAND --help' explains a command.\n"
+                 "\n\n'cloud2csg COMMAND --help', or 'cloud2csg help COMMAND', explains a command.\n"
                  "Results go to files and standard output, progress and messages to standard error.\n"
                  "Exit status: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted twice.");
 }
@@ -43,8 +69,29 @@ void describe(CLI::App& program) {
 int run_command(const Command& command) {
   const InterruptWatcher interrupts;
   command.run(interrupts.token());
-  if (std::fflush(stdout) != 0) return complain(k_failed, "standard output cannot be written");
-  return k_done;
+  return flushed();
+}
+
+/// The words of the command line; "help extract" is "extract --help".
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  words.emplace_back("--help");
+  return words;
+}
+
+/// The text of --help or --version.
+int print_asked(const CLI::App& program, const CLI::ParseError& asked) {
+  std::ostringstream text;
+  program.exit(asked, text, text);
+  return print(text.str());
+}
+
+/// What there is to choose from, when no command was chosen.
+int explain(const CLI::App& program) {
+  std::fputs(program.help().c_str(), stderr);
+  return k_wrong_usage;
 }
 
 int run(int argc, char** argv) {
@@ -55,19 +102,20 @@ int run(int argc, char** argv) {
                                       add_view(program),    add_info(program),       add_bench(program),
                                       add_doctor(program),  add_completion(program), add_manual(program)};
   try {
-    program.parse(argc, argv);
+    std::vector<std::string> words = words_of(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    program.parse(std::move(words));
   } catch (const PrintedConfig& asked) {
-    fmt::print("{}", asked.what());
-    return k_done;
+    return print(asked.what());
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return print_asked(program, error);
+    if (lacks_command(program)) return explain(program);
     return complain(k_wrong_usage, usage_message(program, error));
   }
   for (const Command& command : commands) {
     if (command.options->parsed()) return run_command(command);
   }
-  fmt::print(stderr, "{}", program.help());
-  return k_wrong_usage;
+  return explain(program);
 }
 
 }  // namespace
@@ -82,8 +130,13 @@ int main(int argc, char** argv) {
     return app::run(argc, argv);
   } catch (const Cancelled&) {
     return app::complain(app::k_failed, "interrupted");
+  } catch (const app::WrongUsage& error) {
+    return app::complain(app::k_wrong_usage, error.what());
   } catch (const std::bad_alloc&) {
     return app::complain(app::k_failed, "not enough memory");
+  } catch (const std::system_error& error) {
+    app::end_if_unread(error.code().value());
+    return app::complain(app::k_failed, error.what());
   } catch (const std::exception& error) {
     return app::complain(app::k_failed, error.what());
   }

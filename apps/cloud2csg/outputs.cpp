@@ -13,8 +13,8 @@
 #include "base/atomic_file.hpp"
 #include "cloud2csg/brep.hpp"
 #include "cloud2csg/error.hpp"
-#include "overwriting.hpp"
 #include "reports.hpp"
+#include "usage.hpp"
 #include "values.hpp"
 
 namespace cloud2csg::app {
@@ -73,15 +73,18 @@ std::string join_endings(std::span<const std::string_view> endings) {
   return fmt::format("{}", fmt::join(endings.begin(), endings.end(), " "));
 }
 
-void check_output(const std::filesystem::path& file, std::span<const std::string_view> endings) {
+void check_output(const std::filesystem::path& file, std::span<const std::string_view> endings, Content content) {
   const auto refuse = [&file](std::string expected, std::string remedy) {
     throw Error({.file = file.string(), .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
   };
   const std::string ending = lower_ending(file);
   const auto is_same = [&ending](std::string_view known) { return lower_case(std::string(known)) == ending; };
   if (std::none_of(endings.begin(), endings.end(), is_same)) {
-    refuse(ending.empty() ? std::string("the name has no ending") : fmt::format("unknown ending '{}'", ending),
-           fmt::format("use one of {}", join_endings(endings)));
+    throw WrongUsage({.file = file.string(),
+                      .where = {},
+                      .expected = ending.empty() ? std::string("the name has no ending")
+                                                 : fmt::format("unknown ending '{}'", ending),
+                      .remedy = fmt::format("use one of {}", join_endings(endings))});
   }
   if (ending == ".step" || ending == ".stp" || ending == ".brep") require_brep(file);
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -95,7 +98,7 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
            "check its permissions");
   }
   if (is_report(file.string())) check_report_page(file.string());
-  check_overwriting(file);
+  check_overwriting(file, content);
 }
 
 bool is_picture(const std::filesystem::path& file) {
@@ -135,6 +138,17 @@ void add_mesh_options(CLI::App& app, ExportOptions& options) {
       ->group("Output");
 }
 
+void check_pictures(const PictureOptions& options) {
+  try {
+    validate(options);
+  } catch (const Error& error) {
+    throw WrongUsage({.file = {},
+                      .where = "--picture-" + error.parts().where,
+                      .expected = error.parts().expected,
+                      .remedy = error.parts().remedy});
+  }
+}
+
 bool needs_tree(const std::filesystem::path& file) {
   return lower_ending(file) != ".json";
 }
@@ -164,10 +178,10 @@ void check_distinct(std::span<const std::string> files) {
     std::error_code ignored;
     std::filesystem::path path = std::filesystem::weakly_canonical(file, ignored);
     if (std::find(seen.begin(), seen.end(), path) != seen.end()) {
-      throw Error({.file = file,
-                   .where = {},
-                   .expected = "is named twice: one would overwrite the other",
-                   .remedy = "give each file a name of its own"});
+      throw WrongUsage({.file = file,
+                        .where = {},
+                        .expected = "is named twice: one would overwrite the other",
+                        .remedy = "give each file a name of its own"});
     }
     seen.push_back(std::move(path));
   }

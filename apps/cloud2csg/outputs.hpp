@@ -9,6 +9,7 @@
 
 #include "base/file_ending.hpp"
 #include "base/output_set.hpp"
+#include "base/overwriting.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/picture.hpp"
 #include "cloud2csg/report.hpp"
@@ -23,9 +24,10 @@ namespace cloud2csg::app {
 [[nodiscard]] std::string join_endings(std::span<const std::string_view> endings);
 
 /// Finds before the work starts what would stop the result from being written when it ends.
-/// @throws Error for an ending that is not among `endings`, a folder that is missing or cannot be written to, a report
-/// over a file that is no page.
-void check_output(const std::filesystem::path& file, std::span<const std::string_view> endings);
+/// @throws WrongUsage for an ending that is not among `endings`, Error for a folder that is missing or cannot be
+/// written to, a file of another kind that is there.
+void check_output(const std::filesystem::path& file, std::span<const std::string_view> endings,
+                  Content content = Content::by_ending);
 
 /// Whether a model must have a tree to be written to a file of this ending.
 [[nodiscard]] bool needs_tree(const std::filesystem::path& file);
@@ -49,11 +51,14 @@ void add_pictures(OutputSet& set, std::span<const std::string> files, const Scen
 /// Size and view of pictures, as a group of a subcommand's help.
 void add_picture_options(CLI::App& app, PictureOptions& options);
 
+/// @throws WrongUsage naming the option
+void check_pictures(const PictureOptions& options);
+
 /// How meshes of solids are made, in the group of outputs.
 void add_mesh_options(CLI::App& app, ExportOptions& options);
 
 /// Refuses a list of inputs and outputs in which two name the same file.
-/// @throws Error
+/// @throws WrongUsage
 void check_distinct(std::span<const std::string> files);
 
 }  // namespace cloud2csg::app

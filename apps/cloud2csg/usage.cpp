@@ -40,6 +40,12 @@ std::string unknown_argument(const CLI::App& app, std::string word) {
 
 }  // namespace
 
+bool lacks_command(const CLI::App& program) {
+  const CLI::App& last = *chosen(program).back();
+  const auto is_any = [](const CLI::App* /*command*/) { return true; };
+  return last.remaining().empty() && !last.get_subcommands(is_any).empty();
+}
+
 std::string reworded(const CLI::ParseError& error) {
   std::string text = error.what();
   const std::string option = text.substr(0, text.find(": "));

@@ -5,7 +5,18 @@
 #include <string>
 #include <string_view>
 
+#include "cloud2csg/error.hpp"
+
 namespace cloud2csg::app {
+
+/// What is wrong with the command line, and found only when the command runs.
+class WrongUsage : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Whether a command was named that is only the first word of others, and nothing behind it.
+[[nodiscard]] bool lacks_command(const CLI::App& program);
 
 /// One line that says what is wrong with the command line, with the nearest right name for a wrong one.
 [[nodiscard]] std::string usage_message(const CLI::App& program, const CLI::ParseError& error);

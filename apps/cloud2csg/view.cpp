@@ -41,6 +41,7 @@ Report ViewCommand::report(const RunContext& run) const {
 
 void ViewCommand::run(const std::stop_token& stop) const {
   check_report_page(model);
+  check_model_input(model);
   std::string page;
   {
     const Session session(running, stop);

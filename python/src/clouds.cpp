@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "arrays.hpp"
+#include "base/overwriting.hpp"
 #include "bindings.hpp"
 #include "cloud.hpp"
 #include "cloud2csg/input.hpp"
@@ -123,10 +124,13 @@ void bind_cloud(py::module_& module) {
           "write",
           [](const Cloud& self, const std::filesystem::path& file, const std::optional<CloudWriteOptions>& options) {
             const py::gil_scoped_release unlocked;
+            check_overwriting(file);
             write_point_cloud(file, self.points(), options.value_or(CloudWriteOptions{}));
           },
           py::arg("file"), py::arg("options") = py::none(),
-          "Writes by the file's ending: .ply .pcd .xyz .xyzn .txt .pts. Nothing half-written.")
+          "Writes by the file's ending: .ply .pcd .xyz .xyzn .txt .pts. Nothing half-written; a file of another kind "
+          "is not "
+          "overwritten.")
       .def("__repr__",
            [](const Cloud& self) {
              return fmt::format("<cloud2csg.PointCloud: {} points{}{}>", self.points().size(),
@@ -184,9 +188,12 @@ void bind_mesh(py::module_& module) {
           "write",
           [](const TriangleMesh& self, const std::filesystem::path& file) {
             const py::gil_scoped_release unlocked;
+            check_overwriting(file);
             write_mesh(file, self);
           },
-          py::arg("file"), "Writes by the file's ending: .stl .off .obj .3mf. Nothing half-written.")
+          py::arg("file"),
+          "Writes by the file's ending: .stl .off .obj .3mf. Nothing half-written; a file of another kind "
+          "is not overwritten.")
       .def("__repr__", [](const TriangleMesh& self) {
         return fmt::format("<cloud2csg.TriangleMesh: {} vertices, {} triangles>", self.vertices.size(),
                            self.triangles.size());

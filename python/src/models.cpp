@@ -6,6 +6,7 @@
 #include <set>
 
 #include "arrays.hpp"
+#include "base/overwriting.hpp"
 #include "bindings.hpp"
 #include "cloud.hpp"
 #include "cloud2csg/error.hpp"
@@ -51,6 +52,7 @@ PrimitiveSet to_primitives(const py::object& primitives) {
 
 ExportReport write_any(const std::filesystem::path& file, const Report& report,
                        const std::optional<ExportOptions>& options, const RunArguments& arguments) {
+  check_overwriting(file);
   return run_work(arguments, [&](const RunContext& run) {
     if (file.extension() == ".html") {
       write_report(file, report, {}, run);
@@ -229,7 +231,8 @@ void bind_outputs(ModelClass& model) {
           py::arg("progress") = py::none(),
           "Writes by the file's ending: .json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .3mf .dot .html "
           ".png. "
-          "All but .json need a tree. Nothing half-written. Returns ExportReport; raises Error.")
+          "All but .json need a tree. Nothing half-written; a file of another kind is not overwritten. Returns "
+          "ExportReport; raises Error.")
       .def(
           "picture",
           [](const Model& self, const py::object& cloud, const std::optional<PictureOptions>& options, int threads,

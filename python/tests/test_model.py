@@ -139,6 +139,16 @@ def test_unknown_ending(tmp_path, plate):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_file_of_another_kind_is_not_overwritten(tmp_path, plate):
+    theirs = tmp_path / "theirs.scad"
+    theirs.write_text("cube(1);\n")
+    with pytest.raises(cloud2csg.Error, match="is there already and is no OpenSCAD script of cloud2csg"):
+        plate.write(theirs)
+    assert theirs.read_text() == "cube(1);\n"
+    for _ in range(2):
+        plate.write(tmp_path / "ours.scad")
+
+
 def test_unbounded_solids_are_cut(tmp_path):
     model = cloud2csg.Model([cloud2csg.Primitive("below", cloud2csg.HalfSpace())], Leaf("below"))
     assert model.write(tmp_path / "below.scad").cut_at.shape == (2, 3)

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/atomic_file.hpp"
 #include "base/file_ending.hpp"
 #include "cloud/ply_header.hpp"
 #include "cloud2csg/compare.hpp"
@@ -17,6 +18,7 @@ Shape3d read_shape(const std::filesystem::path& file) {
   if (is_one_of({".stl", ".off", ".obj", ".3mf", ".glb"})) return {.mesh = read_mesh(file)};
   if (ending == ".ply" && ply_has_faces(file)) return {.mesh = read_mesh(file)};
   if (is_one_of({".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"})) return {.cloud = read_point_cloud(file)};
+  if (!std::filesystem::exists(file)) (void)read_text_file(file);  // says why
   throw Error({.file = file.string(),
                .where = {},
                .expected =

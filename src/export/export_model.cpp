@@ -5,6 +5,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/file_ending.hpp"
+#include "base/overwriting.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "mesh/model_extent.hpp"
@@ -34,13 +35,19 @@ std::string head_comment(std::string comment, const Model& model, const std::opt
   return comment;
 }
 
+/// With the mark by which the file is known as ours when it is to be overwritten.
+void write_marked(const std::filesystem::path& file, std::string_view comment, const std::string& text) {
+  write_text_file(file, fmt::format("{} {}\n{}", comment, k_program_mark, text));
+}
+
 template <class Options>
-ExportReport export_script(const std::filesystem::path& file, const Model& model, Options options,
+ExportReport export_script(const std::filesystem::path& file, std::string_view comment, const Model& model,
+                           Options options,
                            std::string (*to_script)(const CsgTree&, const PrimitiveSet&, const Options&)) {
   const CsgTree& tree = tree_of(model, file);
   ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
   options.comment = head_comment(std::move(options.comment), model, report.cut_at);
-  write_text_file(file, to_script(tree, model.primitives, options));
+  write_marked(file, comment, to_script(tree, model.primitives, options));
   return report;
 }
 
@@ -87,13 +94,13 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
     return {};
   }
   if (ending == ".dot") {
-    write_text_file(file, to_graphviz(tree_of(model, file), model.primitives));
+    write_marked(file, "//", to_graphviz(tree_of(model, file), model.primitives));
     return {};
   }
-  if (ending == ".scad") return export_script(file, model, options.openscad, to_openscad);
-  if (ending == ".csg") return export_script(file, model, options.openscad, to_openscad_csg);
-  if (ending == ".fcmacro") return export_script(file, model, options.script, to_freecad_macro);
-  if (ending == ".py") return export_script(file, model, options.script, to_cadquery);
+  if (ending == ".scad") return export_script(file, "//", model, options.openscad, to_openscad);
+  if (ending == ".csg") return export_script(file, "//", model, options.openscad, to_openscad_csg);
+  if (ending == ".fcmacro") return export_script(file, "#", model, options.script, to_freecad_macro);
+  if (ending == ".py") return export_script(file, "#", model, options.script, to_cadquery);
   if (ending == ".stl" || ending == ".off" || ending == ".obj" || ending == ".3mf")
     return export_mesh(file, model, options, run);
   if (ending == ".step" || ending == ".stp" || ending == ".brep") {

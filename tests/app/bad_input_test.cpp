@@ -63,10 +63,33 @@ TEST_F(BadInput, UnknownEndings) {
 
 TEST_F(BadInput, FilesNamedTwice) {
   const std::string same = path("same.json");
-  expect_failure(run({"sample", shipped("m1.json"), "-o", path("a.ply"), "-o", path("a.ply")}), 1, {"a.ply", "twice"});
-  expect_failure(run({"extract", path("a.ply"), "--primitives", shipped("m1.json"), "-o", same, "--stats", same}), 1,
+  expect_failure(run({"sample", shipped("m1.json"), "-o", path("a.ply"), "-o", path("a.ply")}), 2, {"a.ply", "twice"});
+  expect_failure(run({"extract", path("a.ply"), "--primitives", shipped("m1.json"), "-o", same, "--stats", same}), 2,
                  {"same.json", "twice"});
   EXPECT_FALSE(std::filesystem::exists(same));
+}
+
+TEST_F(BadInput, FilesAtTheWrongPlaceAreToldWhatTakesThem) {
+  const std::string stl = file("part.stl", "solid part\nendsolid part\n");
+  expect_failure(run({"convert", stl, "-o", path("x.step")}), 1, {"part.stl", "expected a model", "'extract'"});
+  expect_failure(run({"extract", shipped("m1.json"), "-o", path("x.scad")}), 1, {"found a model", "'convert'"});
+  expect_failure(run({"extract", stl, "--primitives", stl, "-o", path("x.scad")}), 2, {"part.stl", "--primitives"});
+  expect_failure(run({"info", path("nothing")}), 1, {"nothing: cannot be read", "check the path"});
+}
+
+TEST_F(BadInput, PicturesTooLargeAreWrongUsage) {
+  expect_failure(
+      run({"convert", shipped("m1.json"), "-o", path("x.png"), "--picture-width", "4096", "--picture-height", "4096"}),
+      2, {"--picture-height: expected at most"});
+}
+
+TEST_F(BadInput, WhatATerminalObeysIsEscaped) {
+  const std::string model = file("m.json", R"({"format": "cloud2csg", "version": 1, "description": "a\u001b[2J\u202eb",
+      "primitives": [{"id": "a", "type": "sphere", "radius": 1}]})");
+  const Outcome told = run({"info", model});
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("a\\x1b[2J\\u202eb"), std::string::npos) << told.out;
+  expect_failure(run({"info", path("no\x1b[2J.ply")}), 1, {"no\\x1b[2J.ply"});
 }
 
 TEST_F(BadInput, OutputsAreCheckedFirst) {
@@ -75,12 +98,12 @@ TEST_F(BadInput, OutputsAreCheckedFirst) {
   const auto convert_to = [&](const std::string& out) {
     return run({"convert", model, "-o", path("x.stl"), "-o", out});
   };
-  expect_failure(convert_to(path("x.doc")), 1, {"x.doc", ".doc", ".scad"});
-  expect_failure(convert_to(path("x")), 1, {"no ending", ".scad"});
+  expect_failure(convert_to(path("x.doc")), 2, {"x.doc", ".doc", ".scad"});
+  expect_failure(convert_to(path("x")), 2, {"no ending", ".scad"});
   expect_failure(convert_to(path("nowhere/x.scad")), 1, {"nowhere/x.scad", "no folder"});
   std::filesystem::create_directory(folder() / "f.scad");
   expect_failure(convert_to(path("f.scad")), 1, {"f.scad", "is a folder"});
-  expect_failure(run({"sample", model, "-o", path("x.stl")}), 1, {"x.stl", ".ply"});
+  expect_failure(run({"sample", model, "-o", path("x.stl")}), 2, {"x.stl", ".ply"});
   expect_failure(run({"extract", "c.ply", "--primitives", model, "-o", path("x.json"), "--stats", path("no/s.json")}),
                  1, {"no/s.json", "no folder"});
 }
@@ -136,7 +159,7 @@ TEST_F(BadInput, FullDiskLeavesNothingBehind) {
   expect_failure(run({"sample", shipped("m2.json"), "-n", "20000", "-o", path("x.ply"), "--quiet"}, limit), 1,
                  {path("x.ply"), "cannot be written", "File too large"});
   EXPECT_TRUE(files().empty());
-  const std::string before = "an older result";
+  const std::string before = "solid older\nendsolid older\n";
   const std::string older = file("x.stl", before);
   expect_failure(run({"convert", shipped("m2.json"), "-o", older, "--quiet"}, limit), 1, {older, "cannot be written"});
   EXPECT_EQ(files(), std::vector<std::string>{"x.stl"});

@@ -67,7 +67,7 @@ TEST_F(Commands, ScanRefusesCloudsAndItsOwnInput) {
   const Outcome cloud = run({"scan", path("c.ply"), "-o", path("d.ply")});
   EXPECT_EQ(cloud.status, 1);
   EXPECT_NE(cloud.err.find("found a point cloud"), std::string::npos) << cloud.err;
-  EXPECT_EQ(run({"scan", path("c.ply"), "-o", path("c.ply")}).status, 1);
+  EXPECT_EQ(run({"scan", path("c.ply"), "-o", path("c.ply")}).status, 2);
   EXPECT_EQ(run({"scan", shipped("m1.json"), "--perfect", "--noise", "0.1", "-o", path("d.ply")}).status, 2);
   EXPECT_EQ(files(), std::vector<std::string>{"c.ply"});
 }
@@ -154,12 +154,12 @@ TEST_F(Commands, FailedExactSolidsLeaveOlderFiles) {
       {"id": "a", "type": "sphere", "radius": 1},
       {"id": "b", "type": "sphere", "radius": 1, "pose": {"position": [9, 0, 0]}}],
       "tree": {"op": "intersection", "children": [{"primitive": "a"}, {"primitive": "b"}]}})");
-  const std::string older = file("x.step", "an older result");
+  const std::string older = file("x.step", "ISO-10303-21; an older result");
   const Outcome outcome = run({"convert", model, "-o", path("x.scad"), "-o", older, "--quiet"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find(older), std::string::npos) << outcome.err;
   EXPECT_EQ(files(), (std::vector<std::string>{"none.json", "x.step"}));
-  EXPECT_EQ(read_file(older), "an older result");
+  EXPECT_EQ(read_file(older), "ISO-10303-21; an older result");
 }
 
 TEST_F(Commands, ConvertWarnsWhereItCuts) {
@@ -178,7 +178,7 @@ TEST_F(Commands, ConvertWarnsWhereItCuts) {
 }
 
 TEST_F(Commands, SecondInterruptLeavesNoTemporaries) {
-  const std::string older = file("m.scad", "an older result");
+  const std::string older = file("m.scad", "// Written by cloud2csg: an older result");
   RunningProgram program = start({"convert", shipped("m0.json"), "-o", path("m.json"), "-o", older, "-o", path("m.stl"),
                                   "--resolution", "2048", "--contour"});
   // The mesh takes long; by then its own temporary file and those of the others are there.
@@ -188,7 +188,7 @@ TEST_F(Commands, SecondInterruptLeavesNoTemporaries) {
   program.send_signal(SIGTERM);
   EXPECT_EQ(program.wait().status, 130);
   EXPECT_EQ(files(), std::vector<std::string>{"m.scad"});
-  EXPECT_EQ(read_file(older), "an older result");
+  EXPECT_EQ(read_file(older), "// Written by cloud2csg: an older result");
 }
 
 TEST_F(Commands, ConvertedModelIsTheSameModel) {

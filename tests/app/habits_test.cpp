@@ -40,6 +40,29 @@ TEST_F(Habits, VersionTellsFeatures) {
   }
 }
 
+TEST_F(Habits, HelpIsACommand) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  const Outcome help = run({"help", "extract"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.out, run({"extract", "--help"}).out);
+  const Outcome bench = run({"bench"});
+  EXPECT_EQ(bench.status, 2);
+  EXPECT_EQ(bench.err, run({"bench", "--help"}).out);
+}
+
+TEST_F(Habits, AReaderThatWentAwayEndsItQuietly) {
+  // A pipe that nobody reads, whatever its size.
+  for (const char* words : {"completion bash", "--help", "info --json M", "help extract"}) {
+    const std::string line = std::string(words);
+    const std::string with_model = line.ends_with('M') ? line.substr(0, line.size() - 1) + shipped("m1.json") : line;
+    const std::string script = "{ sleep 0.3; " CLOUD2CSG_PROGRAM " " + with_model + "; echo $? >" + path("status") +
+                               "; } 2>" + path("err") + " | true";
+    EXPECT_EQ(said_by("sh", script), "");
+    EXPECT_EQ(read_file(path("status")), "141\n") << words;
+    EXPECT_EQ(read_file(path("err")).find("cloud2csg:"), std::string::npos) << read_file(path("err"));
+  }
+}
+
 TEST_F(Habits, DoctorLooksAtEachPart) {
   const Outcome outcome = run({"doctor"});
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;

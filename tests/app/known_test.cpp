@@ -166,8 +166,8 @@ TEST_F(Known, NonsenseIsWrongUsage) {
   refuses({"--detect-rest"}, {"--detect-rest", "--primitives"});
   expect_failure(run({"extract", cloud, "-o", path("t.json"), "--primitives", block(), "--detect-rest", "--refine"}), 2,
                  {"--refine", "--detect-rest"});
-  expect_failure(run({"detect", cloud, "-o", path("few.xyz")}), 1, {".json .ply"});
-  expect_failure(run({"detect", cloud, "--primitives", path("few.xyz"), "-o", path("t.json"), "-q"}), 1, {"few.xyz"});
+  expect_failure(run({"detect", cloud, "-o", path("few.xyz")}), 2, {".json .ply"});
+  expect_failure(run({"detect", cloud, "--primitives", path("few.xyz"), "-o", path("t.json"), "-q"}), 2, {"few.xyz"});
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST_F(Pictures, AreWrittenByConvertExtractAndDetect) {
 TEST_F(Pictures, TooManyPixelsAreRefusedBeforeTheWork) {
   expect_failure(
       run({"convert", shipped("m2.json"), "-o", path("m2.png"), "--picture-width", "4000", "--picture-height", "2000"}),
-      1, {"height: expected at most 1000 pixels"});
+      2, {"--picture-height: expected at most 1000 pixels"});
 }
 
 TEST_F(Pictures, NeedASolid) {

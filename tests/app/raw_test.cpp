@@ -114,7 +114,7 @@ TEST_F(Raw, OptionsOutOfRangeAreWrongUsage) {
   const std::string cloud = file("few.xyz", "0 0 0\n");
   expect_failure(run({"extract", cloud, "-o", path("t.json"), "--tolerance", "0"}), 2, {"--tolerance"});
   expect_failure(run({"extract", cloud, "-o", path("t.json"), "--leaf-cost", "-1"}), 2, {"--leaf-cost"});
-  expect_failure(run({"detect", cloud, "-o", path("t.scad")}), 1, {".json"});
+  expect_failure(run({"detect", cloud, "-o", path("t.scad")}), 2, {".json"});
 }
 
 TEST_F(Raw, SampleTakesMeshes) {
