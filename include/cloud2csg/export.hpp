@@ -12,22 +12,24 @@
 namespace cloud2csg {
 
 struct OpenScadOptions {
-  int facets = 64;           ///< how many facets a circle has: $fn, in .csg by $fa
+  int facets = 64;           ///< how many facets a circle has: $fn, in .csg by $fa where that can be
   int mesh_resolution = 64;  ///< for displaced and expression solids, which become polyhedra
-  bool patterns = true;      ///< write equal solids at equal steps or angles as loops
+  bool patterns = true;      ///< write what repeats at equal steps or angles, or mirrored, as loops
   std::string comment = {};  ///< lines for the head of the file, e.g. the fit; without "//"
 };
 
 /// An OpenSCAD program: the values of each primitive as named variables in a section of the customiser, a named module
-/// a primitive, the tree with indentation, chains of the same operation as one block. Of three or more equal solids
-/// that are united or taken away, at equal steps or at equal angles about an axis, to 1e-6 of the model's size, the
-/// first is written, in a loop. Renders in OpenSCAD 2021.01 without warnings.
+/// a primitive, the tree with indentation, chains of the same operation as one block. Of three or more equal solids, or
+/// equal combinations of up to 64, that are united, taken away or intersected, at equal steps or at equal angles about
+/// an axis, to 1e-6 of the model's size, the first is written, in a loop; so it is of two combinations that are equal
+/// or mirror images. Renders in OpenSCAD 2021.01 without warnings.
 [[nodiscard]] std::string to_openscad(const CsgTree& tree, const PrimitiveSet& primitives,
                                       const OpenScadOptions& options = {});
 
 /// The flat language that OpenSCAD calculates with (.csg): each solid by a matrix, numbers in place of names, no loops.
 /// Circles have no number of facets of their own ($fn = 0), so that FreeCAD reads true cylinders and spheres; OpenSCAD
-/// makes facets by angle, down to its least length of 0.01, below which they are fewer.
+/// makes facets by angle, down to a length of 0.01. Circles so small that it would make fewer than `facets` have that
+/// number, and 17 at least: FreeCAD reads those as round, too.
 [[nodiscard]] std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives,
                                           const OpenScadOptions& options = {});
 

@@ -11,7 +11,8 @@ void bind_output_options(py::module_& module) {
       .field("facets", &OpenScadOptions::facets, "How many facets a circle has ($fn; in .csg by $fa).")
       .field("mesh_resolution", &OpenScadOptions::mesh_resolution,
              "Of displaced and expression solids, which become polyhedra: cells along the longest side.")
-      .field("patterns", &OpenScadOptions::patterns, ".scad: equal solids at equal steps or angles as loops.")
+      .field("patterns", &OpenScadOptions::patterns,
+             ".scad: what repeats at equal steps or angles, or mirrored, as loops.")
       .field("comment", &OpenScadOptions::comment, "Lines for the head of the file, without '//'.")
       .finish();
   OptionClass<ScriptOptions>(module, "ScriptOptions", "How scripts in Python are written (.FCMacro, .py).")

@@ -2,8 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <map>
-#include <set>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "cloud2csg/export.hpp"
 #include "export/openscad_blocks.hpp"
@@ -33,48 +34,99 @@ std::string everything_module(const openscad::SolidContext& context) {
       openscad::list(context.everything.sizes().eval(), context.number));
 }
 
-Program program_of(const script::Plan& plan, const PrimitiveSet& primitives, const OpenScadOptions& options) {
-  const openscad::SolidContext context{.everything = plan.everything,
-                                       .mesh_resolution = options.mesh_resolution,
-                                       .number = script::NumberFormat(plan.everything.sizes().maxCoeff())};
-  script::UniqueNames modules(openscad::reserved_words());
-  script::UniqueNames variables(openscad::reserved_words());
-  const std::vector<std::string> names = script::names_of(primitives, modules);
-  openscad::Loops loops;
-  if (options.patterns) loops = openscad::loops_of(plan, primitives);
-  Program program;
-  std::map<PrimitiveIndex, std::string> calls;
-  for (const PrimitiveIndex index : primitives_of(plan)) {
-    if (loops.replaced.contains(index)) continue;
-    openscad::Parameters parameters(names[index], variables);
-    const bool is_mesh = openscad::needs_mesh(primitives[index]);
-    const std::string note = names[index] == primitives[index].id ? "" : script::comment(primitives[index].id, "// ");
-    (is_mesh ? program.meshes : program.modules) += fmt::format(
-        "\n{}module {}() {{\n  {}\n}}\n", note, names[index], openscad::solid(primitives[index], context, parameters));
-    const auto loop = loops.first.find(index);
-    const std::string around =
-        loop == loops.first.end() ? "" : openscad::loop_over(loop->second, names, context.number, parameters);
-    calls[index] = around + names[index] + "();";
-    program.parameters += parameters.section();
-  }
-  bool has_everything = false;
-  program.tree = openscad::print_blocks(
-      plan,
-      [&](std::size_t step) -> std::string {
-        if (plan.steps[step].kind == Kind::primitive) return calls[plan.steps[step].primitive];
-        has_everything = true;
-        return "everything();";
-      },
-      openscad::Intersections::of_all);
-  if (has_everything) program.modules += everything_module(context);
-  return program;
+/// A member as the comment on its loop names it.
+std::string member_name(const script::Plan& plan, std::size_t member, const std::vector<std::string>& names) {
+  std::vector<std::string> solids;
+  for (const PrimitiveIndex index : openscad::primitives_of_step(plan, member)) solids.push_back(names[index]);
+  return solids.size() == 1 ? solids.front() : fmt::format("({})", fmt::join(solids, ", "));
 }
+
+class ProgramWriter {
+ public:
+  ProgramWriter(const script::Plan& plan, const PrimitiveSet& primitives, const OpenScadOptions& options)
+      : plan_(plan),
+        primitives_(primitives),
+        context_{.everything = plan.everything,
+                 .mesh_resolution = options.mesh_resolution,
+                 .number = script::NumberFormat(plan.everything.sizes().maxCoeff()),
+                 .facets = options.facets},
+        names_(script::names_of(primitives, modules_)) {
+    if (options.patterns) loops_ = openscad::loops_of(plan, primitives);
+  }
+
+  Program write() {
+    std::map<PrimitiveIndex, std::size_t> loop_of;  // of single primitives, by what they repeat
+    for (const auto& [step, loop] : loops_.first) {
+      if (plan_.steps[step].kind == Kind::primitive) loop_of.emplace(plan_.steps[step].primitive, step);
+    }
+    for (const PrimitiveIndex index : primitives_of(plan_)) {
+      if (loops_.unwritten.contains(index)) continue;
+      openscad::Parameters parameters(names_[index], variables_);
+      write_module(index, parameters);
+      if (const auto loop = loop_of.find(index); loop != loop_of.end()) add_head(loop->second, parameters);
+      program_.parameters += parameters.section();
+    }
+    for (const auto& [step, loop] : loops_.first) {
+      if (plan_.steps[step].kind == Kind::primitive) continue;
+      // The values of its solids have sections of their own.
+      const std::string name = modules_.take(names_[openscad::primitives_of_step(plan_, step).front()] + "_part");
+      openscad::Parameters parameters(name, variables_);
+      add_head(step, parameters);
+      program_.parameters += parameters.section();
+    }
+    write_tree();
+    return std::move(program_);
+  }
+
+ private:
+  void write_module(PrimitiveIndex index, openscad::Parameters& parameters) {
+    const Primitive& primitive = primitives_[index];
+    const std::string note = names_[index] == primitive.id ? "" : script::comment(primitive.id, "// ");
+    (openscad::needs_mesh(primitive) ? program_.meshes : program_.modules) += fmt::format(
+        "\n{}module {}() {{\n  {}\n}}\n", note, names_[index], openscad::solid(primitive, context_, parameters));
+  }
+
+  void add_head(std::size_t step, openscad::Parameters& parameters) {
+    const openscad::Loop& loop = loops_.first.at(step);
+    std::vector<std::string> members;
+    for (const std::size_t member : loop.pattern.members) members.push_back(member_name(plan_, member, names_));
+    heads_.emplace(step, openscad::loop_over(loop, members, context_.number, parameters));
+  }
+
+  void write_tree() {
+    bool has_everything = false;
+    const auto statement_of = [&](std::size_t step) -> std::string {
+      if (plan_.steps[step].kind == Kind::primitive) return names_[plan_.steps[step].primitive] + "();";
+      has_everything = true;
+      return "everything();";
+    };
+    const auto before = [&](std::size_t step) -> std::optional<std::string> {
+      if (loops_.replaced.contains(step)) return {};
+      const auto head = heads_.find(step);
+      return head == heads_.end() ? "" : head->second;
+    };
+    program_.tree = openscad::print_blocks(plan_, {.statement_of = statement_of, .before = before},
+                                           openscad::Intersections::of_all);
+    if (has_everything) program_.modules += everything_module(context_);
+  }
+
+  const script::Plan& plan_;
+  const PrimitiveSet& primitives_;
+  openscad::SolidContext context_;
+  script::UniqueNames modules_{openscad::reserved_words()};
+  script::UniqueNames variables_{openscad::reserved_words()};
+  std::vector<std::string> names_;
+  openscad::Loops loops_ = {};
+  std::map<std::size_t, std::string> heads_ = {};  ///< of loops, by the step that they repeat
+  Program program_ = {};
+};
 
 }  // namespace
 
 std::string to_openscad(const CsgTree& tree, const PrimitiveSet& primitives, const OpenScadOptions& options) {
   openscad::validate(options);
-  const Program program = program_of(script::plan_script(tree, primitives), primitives, options);
+  const script::Plan plan = script::plan_script(tree, primitives);
+  const Program program = ProgramWriter(plan, primitives, options).write();
   std::string text = script::comment(options.comment, "// ");
   text += fmt::format("$fn = {};  // facets of a full circle\n", options.facets);
   if (!program.parameters.empty()) text += "\n// Lengths are in the model's units, angles in degrees.\n";

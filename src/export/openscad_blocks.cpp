@@ -1,6 +1,7 @@
 #include "export/openscad_blocks.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,8 +13,8 @@ using Kind = script::Step::Kind;
 /// Without recursion: a chain may be as deep as it is long.
 class BlockPrinter {
  public:
-  BlockPrinter(const script::Plan& plan, const StatementOf& statement_of, Intersections intersections)
-      : plan_(plan), statement_of_(statement_of), intersections_(intersections) {}
+  BlockPrinter(const script::Plan& plan, const Wording& wording, Intersections intersections)
+      : plan_(plan), wording_(wording), intersections_(intersections) {}
 
   std::string print() {
     to_do_.push_back({.step = plan_.steps.size() - 1, .text = {}, .level = 0});
@@ -45,49 +46,54 @@ class BlockPrinter {
 
   void print_step(std::size_t index, std::size_t level) {
     const script::Step& step = plan_.steps[index];
+    const std::optional<std::string> before = wording_.before(index);
+    if (!before) return;
     if (step.kind == Kind::primitive || step.kind == Kind::everything) {
-      const std::string statement = statement_of_(index);
-      if (!statement.empty()) print_line(statement, level);
+      print_line(*before + wording_.statement_of(index), level);
     } else if (step.kind == Kind::common) {
-      print_common(step, level);
+      print_common(step, *before, level);
     } else if (step.kept.empty()) {
       print_line("union();  // the empty solid", level);
     } else {
-      open("union", level);
+      open(*before + "union", level);
       push(step.kept, level + 1);
     }
   }
 
-  void print_common(const script::Step& step, std::size_t level) {
+  void print_common(const script::Step& step, const std::string& before, std::size_t level) {
     if (step.removed.empty()) {
-      push_intersection(step.kept, level);
+      push_intersection(step.kept, before, level);
       return;
     }
-    open("difference", level);
+    open(before + "difference", level);
     push(step.removed, level + 1);
     if (step.kept.size() == 1) {
       push(step.kept, level + 1);
     } else {
-      push_intersection(step.kept, level + 1);
+      push_intersection(step.kept, "", level + 1);
     }
   }
 
-  void push_intersection(const std::vector<std::size_t>& steps, std::size_t level) {
+  void push_intersection(const std::vector<std::size_t>& steps, const std::string& before, std::size_t level) {
     const std::size_t blocks = intersections_ == Intersections::in_pairs ? steps.size() - 1 : 1;
     for (std::size_t block = 0; block < blocks; ++block) {
       push_line("}", level + block);
       if (block + 1 < blocks) push({steps[steps.size() - 1 - block]}, level + block + 1);
     }
     push({steps.begin(), steps.end() - static_cast<std::ptrdiff_t>(blocks - 1)}, level + blocks);
-    for (std::size_t block = blocks; block-- > 0;) push_line("intersection() {", level + block);
+    for (std::size_t block = blocks; block-- > 0;) {
+      push_line((block == 0 ? before : "") + "intersection() {", level + block);
+    }
   }
 
-  void open(const char* operation, std::size_t level) {
-    print_line(std::string(operation) + "() {", level);
+  void open(const std::string& operation, std::size_t level) {
+    print_line(operation + "() {", level);
     push_line("}", level);
   }
 
-  void push_line(const char* text, std::size_t level) { to_do_.push_back({.step = 0, .text = text, .level = level}); }
+  void push_line(const std::string& text, std::size_t level) {
+    to_do_.push_back({.step = 0, .text = text, .level = level});
+  }
 
   /// Last in, first out: what comes last is pushed first.
   void push(const std::vector<std::size_t>& steps, std::size_t level) {
@@ -95,7 +101,7 @@ class BlockPrinter {
   }
 
   const script::Plan& plan_;
-  const StatementOf& statement_of_;
+  const Wording& wording_;
   Intersections intersections_;
   std::vector<Item> to_do_ = {};
   std::string out_ = {};
@@ -103,8 +109,8 @@ class BlockPrinter {
 
 }  // namespace
 
-std::string print_blocks(const script::Plan& plan, const StatementOf& statement_of, Intersections intersections) {
-  return BlockPrinter(plan, statement_of, intersections).print();
+std::string print_blocks(const script::Plan& plan, const Wording& wording, Intersections intersections) {
+  return BlockPrinter(plan, wording, intersections).print();
 }
 
 }  // namespace cloud2csg::openscad

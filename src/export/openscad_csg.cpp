@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numbers>
+#include <optional>
 #include <variant>
 
 #include "cloud2csg/export.hpp"
@@ -17,24 +20,29 @@ using Kind = script::Step::Kind;
 /// Writes a solid in its own frame.
 class FlatBody {
  public:
-  FlatBody(const script::NumberFormat& number, int facets)
-      : number_(number), round_(fmt::format("$fn = 0, $fa = {:.10g}, $fs = 0.01", 360.0 / facets)) {}
+  FlatBody(const script::NumberFormat& number, int facets) : number_(number), facets_(facets) {}
 
   std::string operator()(const Box& box) const {
     return fmt::format("cube(size = {}, center = true);", openscad::list(box.size, number_));
   }
   std::string operator()(const Sphere& sphere) const {
-    return fmt::format("sphere({}, r = {});", round_, number_(sphere.radius));
+    return fmt::format("sphere({}, r = {});", round(sphere.radius), number_(sphere.radius));
   }
   std::string operator()(const Cylinder& cylinder) const {
     return frustum(cylinder.height, cylinder.radius, cylinder.radius);
   }
   std::string operator()(const Cone& cone) const { return frustum(cone.height, cone.radius_bottom, cone.radius_top); }
   std::string operator()(const Torus& torus) const {
-    return fmt::format(
-        "rotate_extrude({0}, convexity = 2) {{ multmatrix([[1, 0, 0, {1}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) "
-        "{{ circle({0}, r = {2}); }} }}",
-        round_, number_(torus.major_radius), number_(torus.minor_radius));
+    std::string profile = fmt::format("multmatrix({}) {{ circle({}, r = {}); }}", shift(torus.major_radius, 0),
+                                      round(torus.minor_radius), number_(torus.minor_radius));
+    if (const std::optional<double> pinhole = openscad::pinhole_of(torus, facets_)) {
+      const double side = 2 * torus.minor_radius;
+      profile =
+          fmt::format("intersection() {{ {} multmatrix({}) {{ square(size = [{}, {}], center = false); }} }}", profile,
+                      shift(*pinhole * torus.minor_radius, -torus.minor_radius), number_(side), number_(side));
+    }
+    return fmt::format("rotate_extrude({}, convexity = 2) {{ {} }}", round(torus.major_radius + torus.minor_radius),
+                       profile);
   }
   /// FreeCAD wants a convexity.
   std::string operator()(const brep::Facets& facets) const {
@@ -42,13 +50,27 @@ class FlatBody {
   }
 
  private:
+  /// As few facets as asked for. FreeCAD makes facets, too, of circles with $fn up to 16 (its preference for the most
+  /// facets), and none where that is 0; but by length OpenSCAD makes none shorter than 0.01.
+  [[nodiscard]] std::string round(double radius) const {
+    constexpr double k_least_length = 0.01;
+    constexpr int k_fewest_of_true_circle = 17;
+    const bool is_by_angle = 2 * std::numbers::pi * radius >= facets_ * k_least_length;
+    return fmt::format("$fn = {}, $fa = {:.10g}, $fs = {}",
+                       is_by_angle ? 0 : std::max(facets_, k_fewest_of_true_circle), 360.0 / facets_, k_least_length);
+  }
+
+  [[nodiscard]] std::string shift(double x, double y) const {
+    return fmt::format("[[1, 0, 0, {}], [0, 1, 0, {}], [0, 0, 1, 0], [0, 0, 0, 1]]", number_(x), number_(y));
+  }
+
   [[nodiscard]] std::string frustum(double height, double bottom, double top) const {
-    return fmt::format("cylinder({}, h = {}, r1 = {}, r2 = {}, center = true);", round_, number_(height),
-                       number_(bottom), number_(top));
+    return fmt::format("cylinder({}, h = {}, r1 = {}, r2 = {}, center = true);", round(std::max(bottom, top)),
+                       number_(height), number_(bottom), number_(top));
   }
 
   const script::NumberFormat& number_;
-  std::string round_;
+  int facets_;
 };
 
 /// All digits: a reader wants to find a rotation in the matrix.
@@ -75,15 +97,22 @@ std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives,
   const script::NumberFormat number(plan.everything.sizes().maxCoeff());
   const brep::KernelSolid everything{.shape = Box{.size = plan.everything.sizes()},
                                      .pose = {.position = plan.everything.center()}};
+  const auto solid_of = [&](const Primitive& primitive) {
+    // With the minor radius that it has: solid_of() makes it smaller where there is no hole.
+    if (const auto* torus = std::get_if<Torus>(&primitive.shape); torus != nullptr && is_plain(primitive)) {
+      return brep::KernelSolid{.shape = *torus, .pose = primitive.pose};
+    }
+    return script::solid_of(primitive, plan.everything, options.mesh_resolution);
+  };
   const auto statement_of = [&](std::size_t step) {
     const bool is_primitive = plan.steps[step].kind == Kind::primitive;
-    const PrimitiveIndex index = plan.steps[step].primitive;
-    return statement(
-        is_primitive ? script::solid_of(primitives[index], plan.everything, options.mesh_resolution) : everything,
-        number, options.facets);
+    return statement(is_primitive ? solid_of(primitives[plan.steps[step].primitive]) : everything, number,
+                     options.facets);
   };
+  const auto no_loop = [](std::size_t /*step*/) { return std::optional<std::string>(""); };
   return script::comment(options.comment, "// ") +
-         openscad::print_blocks(plan, statement_of, openscad::Intersections::in_pairs);
+         openscad::print_blocks(plan, {.statement_of = statement_of, .before = no_loop},
+                                openscad::Intersections::in_pairs);
 }
 
 }  // namespace cloud2csg

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <variant>
 #include <vector>
 
@@ -37,12 +39,11 @@ class Body {
     const std::string major = value("major_radius", torus.major_radius);
     const std::string minor = value("minor_radius", torus.minor_radius);
     const std::string circle = fmt::format("translate([{}, 0]) circle(r = {});", major, minor);
-    // Where the profile touches the axis the solid is no 2-manifold, which OpenSCAD refuses: leave a pinhole there.
-    constexpr double k_pinhole = 1e-4;
-    if (torus.major_radius - torus.minor_radius > k_pinhole * torus.minor_radius) return "rotate_extrude() " + circle;
+    const std::optional<double> pinhole = pinhole_of(torus, context_.facets);
+    if (!pinhole) return "rotate_extrude() " + circle;
     return fmt::format(
-        "rotate_extrude() intersection() {{\n    {}\n    translate([{} * {}, -{}]) square(2 * {});\n  }}", circle,
-        k_pinhole, minor, minor, minor);
+        "rotate_extrude() intersection() {{\n    {}\n    translate([{:.3g} * {}, -{}]) square(2 * {});\n  }}", circle,
+        *pinhole, minor, minor, minor);
   }
   /// A cube whose top face is the half-space's, and large enough to hold all that is below it.
   std::string operator()(const HalfSpace& /*half_space*/) const {
@@ -73,6 +74,17 @@ class Body {
 };
 
 }  // namespace
+
+std::optional<double> pinhole_of(const Torus& torus, int facets) {
+  constexpr double k_least = 1e-4;
+  // OpenSCAD puts corners on a grid of lengths: those around the pinhole must not come to lie on each other.
+  constexpr double k_corner_distance = 1.2e-5;
+  constexpr double k_most = 0.1;  // in units so small all corners lie on each other
+  const double least = k_corner_distance * facets / (2 * std::numbers::pi * torus.minor_radius);
+  const double pinhole = std::clamp(least, k_least, k_most);
+  const bool has_hole = torus.major_radius - torus.minor_radius > pinhole * torus.minor_radius;
+  return has_hole ? std::nullopt : std::optional(pinhole);
+}
 
 bool needs_mesh(const Primitive& primitive) {
   return !is_plain(primitive);

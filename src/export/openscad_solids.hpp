@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "brep/kernel.hpp"
@@ -13,7 +14,12 @@ struct SolidContext {
   AlignedBox everything;  ///< finite; half-spaces reach to its ends
   int mesh_resolution;    ///< of solids that OpenSCAD has no name for
   script::NumberFormat number;
+  int facets;  ///< of a full circle
 };
+
+/// Where the profile of a torus touches the axis the solid is no 2-manifold, which OpenSCAD refuses: the radius of the
+/// pinhole that is left there, in units of the minor radius. Absent for a torus with a hole.
+[[nodiscard]] std::optional<double> pinhole_of(const Torus& torus, int facets);
 
 /// Whether the solid becomes a long list of triangles: displaced solids and expressions.
 [[nodiscard]] bool needs_mesh(const Primitive& primitive);

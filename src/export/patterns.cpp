@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 
-#include "primitive/lengths.hpp"
+#include "primitive/overloaded.hpp"
 
 namespace cloud2csg::script {
 namespace {
@@ -19,32 +20,6 @@ constexpr std::size_t k_most_in_small_grid = 16;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180.0;
-}
-
-bool can_repeat(const Primitive& primitive) {
-  return !primitive.displacement && primitive.shape.index() <= Shape(Torus{}).index();
-}
-
-double size_difference(const Shape& a, const Shape& b) {
-  const std::vector<double> lengths = lengths_of(a);
-  if (a.index() != b.index() || lengths.empty()) return k_infinite;
-  const std::vector<double> others = lengths_of(b);
-  double most = 0;
-  for (std::size_t i = 0; i < lengths.size(); ++i) most = std::max(most, std::abs(lengths[i] - others[i]));
-  return most;
-}
-
-/// How far directions of unit length are apart where a solid looks the same turned; its symmetries do not count.
-double turn_difference(const Primitive& a, const Primitive& b) {
-  if (std::holds_alternative<Sphere>(a.shape)) return 0;
-  const Eigen::Matrix3d m = a.pose.orientation.toRotationMatrix();
-  const Eigen::Matrix3d n = b.pose.orientation.toRotationMatrix();
-  const auto line = [&](int axis) {
-    return std::min((m.col(axis) - n.col(axis)).norm(), (m.col(axis) + n.col(axis)).norm());
-  };
-  if (std::holds_alternative<Box>(a.shape)) return std::max({line(0), line(1), line(2)});
-  if (std::holds_alternative<Cone>(a.shape)) return (m.col(2) - n.col(2)).norm();
-  return line(2);
 }
 
 Pose motion_of(const LinePattern& line, std::size_t place) {
@@ -72,11 +47,12 @@ bool is_better_circle(const Pattern& a, const Pattern& b) {
 
 using Motion = decltype(Pattern::motion);
 
-Primitive moved(const Primitive& first, const Motion& motion, std::size_t place) {
-  Primitive member = first;
-  const Pose pose = std::visit([place](const auto& way) { return motion_of(way, place); }, motion);
-  member.pose = compose(pose, first.pose);
-  return member;
+/// Where the motion puts what it begins with.
+Part placed(const Part& first, const Motion& motion, std::size_t place) {
+  return std::visit(
+      Overloaded{[&](const MirrorPattern& mirror) { return place == 0 ? first : mirrored(first, mirror.plane); },
+                 [&](const auto& way) { return moved(first, motion_of(way, place)); }},
+      motion);
 }
 
 bool is_backward(const Eigen::Vector3d& step) {
@@ -109,15 +85,23 @@ void turn_forward(Pattern& pattern) {
   }
 }
 
-/// Equal solids in which patterns are looked for.
+bool is_along_axes(const GridPattern& grid, double tolerance) {
+  const auto is_along = [tolerance](const Eigen::Vector3d& step) {
+    return step.norm() - step.cwiseAbs().maxCoeff() <= tolerance;
+  };
+  return is_along(grid.step) && is_along(grid.row_step);
+}
+
+/// Equal parts among which patterns are looked for.
 class Group {
  public:
-  Group(const PrimitiveSet& primitives, double tolerance) : primitives_(primitives), tolerance_(tolerance) {}
+  Group(std::span<const Part> parts, double tolerance) : parts_(parts), tolerance_(tolerance) {}
 
-  void add(PrimitiveIndex index) { free_.push_back(index); }
-  [[nodiscard]] bool takes(PrimitiveIndex index) const {
-    return size_difference(at(free_.front()).shape, at(index).shape) <= tolerance_;
+  void add(std::size_t index) {
+    free_.push_back(index);
+    centres_.emplace(index, centre_of(at(index)));
   }
+  [[nodiscard]] bool takes(std::size_t index) const { return are_alike(at(free_.front()), at(index), tolerance_); }
 
   /// Takes the longest pattern out of the group.
   std::optional<Pattern> take_longest() {
@@ -127,28 +111,67 @@ class Group {
     };
     if (free_.size() <= k_most_in_line) keep_longer(widest_grid(longest_line()));
     if (free_.size() <= k_most_in_circle) keep_longer(longest_circle());
-    if (longest.members.empty() && free_.size() <= k_most_in_small_grid) keep_longer(grid_of_pairs());
-    if (longest.members.size() < k_fewest) return {};
-    longest.deviation = deviation(longest);
-    Pattern turned = longest;
-    turn_forward(turned);
-    turned.deviation = deviation(turned);
-    if (turned.deviation <= tolerance_) longest = std::move(turned);
-    std::erase_if(free_, [&longest](PrimitiveIndex index) {
-      return std::find(longest.members.begin(), longest.members.end(), index) != longest.members.end();
-    });
-    return longest;
+    if (longest.members.size() <= 4 && free_.size() <= k_most_in_small_grid) {
+      std::optional<Pattern> grid = grid_of_pairs();
+      const bool is_square = grid && grid->members.size() == longest.members.size() &&
+                             std::holds_alternative<CirclePattern>(longest.motion) &&
+                             is_along_axes(std::get<GridPattern>(grid->motion), tolerance_);
+      if (is_square)
+        longest = std::move(*grid);
+      else
+        keep_longer(std::move(grid));
+    }
+    if (longest.members.size() < k_fewest) return take_pair();
+    return taken(std::move(longest));
   }
 
  private:
-  [[nodiscard]] const Primitive& at(PrimitiveIndex index) const { return primitives_[index]; }
-  [[nodiscard]] const Eigen::Vector3d& position(PrimitiveIndex index) const { return at(index).pose.position; }
+  [[nodiscard]] const Part& at(std::size_t index) const { return parts_[index]; }
+  [[nodiscard]] const Eigen::Vector3d& position(std::size_t index) const { return centres_.at(index); }
+
+  Pattern taken(Pattern pattern) {
+    pattern.deviation = deviation(pattern);
+    Pattern turned = pattern;
+    turn_forward(turned);
+    turned.deviation = deviation(turned);
+    if (turned.deviation <= tolerance_) pattern = std::move(turned);
+    std::erase_if(free_, [&pattern](std::size_t index) {
+      return std::find(pattern.members.begin(), pattern.members.end(), index) != pattern.members.end();
+    });
+    return pattern;
+  }
+
+  /// Two parts of several solids: of single ones, a loop would be no shorter.
+  std::optional<Pattern> take_pair() {
+    if (free_.size() < 2 || free_.size() > k_most_in_circle || at(free_.front()).kind == Part::Kind::solid) return {};
+    const auto any_pair = [this](const auto& motion_between) -> std::optional<Pattern> {
+      for (std::size_t i = 0; i < free_.size(); ++i) {
+        for (std::size_t j = i + 1; j < free_.size(); ++j) {
+          const Eigen::Vector3d step = position(free_[j]) - position(free_[i]);
+          if (step.norm() <= 2 * tolerance_) continue;
+          Pattern pair{.members = {free_[i], free_[j]}, .motion = motion_between(position(free_[i]), step)};
+          if (deviation(pair) <= tolerance_) return pair;
+        }
+      }
+      return {};
+    };
+    std::optional<Pattern> pair = any_pair([](const Eigen::Vector3d& from, const Eigen::Vector3d& step) -> Motion {
+      const Eigen::Vector3d normal = step.normalized();
+      return MirrorPattern{{.normal = normal, .offset = normal.dot(from + 0.5 * step)}};
+    });
+    if (!pair) {
+      pair = any_pair(
+          [](const Eigen::Vector3d& /*from*/, const Eigen::Vector3d& step) -> Motion { return LinePattern{step}; });
+    }
+    return pair ? std::optional(taken(std::move(*pair))) : std::nullopt;
+  }
 
   /// The member of the group that is where `wanted` is.
-  [[nodiscard]] std::optional<PrimitiveIndex> find(const Primitive& wanted) const {
-    for (const PrimitiveIndex index : free_) {
-      if ((position(index) - wanted.pose.position).norm() > tolerance_) continue;
-      if (misfit(wanted, at(index)) <= tolerance_) return index;
+  [[nodiscard]] std::optional<std::size_t> find(const Part& wanted) const {
+    const Eigen::Vector3d centre = centre_of(wanted);
+    for (const std::size_t index : free_) {
+      if ((position(index) - centre).norm() > tolerance_) continue;
+      if (misfit(wanted, at(index), tolerance_) <= tolerance_) return index;
     }
     return {};
   }
@@ -156,18 +179,18 @@ class Group {
   [[nodiscard]] double deviation(const Pattern& pattern) const {
     double most = 0;
     for (std::size_t place = 1; place < pattern.members.size(); ++place) {
-      const Primitive wanted = moved(at(pattern.members[0]), pattern.motion, place);
-      most = std::max(most, misfit(wanted, at(pattern.members[place])));
+      const Part wanted = placed(at(pattern.members[0]), pattern.motion, place);
+      most = std::max(most, misfit(wanted, at(pattern.members[place]), tolerance_));
     }
     return most;
   }
 
   /// All that the motion reaches from the first, one after the other.
-  [[nodiscard]] Pattern chain(PrimitiveIndex first, const Motion& motion) const {
+  [[nodiscard]] Pattern chain(std::size_t first, const Motion& motion) const {
     Pattern pattern{.members = {first}, .motion = motion};
     while (true) {
-      const Primitive wanted = moved(at(first), motion, pattern.members.size());
-      const std::optional<PrimitiveIndex> next = find(wanted);
+      const Part wanted = placed(at(first), motion, pattern.members.size());
+      const std::optional<std::size_t> next = find(wanted);
       // Back at the first, or at one of two solids in the same place.
       if (!next || std::find(pattern.members.begin(), pattern.members.end(), *next) != pattern.members.end()) break;
       pattern.members.push_back(*next);
@@ -178,13 +201,11 @@ class Group {
   [[nodiscard]] std::optional<Pattern> longest_line() const {
     std::optional<Pattern> longest;
     double longest_step = 0;
-    for (const PrimitiveIndex first : free_) {
-      for (const PrimitiveIndex second : free_) {
+    for (const std::size_t first : free_) {
+      for (const std::size_t second : free_) {
         const Eigen::Vector3d step = position(second) - position(first);
         if (step.norm() <= 2 * tolerance_) continue;
-        Primitive before = at(first);
-        before.pose.position -= step;
-        if (find(before)) continue;
+        if (find(moved(at(first), {.position = -step}))) continue;
         Pattern line = chain(first, LinePattern{.step = step});
         const std::size_t least = longest ? longest->members.size() : k_fewest;
         if (line.members.size() < least) continue;
@@ -200,12 +221,11 @@ class Group {
   [[nodiscard]] std::optional<Pattern> grid_of(const Pattern& line, const Eigen::Vector3d& row_step) const {
     const LinePattern along = std::get<LinePattern>(line.motion);
     const auto row_from = [&](const Eigen::Vector3d& offset) {
-      std::vector<PrimitiveIndex> row;
+      std::vector<std::size_t> row;
       for (std::size_t place = 0; place < line.members.size(); ++place) {
-        Primitive wanted = moved(at(line.members[0]), along, place);
-        wanted.pose.position += offset;
-        const std::optional<PrimitiveIndex> member = find(wanted);
-        if (!member) return std::vector<PrimitiveIndex>{};
+        const Pose there{.position = offset + static_cast<double>(place) * along.step};
+        const std::optional<std::size_t> member = find(moved(at(line.members[0]), there));
+        if (!member) return std::vector<std::size_t>{};
         row.push_back(*member);
       }
       return row;
@@ -213,8 +233,8 @@ class Group {
     if (!row_from(-row_step).empty()) return {};  // found from there
     Pattern grid{.members = line.members, .motion = GridPattern{along.step, row_step, line.members.size()}};
     for (double rows = 1;; ++rows) {
-      const std::vector<PrimitiveIndex> row = row_from(rows * row_step);
-      const auto is_taken = [&grid](PrimitiveIndex one) {
+      const std::vector<std::size_t> row = row_from(rows * row_step);
+      const auto is_taken = [&grid](std::size_t one) {
         return std::find(grid.members.begin(), grid.members.end(), one) != grid.members.end();
       };
       if (row.empty() || std::any_of(row.begin(), row.end(), is_taken)) break;
@@ -230,10 +250,10 @@ class Group {
     Pattern widest = *line;
     double least_step = k_infinite;
     // Any row of the grid may be the first.
-    for (const PrimitiveIndex from : free_) {
+    for (const std::size_t from : free_) {
       Pattern row = chain(from, line->motion);
       if (row.members.size() != line->members.size()) continue;
-      for (const PrimitiveIndex to : free_) {
+      for (const std::size_t to : free_) {
         const Eigen::Vector3d step = position(to) - position(from);
         const Eigen::Vector3d along = std::get<LinePattern>(line->motion).step;
         if (to == from || step.cross(along).norm() <= 2 * tolerance_ * along.norm()) continue;
@@ -252,8 +272,8 @@ class Group {
   /// Two rows of two, or more: the corners of a rectangle.
   [[nodiscard]] std::optional<Pattern> grid_of_pairs() const {
     std::optional<Pattern> widest;
-    for (const PrimitiveIndex first : free_) {
-      for (const PrimitiveIndex second : free_) {
+    for (const std::size_t first : free_) {
+      for (const std::size_t second : free_) {
         const Eigen::Vector3d step = position(second) - position(first);
         if (step.norm() <= 2 * tolerance_) continue;
         std::optional<Pattern> grid = widest_grid(Pattern{.members = {first, second}, .motion = LinePattern{step}});
@@ -267,9 +287,9 @@ class Group {
 
   [[nodiscard]] std::optional<Pattern> longest_circle() const {
     std::optional<Pattern> longest;
-    for (const PrimitiveIndex first : free_) {
-      for (const PrimitiveIndex second : free_) {
-        for (const PrimitiveIndex third : free_) {
+    for (const std::size_t first : free_) {
+      for (const std::size_t second : free_) {
+        for (const std::size_t third : free_) {
           std::optional<Pattern> circle = circle_through(first, second, third);
           if (circle && (!longest || is_better_circle(*circle, *longest))) longest = std::move(circle);
         }
@@ -278,8 +298,7 @@ class Group {
     return longest;
   }
 
-  [[nodiscard]] std::optional<Pattern> circle_through(PrimitiveIndex first, PrimitiveIndex second,
-                                                      PrimitiveIndex third) const {
+  [[nodiscard]] std::optional<Pattern> circle_through(std::size_t first, std::size_t second, std::size_t third) const {
     const Eigen::Vector3d a = position(second) - position(first);
     const Eigen::Vector3d b = position(third) - position(second);
     if (std::abs(a.norm() - b.norm()) > 2 * tolerance_ || a.norm() <= 2 * tolerance_) return {};
@@ -314,21 +333,20 @@ class Group {
     return CirclePattern{.centre = corner + radius * inward, .axis = axis, .angle_deg = degrees, .is_full = false};
   }
 
-  const PrimitiveSet& primitives_;
+  std::span<const Part> parts_;
   double tolerance_;
-  std::vector<PrimitiveIndex> free_ = {};
+  std::vector<std::size_t> free_ = {};
+  std::map<std::size_t, Eigen::Vector3d> centres_ = {};
 };
 
 }  // namespace
 
-std::vector<Pattern> find_patterns(const PrimitiveSet& primitives, std::span<const PrimitiveIndex> candidates,
-                                   double tolerance) {
+std::vector<Pattern> find_patterns(std::span<const Part> parts, double tolerance) {
   std::vector<Group> groups;
-  for (const PrimitiveIndex index : candidates) {
-    if (!can_repeat(primitives[index])) continue;
+  for (std::size_t index = 0; index < parts.size(); ++index) {
     const auto group =
         std::find_if(groups.begin(), groups.end(), [index](const Group& one) { return one.takes(index); });
-    (group == groups.end() ? groups.emplace_back(primitives, tolerance) : *group).add(index);
+    (group == groups.end() ? groups.emplace_back(parts, tolerance) : *group).add(index);
   }
   std::vector<Pattern> patterns;
   for (Group& group : groups) {
@@ -339,16 +357,8 @@ std::vector<Pattern> find_patterns(const PrimitiveSet& primitives, std::span<con
   return patterns;
 }
 
-Primitive member_of(const PrimitiveSet& primitives, const Pattern& pattern, std::size_t place) {
-  return moved(primitives[pattern.members.front()], pattern.motion, place);
-}
-
-double misfit(const Primitive& a, const Primitive& b) {
-  if (!can_repeat(a) || !can_repeat(b)) return k_infinite;
-  const double size = size_difference(a.shape, b.shape);
-  if (size == k_infinite) return size;
-  const double place = (a.pose.position - b.pose.position).norm();
-  return size + place + turn_difference(a, b) * oriented_bounds(a).half_size.norm();
+Part member_of(std::span<const Part> parts, const Pattern& pattern, std::size_t place) {
+  return placed(parts[pattern.members.front()], pattern.motion, place);
 }
 
 }  // namespace cloud2csg::script

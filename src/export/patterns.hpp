@@ -4,9 +4,9 @@
 #include <variant>
 #include <vector>
 
-#include "cloud2csg/primitive.hpp"
+#include "export/parts.hpp"
 
-/// Solids that repeat: what a person would write as a loop.
+/// Parts that repeat: what a person would write as a loop.
 namespace cloud2csg::script {
 
 /// Equal steps.
@@ -26,25 +26,25 @@ struct CirclePattern {
   double angle_deg;      ///< from one member to the next
   bool is_full;          ///< the member after the last is the first
 };
+/// One member, and its mirror image.
+struct MirrorPattern {
+  MirrorPlane plane;
+};
 
 struct Pattern {
-  std::vector<PrimitiveIndex> members;  ///< in their order along the line or circle, or row by row
-  std::variant<LinePattern, GridPattern, CirclePattern> motion;
+  std::vector<std::size_t> members;  ///< numbers of parts, in their order along the line or circle, or row by row
+  std::variant<LinePattern, GridPattern, CirclePattern, MirrorPattern> motion;
   double deviation = 0;  ///< how far at most a member is from where the pattern puts it, in size, place and turn
 };
 
-/// Patterns of boxes, spheres, cylinders, cones and tori of equal size among `candidates`, those of most members first;
-/// each candidate is in one at most. Three or more in a line or on a circle, or four or more in a grid. None deviates
-/// by more than `tolerance`. Of more than 256 equal solids, none is looked for; in circles, of more than 48. O(n^3 x
-/// patterns) for n equal solids
-[[nodiscard]] std::vector<Pattern> find_patterns(const PrimitiveSet& primitives,
-                                                 std::span<const PrimitiveIndex> candidates, double tolerance);
+/// Patterns of equal parts, those of most members first; each part is in one at most. Three or more in a line or on a
+/// circle, or four or more in a grid. Of parts of several solids, two are one as well: mirror images, or else a line.
+/// Four at the corners of a square are a grid if its sides lie along the axes of coordinates, else a circle. None
+/// deviates by more than `tolerance`. Of more than 256 equal parts, none is looked for; in circles and mirrors, of more
+/// than 48. O(n^3 x patterns) for n equal parts
+[[nodiscard]] std::vector<Pattern> find_patterns(std::span<const Part> parts, double tolerance);
 
 /// The member at a place of a pattern (0 is the first) as the pattern makes it from the first.
-[[nodiscard]] Primitive member_of(const PrimitiveSet& primitives, const Pattern& pattern, std::size_t place);
-
-/// How far the surfaces of two solids are apart at most, about; infinite for solids of different or of other types than
-/// those of patterns.
-[[nodiscard]] double misfit(const Primitive& a, const Primitive& b);
+[[nodiscard]] Part member_of(std::span<const Part> parts, const Pattern& pattern, std::size_t place);
 
 }  // namespace cloud2csg::script

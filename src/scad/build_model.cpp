@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,6 +22,7 @@ namespace cloud2csg {
 namespace {
 
 using Eigen::Affine3d;
+using Eigen::Vector3d;
 using scad::Scope;
 using scad::Statement;
 using Kind = Statement::Kind;
@@ -30,6 +32,11 @@ constexpr std::size_t k_most_calls = 1'000'000;
 
 constexpr std::array<std::string_view, 10> k_no_solids{"hull",    "minkowski", "linear_extrude", "offset", "projection",
                                                        "surface", "import",    "text",           "resize", "roof"};
+
+bool is_plain_union(std::string_view name) {
+  constexpr std::array<std::string_view, 4> k_names{"union", "group", "render", "color"};
+  return std::ranges::find(k_names, name) != k_names.end();
+}
 
 /// All numbers of a solid and where it is: those of equal solids are equal.
 std::vector<double> numbers_of(const Primitive& primitive) {
@@ -115,23 +122,29 @@ class Builder {
   /// Whether there is a solid.
   bool combine(Operation operation, const std::vector<Statement>& statements, const Scope& scope,
                const Affine3d& frame) {
-    const std::size_t begin = postfix_.size();
-    bool is_first = true;
-    bool is_solid = false;
+    std::vector<const Statement*> solids;
     for (const Statement& statement : statements) {
-      if (!statement.is_shown || statement.kind == Kind::assignment || statement.kind == Kind::module_definition) {
-        continue;
-      }
-      const bool is_added = add(statement, scope, frame);
+      const bool is_solid = statement.kind != Kind::assignment && statement.kind != Kind::module_definition;
+      if (statement.is_shown && is_solid) solids.push_back(&statement);
+    }
+    return join(operation, solids.size(), [&](std::size_t i) { return add(*solids[i], scope, frame); });
+  }
+
+  /// What `add_one` adds, combined. Whether there is a solid.
+  template <class AddOne>
+  bool join(Operation operation, std::size_t count, const AddOne& add_one) {
+    const std::size_t begin = postfix_.size();
+    bool is_solid = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_added = add_one(i);
       if (is_added && is_solid) {
         postfix_.push_back(CsgNode::inner(operation, static_cast<std::uint32_t>(postfix_.size() - begin + 1)));
-      } else if (is_first || operation == Operation::union_of) {
+      } else if (i == 0 || operation == Operation::union_of) {
         is_solid = is_solid || is_added;
       } else if (!is_solid || operation == Operation::intersection) {
         is_solid = false;  // nothing less something, nothing and something
         postfix_.erase(postfix_.begin() + static_cast<std::ptrdiff_t>(begin), postfix_.end());
       }
-      is_first = false;
     }
     return is_solid;
   }
@@ -148,10 +161,9 @@ class Builder {
     }
     if (call.name == "difference") return combine_block(Operation::difference, call.children, scope, frame);
     if (call.name == "intersection") return combine_block(Operation::intersection, call.children, scope, frame);
-    for (const char* plain : {"union", "group", "render", "color"}) {
-      if (call.name == plain) return combine_block(Operation::union_of, call.children, scope, frame);
-    }
-    if (call.name == "for") return repeat(call, 0, scope, frame);
+    if (is_plain_union(call.name)) return combine_block(Operation::union_of, call.children, scope, frame);
+    if (call.name == "for") return repeat(Operation::union_of, call, 0, scope, frame);
+    if (call.name == "intersection_for") return repeat(Operation::intersection, call, 0, scope, frame);
     if (call.name == "rotate_extrude") return add_torus(call, scope, frame);
     if (const auto map = scad::transform_of(call, scope, text_)) {
       return combine_block(Operation::union_of, call.children, scope, frame * *map);
@@ -162,27 +174,21 @@ class Builder {
     return true;
   }
 
-  /// The union of a loop's turns, of all variables from the given one on.
-  bool repeat(const Statement& loop, std::size_t variable, const Scope& outer, const Affine3d& frame) {
+  /// The turns of a loop combined, of all variables from the given one on.
+  bool repeat(Operation operation, const Statement& loop, std::size_t variable, const Scope& outer,
+              const Affine3d& frame) {
     const Level level(*this, loop);
     if (variable == loop.arguments.size()) return combine_block(Operation::union_of, loop.children, outer, frame);
     const scad::Argument& argument = loop.arguments[variable];
     if (argument.name.empty()) {
       scad::refuse(text_, argument.value.offset, "expected a variable and its values, as in for (i = [0 : 3])");
     }
-    const std::size_t begin = postfix_.size();
-    bool is_solid = false;
-    for (scad::Value& turn : scad::turns_of(scad::evaluate(argument.value, outer, text_), k_most_calls, text_)) {
+    std::vector<scad::Value> turns = scad::turns_of(scad::evaluate(argument.value, outer, text_), k_most_calls, text_);
+    return join(operation, turns.size(), [&](std::size_t i) {
       Scope scope{.outer = &outer};
-      scope.values.emplace(argument.name, std::move(turn));
-      const bool is_added = repeat(loop, variable + 1, scope, frame);
-      if (is_added && is_solid) {
-        postfix_.push_back(
-            CsgNode::inner(Operation::union_of, static_cast<std::uint32_t>(postfix_.size() - begin + 1)));
-      }
-      is_solid = is_solid || is_added;
-    }
-    return is_solid;
+      scope.values.emplace(argument.name, std::move(turns[i]));
+      return repeat(operation, loop, variable + 1, scope, frame);
+    });
   }
 
   [[noreturn]] void refuse_call(const Statement& call) const {
@@ -204,29 +210,66 @@ class Builder {
     return is_added;
   }
 
+  /// A flat shape, and where it is.
+  struct Profile {
+    const Statement* shape;
+    Affine3d map = Affine3d::Identity();
+
+    [[nodiscard]] bool is_moved_only() const { return map.linear().isIdentity(1e-9) && map.translation().z() == 0.0; }
+  };
+
+  /// What the maps go to that a statement begins with.
+  [[nodiscard]] Profile profile_of(const Statement& statement, const Affine3d& frame, const Scope& scope) const {
+    Profile profile{.shape = &statement, .map = frame};
+    while (profile.shape->children.size() == 1) {
+      const auto map = scad::transform_of(*profile.shape, scope, text_);
+      if (!map && profile.shape->kind != Kind::block && !is_plain_union(profile.shape->name)) break;
+      if (map) profile.map = profile.map * *map;
+      profile.shape = profile.shape->children.data();
+    }
+    return profile;
+  }
+
+  /// Whether a square leaves all of a circle but what is next to the axis, where no solid can be without a hole.
+  [[nodiscard]] bool leaves_pinhole(const Profile& square, const Vector3d& centre, double radius,
+                                    const Scope& scope) const {
+    constexpr double k_widest = 0.1;  // of the circle's radius, more or less; what is missing goes with its power 5/2
+    constexpr double k_rounding = 1e-6;
+    if (square.shape->name != "square" || !square.is_moved_only()) return false;
+    const Eigen::Vector2d size = scad::square_size(*square.shape, scope, text_);
+    const Vector3d from = square.map.translation();
+    const double left = centre.x() - radius;
+    const double slack = k_rounding * radius;
+    return from.x() - left <= k_widest * radius + slack && from.x() + size.x() >= centre.x() + radius - slack &&
+           from.y() <= centre.y() - radius + slack && from.y() + size.y() >= centre.y() + radius - slack;
+  }
+
   /// A circle beside the axis, turned around it.
   bool add_torus(const Statement& call, const Scope& scope, const Affine3d& frame) {
     constexpr std::array<std::string_view, 3> k_order{"angle", "convexity", "start"};
     const scad::Arguments arguments(call, k_order, {}, scope, text_);
-    const Statement* circle = &call;
-    Eigen::Affine3d map = Affine3d::Identity();
-    while (circle->children.size() == 1) {
-      circle = circle->children.data();
-      if (const auto next = scad::transform_of(*circle, scope, text_)) map = map * *next;
+    if (call.children.size() != 1 || arguments.number("angle").value_or(360) != 360) refuse_profile(call);
+    Profile circle = profile_of(call.children.front(), Affine3d::Identity(), scope);
+    std::optional<Profile> cut;
+    if (circle.shape->name == "intersection" && circle.shape->children.size() == 2) {
+      cut = profile_of(circle.shape->children.back(), circle.map, scope);
+      circle = profile_of(circle.shape->children.front(), circle.map, scope);
     }
-    const double across = map.translation().x();
-    const bool is_moved_only = map.linear().isIdentity(1e-9) && map.translation().z() == 0.0;
-    if (circle->name != "circle" || !is_moved_only || arguments.number("angle").value_or(360) != 360) {
-      scad::refuse(text_, call.offset, "expected a circle that is moved, and turned around wholly: a torus",
-                   "write a mesh, openscad -o part.stl FILE.scad, and extract the tree from that");
-    }
-    const double radius = scad::round_radius(*circle, scope, text_);
-    if (across < radius) {
+    if (circle.shape->name != "circle" || !circle.is_moved_only()) refuse_profile(call);
+    const double radius = scad::round_radius(*circle.shape, scope, text_);
+    const Vector3d centre = circle.map.translation();
+    if (cut && !leaves_pinhole(*cut, centre, radius, scope)) refuse_profile(call);
+    if (centre.x() < radius) {
       scad::refuse(text_, call.offset, "expected a circle that is wholly to the right of the axis");
     }
-    const Eigen::Translation3d up(0, 0, map.translation().y());
-    add_leaf(Torus{.major_radius = across, .minor_radius = radius}, call, frame * up);
+    const Eigen::Translation3d up(0, 0, centre.y());
+    add_leaf(Torus{.major_radius = centre.x(), .minor_radius = radius}, call, frame * up);
     return true;
+  }
+
+  [[noreturn]] void refuse_profile(const Statement& call) const {
+    scad::refuse(text_, call.offset, "expected a circle that is moved, and turned around wholly: a torus",
+                 "write a mesh, openscad -o part.stl FILE.scad, and extract the tree from that");
   }
 
   /// A solid that is there already is the same primitive again.

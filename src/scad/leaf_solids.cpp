@@ -110,6 +110,16 @@ double round_radius(const Statement& call, const Scope& scope, std::string_view 
   return radius;
 }
 
+Eigen::Vector2d square_size(const Statement& call, const Scope& scope, std::string_view text) {
+  constexpr std::array<std::string_view, 2> k_order{"size", "center"};
+  const Arguments arguments(call, k_order, {}, scope, text);
+  require(!arguments.flag("center"), arguments, "a square that begins at the origin, not one with its centre there");
+  const Value* const size = arguments.find("size");
+  if (size == nullptr) return Eigen::Vector2d::Ones();
+  if (size->kind == Value::Kind::list) return arguments.vector(*size, 0).head<2>();
+  return Eigen::Vector2d::Constant(*arguments.number("size"));
+}
+
 std::optional<LeafSolid> leaf_solid(const Statement& call, const Scope& scope, std::string_view text) {
   if (call.name == "sphere") return LeafSolid{.shape = Sphere{.radius = round_radius(call, scope, text)}};
   if (call.name == "cube") {

@@ -22,4 +22,7 @@ struct LeafSolid {
 /// The radius of a call of circle or sphere. @throws Error
 [[nodiscard]] double round_radius(const Statement& call, const Scope& scope, std::string_view text);
 
+/// The sides of a call of square, which begins at the origin. @throws Error
+[[nodiscard]] Eigen::Vector2d square_size(const Statement& call, const Scope& scope, std::string_view text);
+
 }  // namespace cloud2csg::scad

@@ -10,8 +10,8 @@
 namespace cloud2csg::scad {
 namespace {
 
-constexpr std::array<std::string_view, 10> k_beyond = {"function", "use",    "include", "intersection_for", "if",
-                                                       "let",      "assert", "echo",    "assign",           "each"};
+constexpr std::array<std::string_view, 9> k_beyond = {"function", "use",  "include", "if",  "let",
+                                                      "assert",   "echo", "assign",  "each"};
 
 /// One function a rule of the grammar.
 class Parser {

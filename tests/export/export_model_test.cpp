@@ -11,6 +11,7 @@
 #include "mesh/model_extent.hpp"
 #include "support/every_type.hpp"
 #include "support/flange.hpp"
+#include "support/repeated_parts.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -93,16 +94,31 @@ TEST(OpenScadProgram, RendersTheFlatLanguage) {
 
 TEST(OpenScadProgram, RendersLoopsLikeTheirMembers) {
   if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
-  const Model model = test::flange();
-  const Rendering loops = render("loops", model, {.facets = 48});
-  const Rendering plain = render("plain", model, {.facets = 48, .patterns = false});
-  ASSERT_EQ(loops.status, 0) << loops.log;
-  ASSERT_EQ(plain.status, 0) << plain.log;
-  EXPECT_NE(to_openscad(*model.tree, model.primitives, {}).find("for (i = "), std::string::npos);
-  EXPECT_EQ(loops.log.find("WARNING"), std::string::npos) << loops.log;
-  EXPECT_NEAR(volume_of(loops.mesh) / mesh_volume(model), 1.0, 0.01);
-  // The facets of a turned cylinder turn with it.
-  EXPECT_NEAR(volume_of(loops.mesh) / volume_of(plain.mesh), 1.0, 1e-3);
+  for (const Model& model : {test::flange(), test::repeated_parts()}) {
+    const Rendering loops = render("loops", model, {.facets = 48});
+    const Rendering plain = render("plain", model, {.facets = 48, .patterns = false});
+    ASSERT_EQ(loops.status, 0) << loops.log;
+    ASSERT_EQ(plain.status, 0) << plain.log;
+    EXPECT_NE(to_openscad(*model.tree, model.primitives, {}).find("for (i = "), std::string::npos);
+    EXPECT_EQ(loops.log.find("WARNING"), std::string::npos) << loops.log;
+    EXPECT_NEAR(volume_of(loops.mesh) / mesh_volume(model), 1.0, 0.01);
+    // The facets of a turned cylinder turn with it.
+    EXPECT_NEAR(volume_of(loops.mesh) / volume_of(plain.mesh), 1.0, 1e-3);
+  }
+}
+
+TEST(OpenScadProgram, RendersInAnyUnit) {
+  if (!has_openscad()) GTEST_SKIP() << "needs the openscad program";
+  for (const double unit : {0.01, 0.1, 10'000.0}) {
+    // A torus without a hole meets itself at its middle, which OpenSCAD takes for no solid.
+    Model model{.primitives = {{.id = "ring", .shape = Torus{.major_radius = unit, .minor_radius = unit}},
+                               {.id = "pin", .shape = Cylinder{.radius = 0.5 * unit, .height = 4 * unit}}},
+                .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
+    for (const char* name : {"unit", "unit.csg"}) {
+      SCOPED_TRACE(testing::Message() << name << " of " << unit);
+      expect_same_solid(name, model, {.facets = 24}, 0.03);
+    }
+  }
 }
 
 TEST(OpenScadProgram, RendersAComplement) {

@@ -126,6 +126,17 @@ TEST(OpenScadSolids, VariablesAreUnique) {
   EXPECT_NE(text.find("sphere(r = a_major_radius_2)"), std::string::npos) << text;
 }
 
+TEST(OpenScadTree, FlatCirclesHaveTheFacetsAskedForInAnyUnit) {
+  const auto flat = [](double radius, int facets) {
+    return to_openscad_csg(CsgTree::leaf(0), {named("p", Sphere{.radius = radius})}, {.facets = facets});
+  };
+  // By angle, which FreeCAD reads as round, where no facet is shorter than the least that OpenSCAD makes by angle.
+  EXPECT_NE(flat(1, 64).find("sphere($fn = 0, $fa = 5.625, $fs = 0.01, "), std::string::npos);
+  EXPECT_NE(flat(0.005, 64).find("sphere($fn = 64, $fa = 5.625, $fs = 0.01, "), std::string::npos);
+  // FreeCAD takes up to 16 for corners.
+  EXPECT_NE(flat(0.005, 12).find("sphere($fn = 17, "), std::string::npos);
+}
+
 TEST(OpenScadLoops, AreWrittenForThreeOrMore) {
   PrimitiveSet holes;
   CsgTree tree = CsgTree::leaf(0);
