@@ -3,23 +3,28 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "base/atomic_file.hpp"
 #include "brep/balance_facets.hpp"
 #include "brep/kernel_solids.hpp"
+#include "brep/step_text.hpp"
 #include "brep/tree_volume.hpp"
 #include "cloud2csg/mesh.hpp"
 
 namespace cloud2csg::brep {
 
 ModelHost::ModelHost(const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives,
-                     const AlignedBox& extent, const BrepOptions& options, const RunContext& run)
+                     const AlignedBox& extent, const BrepOptions& options, const RunContext& run,
+                     std::vector<std::string> names)
     : job_(job),
       primitives_(primitives),
       extent_(extent),
       options_(options),
       run_(run),
       quiet_{.stop = run.stop, .on_progress = {}, .threads = 1},
-      used_(primitives_of(tree)) {}
+      used_(primitives_of(tree)),
+      names_(std::move(names)) {}
 
 KernelSolid ModelHost::solid_of(PrimitiveIndex primitive) const {
   if (has_exact_surfaces(primitives_[primitive])) return kernel_solid(primitives_[primitive], extent_, job_.frame);
@@ -52,6 +57,10 @@ Facets ModelHost::facets_of(const CsgTree& tree) const {
                                    {.resolution = options_.facet_resolution, .corners_first = false}, quiet_);
   balance_facets(mesh, tree, primitives_);
   return kernel_facets(mesh, job_.frame);
+}
+
+void ModelHost::name_step(const std::filesystem::path& file) const {
+  write_text_file(file, with_names(read_text_file(file), names_));
 }
 
 PrimitiveIndex ModelHost::primitive_at(const std::vector<Eigen::Vector3d>& points) const {

@@ -8,14 +8,15 @@ namespace cloud2csg::brep {
 /// What the kernel asks of a model.
 class ModelHost : public KernelHost {
  public:
-  /// All must outlive this.
+  /// All but `names`, which STEP files have in place of tokens, must outlive this.
   ModelHost(const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
-            const BrepOptions& options, const RunContext& run);
+            const BrepOptions& options, const RunContext& run, std::vector<std::string> names = {});
 
   [[nodiscard]] KernelSolid solid_of(PrimitiveIndex primitive) const override;
   [[nodiscard]] std::optional<VolumeEstimate> volume_of(std::size_t node) const override;
   [[nodiscard]] Facets facets_of(std::size_t node) const override;
   [[nodiscard]] PrimitiveIndex primitive_at(const std::vector<Eigen::Vector3d>& points) const override;
+  void name_step(const std::filesystem::path& file) const override;
   [[nodiscard]] const RunContext& run() const override { return run_; }
 
  private:
@@ -28,6 +29,7 @@ class ModelHost : public KernelHost {
   const RunContext& run_;
   RunContext quiet_;  ///< stops with the run, reports nothing
   std::vector<PrimitiveIndex> used_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace cloud2csg::brep

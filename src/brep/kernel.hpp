@@ -96,6 +96,8 @@ class KernelHost {
   [[nodiscard]] virtual Facets facets_of(std::size_t node) const = 0;
   /// The primitive on whose surface these points are best.
   [[nodiscard]] virtual PrimitiveIndex primitive_at(const std::vector<Eigen::Vector3d>& points) const = 0;
+  /// Puts the real names into a STEP file in place of their tokens.
+  virtual void name_step(const std::filesystem::path& file) const = 0;
   [[nodiscard]] virtual const RunContext& run() const = 0;
 };
 
@@ -103,7 +105,7 @@ class KernelHost {
 /// them.
 inline constexpr const char* k_kernel_version_symbol = "cloud2csg_kernel_version";
 inline constexpr const char* k_kernel_run_symbol = "cloud2csg_kernel_run";
-inline constexpr int k_kernel_version = 2;
+inline constexpr int k_kernel_version = 3;
 using KernelVersion = int (*)();
 /// @throws Cancelled, and what the host throws
 using KernelRun = void (*)(const KernelJob* job, const KernelHost* host, KernelResult* result);

@@ -120,7 +120,7 @@ struct Made {
 
 Made make(const std::filesystem::path& file, const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives,
           const AlignedBox& extent, const BrepOptions& options, const RunContext& run) {
-  const brep::ModelHost host(job, tree, primitives, extent, options, run);
+  const brep::ModelHost host(job, tree, primitives, extent, options, run, names_in_file(file, primitives, options));
   Made made;
   KernelResult& result = made.result;
   kernel_for(file).run(&job, &host, &result);
@@ -145,9 +145,7 @@ BrepReport write(const std::filesystem::path& file, const CsgTree& tree, const P
   const ScratchFile scratch;
   job.file = scratch.path();
   Made made = make(file, job, tree, primitives, extent, options, run);
-  const std::string text = read_text_file(scratch.path());
-  write_text_file(
-      file, format == KernelFormat::step ? brep::with_names(text, names_in_file(file, primitives, options)) : text);
+  write_text_file(file, read_text_file(scratch.path()));
   return std::move(made.report);
 }
 

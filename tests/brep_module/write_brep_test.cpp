@@ -130,6 +130,36 @@ TEST_F(WriteBrep, ASphereCutAroundItsPolesIsReadAsItIs) {
   EXPECT_NEAR(read_.volume, report.tree_volume, 5 * report.tree_volume_error);
 }
 
+/// A torus without a hole, cut near its middle, where the kernel's surfaces meet themselves.
+PrimitiveSet cut_horn_torus(const Eigen::Vector3d& at, const Eigen::Quaterniond& across) {
+  Primitive half_space = test::placed("half", HalfSpace{}, at);
+  half_space.pose.orientation = across.normalized();
+  Primitive rod = test::placed("rod", Cylinder{.radius = 0.3, .height = 1.2}, {0, 0, 0});
+  rod.pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY());
+  return {test::placed("ring", Torus{.major_radius = 0.3, .minor_radius = 0.3}, {0, 0, 0}), half_space, rod};
+}
+
+TEST_F(WriteBrep, AResultWithGapsGetsFacetsAndIsNamed) {
+  const PrimitiveSet primitives = cut_horn_torus(
+      {0.09, 0, 0}, {0.4964396767986675, -0.08362997576248334, -0.18127881348883929, 0.8448027380602406});
+  const BrepReport report = step(parse_tree("(ring - half) - rod", primitives), primitives);
+  EXPECT_TRUE(report.is_valid);
+  EXPECT_TRUE(read_.is_valid);
+  // Exact, or said to be facets.
+  const double tolerance = report.failed.empty() ? 1e-3 : 2e-2;
+  EXPECT_NEAR(read_.volume / report.tree_volume, 1, tolerance);
+}
+
+TEST_F(WriteBrep, WhatFilesChangeByLessThanCanBeMeasuredIsValid) {
+  PrimitiveSet primitives =
+      cut_horn_torus({0, 0, 0}, {-0.36148587853258507, -0.6047733518011734, 0.0596863566033558, -0.7071171695045426});
+  primitives.push_back(test::placed("below", HalfSpace{}, {0, 0, 0}));
+  const BrepReport report = step(parse_tree("(ring & below) - half - rod", primitives), primitives);
+  EXPECT_TRUE(report.is_valid);
+  EXPECT_TRUE(read_.is_valid);
+  EXPECT_LT(report.volume_difference(), 1e-3 + 5 * report.tree_volume_error / report.tree_volume);
+}
+
 TEST_F(WriteBrep, HalfSpacesCut) {
   PrimitiveSet primitives = plate_ball_rod();
   primitives.push_back({.id = "below", .shape = HalfSpace{}});
@@ -186,7 +216,13 @@ TEST_F(WriteBrep, NamesArePartAndFaces) {
 
 TEST_F(WriteBrep, PrimitivesAreComponentsWhenAskedFor) {
   const PrimitiveSet primitives = plate_ball_rod();
-  step(parse_tree("plate - ball", primitives), primitives, {.with_primitives = true});
+  const CsgTree tree = parse_tree("plate - ball", primitives);
+  const BrepReport report = step(tree, primitives, {.with_primitives = true});
+  // All of the file is checked, the part is told of.
+  const BrepReport alone = write_step(path("alone.step"), tree, primitives);
+  EXPECT_TRUE(report.is_valid);
+  EXPECT_EQ(report.solids, 1U);
+  EXPECT_NEAR(report.volume, alone.volume, 1e-6 * alone.volume);
   EXPECT_EQ(read_.products, (std::set<std::string>{"x", "x assembly", "primitives", "plate", "ball"}));
   EXPECT_EQ(read_.solids, 3U);
 }

@@ -4,6 +4,7 @@
 #include <BRepBndLib.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
 #include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
 #include <Precision.hxx>
@@ -59,6 +60,17 @@ double volume_of(const Bodies& bodies) {
 
 bool is_valid(const TopoDS_Shape& shape) {
   return BRepCheck_Analyzer(shape).IsValid();
+}
+
+bool is_closed(const Body& body, double tolerance) {
+  // The kernel measures from the middle of all corners: a block beside the body moves that.
+  const gp_Pnt corner = body.box.CornerMax();
+  const double size = corner.Distance(body.box.CornerMin());
+  const gp_Pnt from = corner.Translated(gp_Vec(size, size, size));
+  const Body block = body_of(BRepPrimAPI_MakeBox(from, size, size, size).Solid());
+  const double volume = volume_of(body.shape);
+  const double from_elsewhere = volume_of(shape_of({body, block})) - size * size * size;
+  return std::abs(from_elsewhere - volume) <= tolerance * std::abs(volume);
 }
 
 Healed healed(const TopoDS_Shape& shape) {

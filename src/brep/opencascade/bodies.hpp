@@ -40,4 +40,8 @@ struct Healed {
 /// the kernel cannot do it, or spoils the solid by it.
 [[nodiscard]] TopoDS_Shape with_joined_faces(const TopoDS_Shape& shape);
 
+/// Whether the volume is the same when it is measured from elsewhere, but for `tolerance` of it: that of a surface with
+/// gaps is not. The kernel's check of a solid finds no gaps that are within what it takes for its tolerance.
+[[nodiscard]] bool is_closed(const Body& body, double tolerance);
+
 }  // namespace cloud2csg::brep

@@ -34,8 +34,8 @@ constexpr std::array<BooleanSettings, 5> k_trials{{{.fuzzy = 0, .one_by_one = fa
 
 class Evaluator {
  public:
-  Evaluator(const KernelJob& job, const KernelHost& host, SphereForm spheres)
-      : job_(job), host_(host), spheres_(spheres), results_(job.plan.nodes.size()) {
+  Evaluator(const KernelJob& job, const KernelHost& host, SphereForm spheres, const FileTest& file_test)
+      : job_(job), host_(host), spheres_(spheres), file_test_(file_test), results_(job.plan.nodes.size()) {
     for (const std::vector<std::size_t>& level : job.levels) total_ += level.size();
   }
 
@@ -68,6 +68,10 @@ class Evaluator {
     try {
       result.bodies = make_bodies(solid, spheres_);
       if (std::holds_alternative<Facets>(solid.shape)) result.deviation = deviation_of(node, result.bodies);
+      check_file(node, result);
+    } catch (const BooleanFailure& failure) {
+      result.failure = failure.what();
+      set_facets(node, result);
     } catch (const Standard_Failure& failure) {
       result.failure = fmt::format("the kernel says: {}", failure.GetMessageString());
       set_facets(node, result);
@@ -87,6 +91,7 @@ class Evaluator {
         NodeResult trial{.bodies = combined(plan, settings), .deviation = deviation};
         heal(trial);
         if (expected) check_volume(trial, *expected);
+        check_file(node, trial);
         result = std::move(trial);
         return true;
       } catch (const BooleanFailure& failure) {
@@ -142,6 +147,9 @@ class Evaluator {
 
   void check_volume(const NodeResult& result, const VolumeEstimate& expected) const {
     constexpr double k_errors = 5;
+    for (const Body& body : result.bodies) {
+      if (!is_closed(body, job_.volume_tolerance)) throw BooleanFailure("its result has gaps in its surface");
+    }
     const double volume = volume_of(result.bodies);
     const double allowed =
         result.deviation + std::max(k_errors * expected.error, job_.volume_tolerance * expected.volume);
@@ -149,6 +157,11 @@ class Evaluator {
     const double cube = std::pow(job_.frame.scale, 3);
     throw BooleanFailure(
         fmt::format("its result has volume {:.6g}, the tree {:.6g}", cube * volume, cube * expected.volume));
+  }
+
+  void check_file(std::size_t node, const NodeResult& result) const {
+    if (!file_test_ || result.bodies.empty() || file_test_(node, result.bodies)) return;
+    throw BooleanFailure("its result is invalid, or another solid, when it is read from the file");
   }
 
   /// What stands for a node whose operation failed; the failure grows by what is wrong with this, too.
@@ -170,6 +183,7 @@ class Evaluator {
   const KernelJob& job_;
   const KernelHost& host_;
   SphereForm spheres_;
+  const FileTest& file_test_;
   std::vector<NodeResult> results_;
   std::mutex reporting_ = {};
   std::size_t done_ = 0;
@@ -178,8 +192,8 @@ class Evaluator {
 
 }  // namespace
 
-Evaluation evaluate(const KernelJob& job, const KernelHost& host, SphereForm spheres) {
-  return Evaluator(job, host, spheres).evaluate();
+Evaluation evaluate(const KernelJob& job, const KernelHost& host, SphereForm spheres, const FileTest& file_test) {
+  return Evaluator(job, host, spheres, file_test).evaluate();
 }
 
 }  // namespace cloud2csg::brep
