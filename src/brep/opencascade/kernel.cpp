@@ -8,11 +8,11 @@
 #include <TopoDS.hxx>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <gp_Trsf.hxx>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "brep/opencascade/booleans.hpp"
 #include "brep/opencascade/evaluate.hpp"
@@ -115,7 +115,10 @@ bool holds(const StepReading& reading, double volume, const Trial& trial) {
 bool survives_file(const Bodies& bodies, const KernelJob& job, std::size_t node, const Trial& trial) {
   struct Removed {
     std::filesystem::path path;
-    ~Removed() { std::remove(path.c_str()); }
+    ~Removed() {
+      std::error_code ignored;
+      std::filesystem::remove(path, ignored);
+    }
   };
   const Removed file{job.file.string() + "-" + std::to_string(node)};
   const TopoDS_Shape shape = to_model(shape_of(bodies), job.frame);
