@@ -231,9 +231,9 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
     append(cloud, wall.points);
   }
   found.warnings.push_back(
-      fmt::format("no sensor saw far into {} hole{}, the largest near {}: the walls are taken to go on between what "
-                  "was seen of them",
-                  walls.size(), walls.size() == 1 ? "" : "s", place_text(middle, found.prepared.scale.diagonal)));
+      fmt::format("no sensor saw far into {} of the holes, the largest near {}: the walls are taken to go on between "
+                  "what was seen of them",
+                  walls.size(), place_text(middle, found.prepared.scale.diagonal)));
 }
 
 /// Warns of known primitives that a tree does without, unless they are named already.

@@ -134,11 +134,11 @@ TEST(OpenScadProgram, RendersAComplement) {
 TEST(ExportModel, FollowsTheEnding) {
   const Model model = data_model("m3.json");
   const std::pair<const char*, const char*> expected[] = {{"m3.json", "{\"format\": \"cloud2csg\""},
-                                                          {"m3.scad", "// A stand-in"},
-                                                          {"m3.csg", "// A stand-in"},
-                                                          {"m3.FCMacro", "# A stand-in"},
-                                                          {"m3.py", "# A stand-in"},
-                                                          {"m3.dot", "digraph"},
+                                                          {"m3.scad", "// Written by cloud2csg\n// A stand-in"},
+                                                          {"m3.csg", "// Written by cloud2csg\n// A stand-in"},
+                                                          {"m3.FCMacro", "# Written by cloud2csg\n# A stand-in"},
+                                                          {"m3.py", "# Written by cloud2csg\n# A stand-in"},
+                                                          {"m3.dot", "// Written by cloud2csg\ndigraph"},
                                                           {"m3.OFF", "OFF\n"},
                                                           {"m3.obj", "v "},
                                                           {"m3.stl", "cloud2csg"}};
