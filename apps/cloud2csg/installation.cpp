@@ -94,6 +94,7 @@ std::vector<Finding> examine_installation() {
           reports(),
           models(),
           helper("OpenSCAD", "openscad", "written .scad files cannot be opened here", "openscad"),
+          helper("FreeCAD", "freecadcmd", "written .FCMacro and .step files cannot be opened here", "freecad"),
           helper("gnuplot", "gnuplot", "'bench' makes tables, and no figures", "gnuplot-nox"),
           helper("browser", "xdg-open", "'view' prints the address only", "xdg-utils")};
 }

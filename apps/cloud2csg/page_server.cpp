@@ -14,6 +14,7 @@ namespace cloud2csg::app {
 namespace {
 
 constexpr const char* k_loopback = "127.0.0.1";
+constexpr std::chrono::seconds k_read_timeout{1};
 constexpr int k_not_found = 404;
 constexpr int k_wrong_method = 405;
 constexpr int k_forbidden = 403;
@@ -46,6 +47,9 @@ void prepare(httplib::Server& server, const std::string& page) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
+  // Who connects and says nothing does not keep it from ending.
+  server.set_read_timeout(k_read_timeout);
+  server.set_keep_alive_timeout(k_read_timeout.count());
   server.set_default_headers({{"X-Content-Type-Options", "nosniff"},
                               {"X-Frame-Options", "DENY"},
                               {"Referrer-Policy", "no-referrer"},

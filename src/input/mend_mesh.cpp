@@ -97,7 +97,7 @@ void turn_outward(MendedMesh& mended) {
   if (turned.whole) mended.warnings.emplace_back("The mesh is inside out: its volume is negative. It was turned.");
   if (turned.pieces > 0) {
     mended.warnings.push_back(
-        fmt::format("{} pieces of the mesh were inside out, and not within others. They were turned.", turned.pieces));
+        fmt::format("Pieces of the mesh that were inside out, and not within others, were turned: {}", turned.pieces));
   }
 }
 

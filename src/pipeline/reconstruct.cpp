@@ -210,9 +210,13 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   found.added_points += side->points.size();
   append(cloud, side->points);
   found.detection.surfaces.push_back(std::move(plane));
-  found.warnings.push_back(fmt::format(
-      "the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed by a plane",
-      side->normal.x(), side->normal.y(), side->normal.z(), 100 * side->share));
+  // Without digits that say nothing, and without a sign before zeros.
+  const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
+  found.warnings.push_back(
+      fmt::format("the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed "
+                  "by a plane through {}",
+                  facing.x(), facing.y(), facing.z(), 100 * side->share,
+                  place_text(bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
 }
 
 /// Adds the walls that nobody could see to the cloud, and their points to the surfaces.

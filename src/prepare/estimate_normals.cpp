@@ -26,6 +26,7 @@ constexpr double k_check_agreement = 0.8;
 constexpr std::size_t k_check_sample = 2048;
 constexpr std::size_t k_check_field = 16'384;            ///< points whose winding numbers tell inside from outside
 constexpr std::uint64_t k_field_stage = 0x6669'656c'64;  // names its stream of random numbers
+constexpr double k_inward_level = -0.2;                  ///< of winding numbers on the surface
 constexpr std::uint64_t k_check_stage = 0x6e6f'726d;     // names its stream of random numbers
 
 /// Whether most of a point's neighbours agree with its normal.
@@ -149,7 +150,9 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
   }
   const std::vector<double> levels = winding_numbers(select_points(cloud, sample_of(cloud.size(), k_check_field)),
                                                      select_points(cloud, sample).positions, run);
-  return std::accumulate(levels.begin(), levels.end(), 0.0) < 0.0 ? NormalsVerdict::inward : NormalsVerdict::outward;
+  // Half a turn less in the middle of the surface, where it closes; about none for a sheet, whose sides are alike.
+  const double mean = std::accumulate(levels.begin(), levels.end(), 0.0) / count;
+  return mean < k_inward_level ? NormalsVerdict::inward : NormalsVerdict::outward;
 }
 
 }  // namespace cloud2csg

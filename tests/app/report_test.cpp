@@ -1,9 +1,13 @@
 #include "cloud2csg/report.hpp"
 
+#include <arpa/inet.h>
 #include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include "app/program.hpp"
@@ -75,6 +79,35 @@ TEST_F(Reports, AreServedUntilInterrupted) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.err, "");
   EXPECT_FALSE(client.Get("/"));
+}
+
+/// Who connects and says nothing does not keep the program from ending.
+TEST_F(Reports, EndsBesideAConnectionThatIsSilent) {
+  Served served = serve({"--quiet"});
+  const int silent = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(served.port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(::connect(silent, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(httplib::Client("127.0.0.1", served.port).Get("/")->status, 200);
+  served.program.send_signal(SIGINT);
+  EXPECT_EQ(served.program.wait().status, 0);
+  ::close(silent);
+}
+
+TEST_F(Reports, SayWhenNoBrowserOpens) {
+  const std::string browser = file("xdg-open", "#!/bin/sh\nexit 3\n");
+  std::filesystem::permissions(browser, std::filesystem::perms::owner_all);
+  const std::string setup = "export DISPLAY=:7 PATH=" + folder().string() + ":$PATH";
+  RunningProgram program = start({"view", shipped("m1.json")}, setup);
+  for (int k = 0; k < 20000 && program.err_so_far().find("Ctrl-C") == std::string::npos; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  program.send_signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_NE(outcome.err.find("open this address in a browser"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("opened in the browser"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Reports, NothingElseIsServed) {

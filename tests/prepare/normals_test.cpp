@@ -233,6 +233,23 @@ TEST(PrepareCloud, TurnsInwardNormals) {
   EXPECT_EQ(rightly_oriented(prepared.cloud.normals, prepared.cloud.positions), 1.0);
 }
 
+/// It has no inside that normals could lead into; those that it has are somebody's choice.
+TEST(CheckNormals, AreKeptOnAnOpenSheet) {
+  for (const double side : {1.0, -1.0}) {
+    PointCloud sheet;
+    RandomStream random(4);
+    for (int i = 0; i < 4000; ++i) {
+      const double x = random.uniform(-2, 2);
+      const double y = random.uniform(-2, 2);
+      sheet.positions.push_back({x, y, 0.2 * std::sin(2 * x) * std::cos(y)});
+      sheet.normals.push_back(
+          side *
+          Eigen::Vector3d(-0.4 * std::cos(2 * x) * std::cos(y), 0.2 * std::sin(2 * x) * std::sin(y), 1).normalized());
+    }
+    EXPECT_EQ(check_normals(sheet, estimate_scale(sheet)), NormalsVerdict::outward);
+  }
+}
+
 TEST(CheckNormals, SensorsTellWhetherNormalsLeadInward) {
   // A hemisphere: seen from within it is a bowl, whatever the winding number says.
   PointCloud cloud;
