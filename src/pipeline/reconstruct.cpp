@@ -3,22 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "base/stopwatch.hpp"
 #include "base/without_stop.hpp"
-#include "cloud/append.hpp"
 #include "cloud2csg/error.hpp"
 #include "geometry/place_text.hpp"
 #include "pipeline/bare_surface.hpp"
+#include "pipeline/close_unseen.hpp"
 #include "pipeline/detect_rest.hpp"
 #include "pipeline/fit.hpp"
 #include "pipeline/time_limit.hpp"
-#include "solids/hidden_walls.hpp"
-#include "solids/unseen_side.hpp"
+#include "pipeline/unused_surfaces.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -27,7 +25,8 @@ constexpr double k_much_unexplained = 0.1;
 constexpr double k_coarse = 0.05;  ///< tolerance, of the diagonal
 constexpr double k_much_disagreement = 0.1;
 constexpr double k_much_bare_surface = 0.05;
-constexpr double k_bare_spacings = 6;  ///< as far from all points, a surface is bare
+constexpr std::size_t k_noted_surface = 200;  ///< points of the cloud for one of a surface that is worth a word
+constexpr double k_bare_spacings = 6;         ///< as far from all points, a surface is bare
 
 double share(std::size_t part, std::size_t all) {
   return static_cast<double>(part) / static_cast<double>(all);
@@ -199,45 +198,20 @@ void check_surface(const CsgTree& tree, const FoundPrimitives& found, const RunC
                   100 * bare->share, place_text(bare->middle, found.prepared.scale.diagonal)));
 }
 
-/// Adds the side, if one is missing, to the cloud and to the surfaces.
-void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
-  PointCloud& cloud = found.prepared.cloud;
-  const std::optional<UnseenSide> side = find_unseen_side(cloud, found.detection.surfaces, found.prepared.scale, run);
-  if (!side) return;
-  DetectedSurface plane{.surface = {.position = side->points.positions[0], .axis = side->normal}, .points = {}};
-  plane.points.resize(side->points.size());
-  std::iota(plane.points.begin(), plane.points.end(), static_cast<std::uint32_t>(cloud.size()));
-  found.added_points += side->points.size();
-  append(cloud, side->points);
-  found.detection.surfaces.push_back(std::move(plane));
-  // Without digits that say nothing, and without a sign before zeros.
-  const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
-  found.warnings.push_back(
-      fmt::format("the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed "
-                  "by a plane through {}",
-                  facing.x(), facing.y(), facing.z(), 100 * side->share,
-                  place_text(bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
-}
-
-/// Adds the walls that nobody could see to the cloud, and their points to the surfaces.
-void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
-  PointCloud& cloud = found.prepared.cloud;
-  const std::vector<HiddenWall> walls = find_hidden_walls(cloud, found.detection.surfaces, found.prepared.scale, run);
-  if (walls.empty()) return;
-  const auto largest = std::ranges::max_element(walls, {}, &HiddenWall::area);
-  const Eigen::Vector3d middle = bounds_of(largest->points.positions).center();
-  for (const HiddenWall& wall : walls) {
-    std::vector<std::uint32_t>& own = found.detection.surfaces[wall.surface].points;
-    own.resize(own.size() + wall.points.size());
-    std::iota(own.end() - static_cast<std::ptrdiff_t>(wall.points.size()), own.end(),
-              static_cast<std::uint32_t>(cloud.size()));
-    found.added_points += wall.points.size();
-    append(cloud, wall.points);
-  }
-  found.warnings.push_back(
-      fmt::format("no sensor saw far into {} of the holes, the largest near {}: the walls are taken to go on between "
-                  "what was seen of them",
-                  walls.size(), place_text(middle, found.prepared.scale.diagonal)));
+/// A part may be too small to be worth a leaf.
+void check_surfaces_are_used(const CsgTree& tree, const FoundPrimitives& found, std::vector<std::string>& warnings) {
+  const PointCloud& cloud = found.prepared.cloud;
+  const UnusedSurfaces unused =
+      find_unused_surfaces(tree, found.choice.solids, cloud, found.detection.surfaces,
+                           2 * found.detection.distance_tolerance, cloud.size() / k_noted_surface);
+  if (unused.count == 0) return;
+  const DetectedSurface& largest = found.detection.surfaces[unused.largest];
+  const Eigen::Vector3d middle = bounds_of(select_points(cloud, largest.points).positions).center();
+  warnings.push_back(
+      fmt::format("of the surfaces that were found, {} are not on the result, the largest a {} of {} "
+                  "points near {}",
+                  unused.count, type_name(largest.surface.type), largest.points.size(),
+                  place_text(middle, found.prepared.scale.diagonal)));
 }
 
 /// Warns of known primitives that a tree does without, unless they are named already.
@@ -279,10 +253,7 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   check_detection(rest, found.prepared, found.warnings);
   found.detection = std::move(rest.detection);
   // What is known has ends of its own.
-  if (options.close_unseen && options.known.empty()) {
-    close_unseen_side(found, run);
-    close_hidden_walls(found, run);
-  }
+  if (options.close_unseen && options.known.empty()) found = with_unseen_closed(std::move(found), run);
   found.detect_seconds = watch.lap();
 
   run.report("solids", 0, 0);
@@ -296,7 +267,7 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   if (found.choice.solids.empty()) {
     throw Error({.file = {},
                  .where = {},
-                 .expected = fmt::format("the surfaces that were found bound no solid: {} in {} points",
+                 .expected = fmt::format("the surfaces that were found, {} in a cloud of {} points, bound no solid",
                                          found.detection.surfaces.size(), found.prepared.cloud.size()),
                  .remedy = "give a cloud of a closed object, or of most of its surface, of some thousand points"});
   }
@@ -368,6 +339,7 @@ Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& op
                     100 * statistics.finding->disagreement, place_text(worst, found.prepared.scale.diagonal)));
   }
   check_surface(extraction.tree, found, without_stop(run), found.warnings);
+  check_surfaces_are_used(extraction.tree, found, found.warnings);
   statistics.warnings.insert(statistics.warnings.begin(), found.warnings.begin(), found.warnings.end());
   check_known_are_used(extraction.tree, found, options.known, statistics.warnings);
   if (is_over) statistics.complete = false;

@@ -143,6 +143,22 @@ TEST(Reconstruct, TakesHolesOfTwoEarsForNoBore) {
   EXPECT_EQ(result.statistics.finding->added_points, 0U);
 }
 
+TEST(Reconstruct, NamesWhatItLeavesOut) {
+  const Model truth{.primitives = {test::placed("block", Box{{4, 4, 4}}, {0, 0, 0}),
+                                   test::placed("ball", Sphere{.radius = 0.1}, {4, 0, 0})},
+                    .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
+  PointCloud cloud = sample_surface(CsgTree::leaf(0), truth.primitives, {.count = 20'000, .seed = 5});
+  const PointCloud ball = sample_surface(CsgTree::leaf(1), truth.primitives, {.count = 400, .seed = 6});
+  for (std::size_t i = 0; i < ball.size(); ++i) {
+    cloud.positions.push_back(ball.positions[i]);
+    cloud.normals.push_back(ball.normals[i]);
+  }
+  const Reconstruction result = reconstruct(cloud);
+  EXPECT_EQ(leaf_count(result.tree), 1U);
+  EXPECT_TRUE(has_warning(result, "1 are not on the result, the largest a sphere of"));
+  EXPECT_FALSE(has_warning(reconstruct(raw_cloud(plate(), 0.008)), "not on the result"));
+}
+
 TEST(Reconstruct, NeedsNoNormals) {
   const Model truth = plate();
   PointCloud cloud = raw_cloud(truth, 0.005, 30'000);
