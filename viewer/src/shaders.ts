@@ -114,13 +114,13 @@ in float focus;
 out vec4 result;
 void main() {
   if (isCut(place)) discard;
-  if (!gl_FrontFacing && sectionOn) {
+  if (bool(SEEN_FROM_INSIDE) && sectionOn) {
     // What is seen from inside is where the section cuts: hatched, as in a drawing.
     float stripe = step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / 9.0));
     result = vec4(mix(cutColour, cutColour * 0.86, stripe), opacity);
     return;
   }
-  vec3 normal = normalize(viewNormal) * (gl_FrontFacing ? 1.0 : -1.0);
+  vec3 normal = normalize(viewNormal) * (bool(SEEN_FROM_INSIDE) ? -1.0 : 1.0);
   vec3 toEye = normalize(-viewPlace);
   vec3 colour = dims && focus < 0.5 ? mix(background, plain, 0.35) : base;
   result = vec4(lit(colour, normal, toEye), opacity);

@@ -1,19 +1,25 @@
 /** The pictures of cloud and solid: one camera, one canvas, two halves. */
 
 import {
+  BackSide,
   DataTexture,
   DoubleSide,
   FloatType,
+  FrontSide,
   GLSL3,
+  Group,
   LineSegments,
   Mesh as ThreeMesh,
   NearestFilter,
+  NotEqualStencilFunc,
   PerspectiveCamera,
   Points as ThreePoints,
   RGBAFormat,
   Raycaster,
+  ReplaceStencilOp,
   Scene,
   ShaderMaterial,
+  type Side,
   Vector2,
   Vector3,
   Vector4,
@@ -38,6 +44,7 @@ export interface Hit {
 }
 
 const k_palette_width = 1024;
+const k_inside = 1; // in the stencil: seen from inside
 const k_modes: Record<ColourMode, number> = { primitive: 0, deviation: 1, plain: 2 };
 const k_view_angle = 32;
 const k_room = 1.08;
@@ -116,7 +123,7 @@ export class Views {
     dims: { value: true },
   };
   private readonly edgeUniforms = { ...this.shared, colour: { value: new Vector3() }, opacity: { value: 0.8 } };
-  private readonly nodeMeshes = new Map<number, { surface: ThreeMesh; edges: LineSegments }>();
+  private readonly nodeMeshes = new Map<number, { surface: Group; edges: LineSegments }>();
   private readonly ghost: LineSegments | null;
   private shownMesh: number | null = null;
   private isAsked = false;
@@ -129,7 +136,7 @@ export class Views {
     private readonly byNode: Set<number>[],
     private readonly host: HTMLElement,
   ) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.autoClear = false;
     this.canvas = this.renderer.domElement;
@@ -189,20 +196,41 @@ export class Views {
     return ghost;
   }
 
-  private meshOf(index: number): { surface: ThreeMesh; edges: LineSegments } | null {
+  /** Of what is seen from outside or from inside, which leaves its mark in the stencil. */
+  private sideMaterial(side: Side, mark: number): ShaderMaterial {
+    const material = this.material(surfaceVertex, surfaceFragment, this.surfaceUniforms);
+    material.side = side;
+    // The shader is not told: what is drawn of either side is in front for it.
+    material.defines = { SEEN_FROM_INSIDE: side === BackSide ? 1 : 0 };
+    material.stencilWrite = true;
+    material.stencilRef = mark;
+    material.stencilZPass = ReplaceStencilOp;
+    // Behind its own edges.
+    material.polygonOffset = true;
+    material.polygonOffsetFactor = 1;
+    material.polygonOffsetUnits = 2;
+    return material;
+  }
+
+  private meshOf(index: number): { surface: Group; edges: LineSegments } | null {
     const known = this.nodeMeshes.get(index);
     if (known) return known;
     const mesh = this.report.mesh(index);
     if (!mesh) return null;
     const edgeMaterial = this.material(edgeVertex, edgeFragment, this.edgeUniforms);
     edgeMaterial.transparent = true;
-    const surfaceMaterial = this.material(surfaceVertex, surfaceFragment, this.surfaceUniforms);
-    // Behind its own edges.
-    surfaceMaterial.polygonOffset = true;
-    surfaceMaterial.polygonOffsetFactor = 1;
-    surfaceMaterial.polygonOffsetUnits = 2;
+    // Where the nearest surface is seen from inside the section cuts, and edges behind it are hidden.
+    edgeMaterial.stencilWrite = true;
+    edgeMaterial.stencilFunc = NotEqualStencilFunc;
+    edgeMaterial.stencilRef = k_inside;
+    const geometry = surfaceGeometry(mesh);
+    const surface = new Group();
+    surface.add(
+      new ThreeMesh(geometry, this.sideMaterial(FrontSide, 0)),
+      new ThreeMesh(geometry, this.sideMaterial(BackSide, k_inside)),
+    );
     const made = {
-      surface: new ThreeMesh(surfaceGeometry(mesh), surfaceMaterial),
+      surface,
       edges: new LineSegments(edgeGeometry(mesh), edgeMaterial),
     };
     this.solidScene.add(made.surface, made.edges);
@@ -445,9 +473,9 @@ export class Views {
     const caster = new Raycaster();
     this.camera.updateMatrixWorld();
     caster.setFromCamera(pointer, this.camera);
-    for (const found of caster.intersectObject(shown.surface, false)) {
+    for (const found of caster.intersectObject(shown.surface)) {
       if (this.isCut(found.point.x, found.point.y, found.point.z) || !found.face) continue;
-      const owner = shown.surface.geometry.getAttribute("owner").getX(found.face.a);
+      const owner = (found.object as ThreeMesh).geometry.getAttribute("owner").getX(found.face.a);
       return { pane: "solid", primitive: owner < 0 ? null : owner, distance: null, place: found.point };
     }
     return null;
