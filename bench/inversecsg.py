@@ -3,9 +3,10 @@
 
     bench/inversecsg.py FOLDER [--program build/release/cloud2csg] [--variants clean noise scan]
 
-For each mesh of the folder: 100 000 points without noise, with noise of 0.2 % of the diagonal, and a virtual scan from 20
-viewpoints without normals; with the variant "table" such a scan from above only, of a part that lies on a table. The tree is written as .scad, rendered by OpenSCAD, and that mesh is compared with the
-input. Prints a table; nothing is known of a model but its mesh.
+For each mesh of the folder, or .scad file, which OpenSCAD makes a mesh of: 100 000 points without noise, with noise of 0.2 % of
+the diagonal, and a virtual scan from 20 viewpoints without normals; with the variant "table" such a scan from above only, of a
+part that lies on a table. The tree is written as .scad, rendered by OpenSCAD, and that mesh is compared with the input. Prints a
+table; nothing is known of a model but its mesh.
 """
 
 import argparse
@@ -18,7 +19,7 @@ import sys
 import tempfile
 import time
 
-ENDINGS = (".off", ".stl", ".obj", ".ply")
+ENDINGS = (".off", ".stl", ".obj", ".ply", ".scad")
 STAGES = ("read", "clean", "detect", "solids", "extraction")
 RENDER_SECONDS = 900
 
@@ -56,6 +57,9 @@ def judge(program, openscad, mesh, tree, folder):
 def measure(program, openscad, mesh, variant, arguments):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        if mesh.suffix == ".scad":
+            script, mesh = mesh, folder / f"{mesh.stem}.off"
+            run(["openscad", "-o", mesh, script], RENDER_SECONDS)
         cloud = make_cloud(program, mesh, variant, arguments.points, arguments.seed, folder)
         scad, tree, stats = folder / "tree.scad", folder / "tree.json", folder / "stats.json"
         begin = time.monotonic()

@@ -2,7 +2,7 @@
 
 import { h } from "./dom";
 import { count, figures, percent, seconds, words } from "./format";
-import type { Report, Statistics } from "./payload";
+import type { Report, Snap, Statistics } from "./payload";
 import { factList } from "./tree_pane";
 
 const k_sums = new Set(["extraction", "total"]);
@@ -73,20 +73,24 @@ const k_snapped: Record<string, string> = {
   "given radius": "radii made one of those given",
 };
 
+/** What was snapped in one way, the largest changes first; surfaces are numbered as they were found. */
+function snapped(kind: string, snaps: Snap[]): HTMLElement {
+  const unit = kind.endsWith("direction") ? "°" : "";
+  const sorted = [...snaps].sort((a, b) => b.change - a.change);
+  const lines = sorted.map(({ type, surface, change }) => h("li", {}, `${type} ${surface} by ${figures(change)}${unit}`));
+  const title = h("strong", {}, `${sorted.length} ${k_snapped[kind] ?? words(kind)}`);
+  return h(
+    "li",
+    {},
+    h("details", {}, h("summary", {}, title, ` — by up to ${figures(sorted[0].change)}${unit}`), h("ol", {}, ...lines)),
+  );
+}
+
 function regularities(report: Report): HTMLElement {
   const items: HTMLElement[] = [];
   const snaps = report.text.statistics?.finding?.snaps ?? [];
   for (const kind of new Set(snaps.map((snap) => snap.kind))) {
-    const changes = snaps.filter((snap) => snap.kind === kind).map((snap) => snap.change);
-    const unit = kind.endsWith("direction") ? "°" : "";
-    items.push(
-      h(
-        "li",
-        {},
-        h("strong", {}, `${changes.length} ${k_snapped[kind] ?? words(kind)}`),
-        ` — by up to ${figures(Math.max(...changes))}${unit}`,
-      ),
-    );
+    items.push(snapped(kind, snaps.filter((snap) => snap.kind === kind)));
   }
   for (const { type, primitives, spread } of report.text.statistics?.refine?.regularities ?? []) {
     const names = [...new Set(primitives)].map((p) => report.text.primitives[p].id);

@@ -1,5 +1,5 @@
 // The page of a report, as readers use it. Takes from the environment: REPORT (a report of model M0 with a cloud),
-// HOSTILE (one whose names try to break out), VIEWER_FOLDER (where npm ci ran), CHROMIUM, and PICTURES (a folder for
+// RAW (one from points alone), HOSTILE (one whose names try to break out), VIEWER_FOLDER (where npm ci ran), CHROMIUM, and PICTURES (a folder for
 // screenshots; optional).
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
@@ -11,7 +11,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const folder = process.env.VIEWER_FOLDER ?? dirname(here);
 const { chromium } = createRequire(join(folder, "package.json"))("playwright-core");
 
-const { REPORT, HOSTILE, CHROMIUM = "/usr/bin/chromium", PICTURES } = process.env;
+const { REPORT, RAW, HOSTILE, CHROMIUM = "/usr/bin/chromium", PICTURES } = process.env;
 let browser;
 
 before(async () => {
@@ -299,6 +299,21 @@ test("the written files are saved", async () => {
   assert.match(download.suggestedFilename(), /\.scad$/);
   const { readFile } = await import("node:fs/promises");
   assert.match(await readFile(await download.path(), "utf8"), /difference\(\)/);
+  await close();
+});
+
+test("what was made regular is listed, the largest change first", async () => {
+  const { page, faults, close } = await open({}, RAW);
+  await page.getByRole("tab", { name: "Run" }).click();
+  const kinds = page.locator("details", { hasText: "radii made equal" });
+  await kinds.locator("summary").click();
+  const lines = await kinds.locator("li").allInnerTexts();
+  const changes = lines.map((line) => Number(/^(?:cylinder|sphere) \d+ by ([0-9.e−-]+)$/.exec(line)?.[1].replace("−", "-")));
+  assert.ok(changes.length > 1 && changes.every((change) => change > 0), lines.join());
+  assert.deepEqual(changes, [...changes].sort((a, b) => b - a));
+  assert.match(await kinds.locator("summary").innerText(), new RegExp(`^${lines.length} radii`));
+  await keepPicture(page, "regular");
+  assert.deepEqual(faults, []);
   await close();
 });
 
