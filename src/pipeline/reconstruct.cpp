@@ -72,6 +72,13 @@ Eigen::Vector3d unexplained_place(const RestDetection& found, const PreparedClou
 }
 
 void check_tolerance(double tolerance, double diagonal, std::vector<std::string>& warnings) {
+  if (tolerance >= diagonal) {
+    throw Error(
+        {.file = {},
+         .where = "tolerance",
+         .expected = fmt::format("{:.3g} is as large as the cloud, whose diagonal is {:.3g}", tolerance, diagonal),
+         .remedy = "give it in the cloud's units, or leave it out: it is taken from the noise"});
+  }
   if (tolerance <= k_coarse * diagonal) return;
   warnings.push_back(fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost",
                                  tolerance, 100 * tolerance / diagonal));

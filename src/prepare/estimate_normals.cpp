@@ -27,7 +27,23 @@ constexpr std::size_t k_check_sample = 2048;
 constexpr std::size_t k_check_field = 16'384;            ///< points whose winding numbers tell inside from outside
 constexpr std::uint64_t k_field_stage = 0x6669'656c'64;  // names its stream of random numbers
 constexpr double k_inward_level = -0.2;                  ///< of winding numbers on the surface
+constexpr double k_wall_cosine = 0.7;                    ///< between normals on the two sides of a wall, at least
+constexpr double k_wall_rise = 0.35;                     ///< sine of the way across it, at least
 constexpr std::uint64_t k_check_stage = 0x6e6f'726d;     // names its stream of random numbers
+
+/// Whether most neighbours have a normal on the same side. Those across a thin wall, which are beside the point in the
+/// direction of its normal and have the opposite one, say nothing.
+bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::size_t i,
+                            std::span<const std::uint32_t> near) {
+  double votes = 0.0;
+  for (const std::uint32_t j : near) {
+    const double cosine = cloud.normals[i].dot(cloud.normals[j]);
+    const Eigen::Vector3d step = places[j] - places[i];
+    const bool is_across = cosine < -k_wall_cosine && std::abs(step.dot(cloud.normals[i])) > k_wall_rise * step.norm();
+    if (!is_across) votes += cosine > 0.0 ? 1.0 : -1.0;
+  }
+  return votes >= 0.0;
+}
 
 /// Whether most of a point's neighbours agree with its normal.
 double mean_agreement(const Points& places, const Points& normals, std::size_t i,
@@ -136,9 +152,7 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
     const LocalPlane plane = fit_local_plane(local.points, i, near, tolerance);
     const double cosine = std::abs(plane.normal.dot(cloud.normals[i]));
     across += cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0) ? 1 : 0;
-    double votes = 0.0;
-    for (const std::uint32_t j : near) votes += cloud.normals[i].dot(cloud.normals[j]) > 0.0 ? 1.0 : -1.0;
-    alike += votes > 0.0 ? 1 : 0;
+    alike += agrees_with_neighbours(cloud, local.points, i, near) ? 1 : 0;
   }
   run.throw_if_stopped();
   const auto count = static_cast<double>(checked);

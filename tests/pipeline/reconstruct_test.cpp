@@ -159,6 +159,16 @@ TEST(Reconstruct, NamesWhatItLeavesOut) {
   EXPECT_FALSE(has_warning(reconstruct(raw_cloud(plate(), 0.008)), "not on the result"));
 }
 
+TEST(Reconstruct, RefusesAToleranceAsLargeAsTheCloud) {
+  const PointCloud cloud = raw_cloud(plate(), 0.008, 5000);
+  try {
+    (void)reconstruct(cloud, {.detection = {.distance_tolerance = 10.0}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("as large as the cloud"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Reconstruct, NeedsNoNormals) {
   const Model truth = plate();
   PointCloud cloud = raw_cloud(truth, 0.005, 30'000);

@@ -233,6 +233,22 @@ TEST(PrepareCloud, TurnsInwardNormals) {
   EXPECT_EQ(rightly_oriented(prepared.cloud.normals, prepared.cloud.positions), 1.0);
 }
 
+/// Of a wall as thin as the points are apart, half of the neighbours are on its other side.
+TEST(CheckNormals, AreKeptOnBothSidesOfAThinWall) {
+  PointCloud wall;
+  RandomStream random(4);
+  for (int i = 0; i < 6000; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    wall.positions.push_back({random.uniform(-1, 1), random.uniform(-1, 1), side * 0.01});
+    wall.normals.push_back({0, 0, side});
+  }
+  EXPECT_EQ(check_normals(wall, estimate_scale(wall)), NormalsVerdict::outward);
+  for (std::size_t i = 0; i < wall.size(); ++i) {
+    if (random.uniform() < 0.5) wall.normals.set(i, -wall.normals[i]);
+  }
+  EXPECT_EQ(check_normals(wall, estimate_scale(wall)), NormalsVerdict::unoriented);
+}
+
 /// It has no inside that normals could lead into; those that it has are somebody's choice.
 TEST(CheckNormals, AreKeptOnAnOpenSheet) {
   for (const double side : {1.0, -1.0}) {
