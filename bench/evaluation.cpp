@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "cloud2csg/rank_classes.hpp"
+#include "cloud2csg/advanced/rank_classes.hpp"
 #include "measure.hpp"
 
 namespace cloud2csg::bench {

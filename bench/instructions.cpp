@@ -9,10 +9,10 @@
 
 #include <cstdio>
 
-#include "cloud2csg/evolve.hpp"
+#include "cloud2csg/advanced/evolve.hpp"
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/extract.hpp"
-#include "cloud2csg/merge.hpp"
-#include "cloud2csg/simplify.hpp"
 #include "random_solids.hpp"
 #include "scene.hpp"
 

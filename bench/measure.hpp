@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "base/stopwatch.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"
+#include "core/base/stopwatch.hpp"
 
 namespace cloud2csg::bench {
 

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/family.hpp"
+#include "bench/families/family.hpp"
+#include "cloud2csg/advanced/normals.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
-#include "cloud2csg/normals.hpp"
 #include "cloud2csg/sample.hpp"
 
 namespace {

@@ -13,13 +13,13 @@
 #include <unordered_map>
 #include <vector>
 
-#include "base/random.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
+#include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
-#include "cloud2csg/prepare.hpp"
 #include "cloud2csg/sample.hpp"
 #include "cloud2csg/scan.hpp"
-#include "cloud2csg/winding_number.hpp"
+#include "core/base/random.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "base/random.hpp"
-#include "cloud2csg/overlap_graph.hpp"
+#include "cloud2csg/advanced/overlap_graph.hpp"
+#include "core/base/random.hpp"
 
 namespace cloud2csg::bench {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "cloud2csg/simplify.hpp"
-#include "evolve/random_tree.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+#include "paper/evolve/random_tree.hpp"
 
 namespace cloud2csg::bench {
 

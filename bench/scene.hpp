@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/overlap_graph.hpp"
-#include "cloud2csg/rank_classes.hpp"
+#include "cloud2csg/advanced/overlap_graph.hpp"
+#include "cloud2csg/advanced/rank_classes.hpp"
 #include "measure.hpp"
 
 namespace cloud2csg::bench {

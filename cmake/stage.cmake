@@ -11,15 +11,16 @@ function(cloud2csg_sources variable folder)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# cloud2csg_stage(NAME stage [DEPENDS stages...] [LINK libraries...])
+# cloud2csg_stage(storey/stage [DEPENDS stages...] [LINK libraries...])
 #
-# One library target a folder of src/: a stage that includes a header of a stage it does not name
+# One library target a folder of src/, cloud2csg_<stage>: a stage that includes a header of a stage it does not name
 # here does not link. Public headers live in include/cloud2csg/, private ones beside their sources.
 # All stages together are installed as one library (cmake/package.cmake).
-function(cloud2csg_stage)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "DEPENDS;LINK")
-  cloud2csg_sources(sources ${arg_NAME})
-  set(target cloud2csg_${arg_NAME})
+function(cloud2csg_stage folder)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "DEPENDS;LINK")
+  cloud2csg_sources(sources ${folder})
+  get_filename_component(stage ${folder} NAME)
+  set(target cloud2csg_${stage})
   add_library(${target} STATIC ${sources})
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
@@ -33,18 +34,18 @@ function(cloud2csg_stage)
   target_link_libraries(${target} PRIVATE ${arg_LINK})
 endfunction()
 
-# cloud2csg_test(NAME stage [LINK libraries...]): one test program a stage, from tests/<stage>/*.cpp.
-function(cloud2csg_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "LINK")
-  cloud2csg_sources(sources ${arg_NAME})
+# cloud2csg_test(stage [LINK stages and libraries...]): one test program a stage, from tests/<stage>/*.cpp.
+function(cloud2csg_test stage)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LINK")
+  cloud2csg_sources(sources ${stage})
   if(NOT sources)
     return()
   endif()
-  set(target test_${arg_NAME})
+  set(target test_${stage})
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE cloud2csg_compiler ${arg_LINK} GTest::gtest_main rapidcheck rapidcheck_gtest)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_options(${target} PRIVATE ${CLOUD2CSG_BRIEFLY_OPTIMISED})
   target_compile_definitions(${target} PRIVATE CLOUD2CSG_DATA_DIR="${PROJECT_SOURCE_DIR}/data")
-  gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_PREFIX "${arg_NAME}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_PREFIX "${stage}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
 endfunction()

@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "bench/experiment/paper.hpp"
 #include "bench_command.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/experiment.hpp"
 
 namespace cloud2csg::app {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <span>
 
+#include "bench/experiment/paper.hpp"
 #include "bench_command.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/experiment.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <system_error>
 
+#include "bench/experiment/paper.hpp"
 #include "bench_command.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/experiment.hpp"
 #include "installation.hpp"
 
 namespace cloud2csg::app {

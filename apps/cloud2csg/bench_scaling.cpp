@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench/experiment/scaling.hpp"
 #include "bench_command.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/scaling.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <initializer_list>
 #include <utility>
 
-#include "base/file_ending.hpp"
 #include "config_file.hpp"
+#include "core/base/file_ending.hpp"
 #include "usage.hpp"
 #include "values.hpp"
 

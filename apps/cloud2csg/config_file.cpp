@@ -8,9 +8,9 @@
 #include <set>
 #include <vector>
 
-#include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
 #include "config_values.hpp"
+#include "core/base/atomic_file.hpp"
 #include "usage.hpp"
 #include "values.hpp"
 

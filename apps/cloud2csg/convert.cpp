@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "base/output_set.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/model.hpp"
 #include "command.hpp"
+#include "core/base/output_set.hpp"
 #include "outputs.hpp"
 #include "reports.hpp"
 #include "values.hpp"

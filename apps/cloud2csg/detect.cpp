@@ -1,4 +1,4 @@
-#include "cloud2csg/detect.hpp"
+#include "cloud2csg/advanced/detect.hpp"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,12 @@
 #include <optional>
 #include <string_view>
 
-#include "base/output_set.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "command.hpp"
+#include "core/base/output_set.hpp"
 #include "outputs.hpp"
 #include "raw_arguments.hpp"
 #include "values.hpp"

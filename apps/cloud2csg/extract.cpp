@@ -7,10 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include "base/atomic_file.hpp"
-#include "base/output_set.hpp"
-#include "base/stopwatch.hpp"
-#include "base/without_stop.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/input.hpp"
@@ -18,6 +14,10 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "command.hpp"
+#include "core/base/atomic_file.hpp"
+#include "core/base/output_set.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/base/without_stop.hpp"
 #include "extract_arguments.hpp"
 #include "outputs.hpp"
 #include "raw_arguments.hpp"

@@ -6,9 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "base/visible_text.hpp"
 #include "cloud2csg/compare.hpp"
 #include "command.hpp"
+#include "core/base/visible_text.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -9,8 +9,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "bench/experiment/paper.hpp"
 #include "cloud2csg/brep.hpp"
-#include "cloud2csg/experiment.hpp"
 #include "cloud2csg/report.hpp"
 
 namespace cloud2csg::app {

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/visible_text.hpp"
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
 #include "config_file.hpp"
+#include "core/base/visible_text.hpp"
 #include "installation.hpp"
 #include "interrupt.hpp"
 #include "usage.hpp"

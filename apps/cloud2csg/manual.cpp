@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "base/atomic_file.hpp"
 #include "command.hpp"
+#include "core/base/atomic_file.hpp"
 #include "values.hpp"
 
 namespace cloud2csg::app {

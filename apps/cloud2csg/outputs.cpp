@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "base/atomic_file.hpp"
 #include "cloud2csg/brep.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/atomic_file.hpp"
 #include "reports.hpp"
 #include "usage.hpp"
 #include "values.hpp"

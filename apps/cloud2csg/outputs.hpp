@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "base/file_ending.hpp"
-#include "base/output_set.hpp"
-#include "base/overwriting.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/picture.hpp"
 #include "cloud2csg/report.hpp"
+#include "core/base/file_ending.hpp"
+#include "core/base/output_set.hpp"
+#include "core/base/overwriting.hpp"
 
 namespace cloud2csg::app {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/output_set.hpp"
 #include "cloud2csg/report.hpp"
+#include "core/base/output_set.hpp"
 
 namespace cloud2csg::app {
 

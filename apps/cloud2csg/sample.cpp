@@ -6,12 +6,12 @@
 #include <memory>
 #include <optional>
 
-#include "base/output_set.hpp"
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "command.hpp"
+#include "core/base/output_set.hpp"
 #include "outputs.hpp"
 #include "values.hpp"
 

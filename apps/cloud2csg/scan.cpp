@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "base/output_set.hpp"
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "command.hpp"
+#include "core/base/output_set.hpp"
 #include "outputs.hpp"
 #include "values.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "primitive/formulas-inl.hpp"
+#include "core/primitive/formulas-inl.hpp"
 
 namespace cloud2csg::bench {
 namespace {

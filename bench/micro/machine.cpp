@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
-#include "base/random.hpp"
-#include "base/stopwatch.hpp"
-#include "cloud2csg/rank_classes.hpp"
+#include "cloud2csg/advanced/rank_classes.hpp"
+#include "core/base/random.hpp"
+#include "core/base/stopwatch.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "micro/machine.cpp"

@@ -1,7 +1,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "cloud2csg/evolve.hpp"
+#include "cloud2csg/advanced/evolve.hpp"
 #include "micro/work.hpp"
 #include "scene.hpp"
 

@@ -1,8 +1,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "cloud2csg/merge.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "micro/work.hpp"
 #include "scene.hpp"
 

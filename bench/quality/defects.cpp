@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "cloud2csg/advanced/restrict.hpp"
 #include "cloud2csg/mesh.hpp"
-#include "cloud2csg/restrict.hpp"
 #include "cloud2csg/sample.hpp"
-#include "geometry/random_between.hpp"
-#include "primitive/overloaded.hpp"
+#include "core/geometry/random_between.hpp"
+#include "core/primitive/overloaded.hpp"
 
 namespace cloud2csg::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "base/random.hpp"
+#include "core/base/random.hpp"
 
 namespace cloud2csg::bench {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "cloud2csg/advanced/restrict.hpp"
 #include "cloud2csg/compare.hpp"
-#include "cloud2csg/restrict.hpp"
 #include "measure.hpp"
 #include "quality/parts.hpp"
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "base/random.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+#include "core/base/random.hpp"
 
 namespace cloud2csg::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "cloud2csg/family.hpp"
+#include "bench/families/family.hpp"
 
 namespace cloud2csg::bench {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/random.hpp"
-#include "base/stopwatch.hpp"
-#include "cloud2csg/refine.hpp"
+#include "cloud2csg/advanced/refine.hpp"
+#include "core/base/random.hpp"
+#include "core/base/stopwatch.hpp"
 #include "measure.hpp"
+#include "pipeline/refine/slots.hpp"
 #include "quality/parts.hpp"
-#include "refine/slots.hpp"
 
 namespace cloud2csg::bench {
 namespace {

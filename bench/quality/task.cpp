@@ -9,7 +9,7 @@
 #include <mutex>
 #include <numeric>
 
-#include "base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace cloud2csg::bench {
 namespace {

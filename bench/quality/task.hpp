@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/experiment/table.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
-#include "experiment/table.hpp"
 #include "quality/judge.hpp"
 #include "quality/setting.hpp"
 

@@ -8,13 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "cloud2csg/cells.hpp"
-#include "cloud2csg/evolve.hpp"
-#include "cloud2csg/objective.hpp"
-#include "cloud2csg/refine.hpp"
-#include "cloud2csg/segmentation.hpp"
-#include "cloud2csg/solids.hpp"
-#include "cloud2csg/surface.hpp"
+#include "cloud2csg/advanced/cells.hpp"
+#include "cloud2csg/advanced/evolve.hpp"
+#include "cloud2csg/advanced/objective.hpp"
+#include "cloud2csg/advanced/refine.hpp"
+#include "cloud2csg/advanced/segmentation.hpp"
+#include "cloud2csg/advanced/solids.hpp"
+#include "cloud2csg/advanced/surface.hpp"
 
 /// The whole method: a cloud and fitted primitives in, one tree out.
 namespace cloud2csg {

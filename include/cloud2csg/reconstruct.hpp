@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/detect.hpp"
+#include "cloud2csg/advanced/detect.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
+#include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/extract.hpp"
-#include "cloud2csg/prepare.hpp"
-#include "cloud2csg/solids.hpp"
 
 /// The whole way: a raw cloud in, solids and one tree out.
 namespace cloud2csg {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/extract.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/run_context.hpp"
-#include "cloud2csg/solids.hpp"
 
 /// The report: one HTML file to look at a cloud, the solid that was made of it, and how far apart they are.
 namespace cloud2csg {

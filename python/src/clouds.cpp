@@ -11,11 +11,11 @@
 #include <optional>
 
 #include "arrays.hpp"
-#include "base/overwriting.hpp"
 #include "bindings.hpp"
 #include "cloud.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/mesh.hpp"
+#include "core/base/overwriting.hpp"
 #include "option_class.hpp"
 #include "run_work.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace cloud2csg::python {
 namespace {

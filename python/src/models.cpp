@@ -6,18 +6,18 @@
 #include <set>
 
 #include "arrays.hpp"
-#include "base/overwriting.hpp"
 #include "bindings.hpp"
 #include "cloud.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/picture.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "core/base/overwriting.hpp"
 #include "field_arrays.hpp"
-#include "mesh/model_extent.hpp"
 #include "model.hpp"
 #include "option_class.hpp"
 #include "reports.hpp"
+#include "shape/mesh/model_extent.hpp"
 #include "tree_nodes.hpp"
 
 namespace cloud2csg::python {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cloud2csg/cells.hpp"
-#include "tree/mix.hpp"
+#include "cloud2csg/advanced/cells.hpp"
+#include "core/tree/mix.hpp"
 
 namespace cloud2csg {
 

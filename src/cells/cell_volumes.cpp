@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "base/parallel.hpp"
-#include "cloud2csg/cells.hpp"
-#include "geometry/random_between.hpp"
+#include "cloud2csg/advanced/cells.hpp"
+#include "core/base/parallel.hpp"
+#include "core/geometry/random_between.hpp"
 
 namespace cloud2csg {
 namespace {

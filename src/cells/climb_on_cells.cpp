@@ -7,9 +7,9 @@
 
 #include "cells/label_costs.hpp"
 #include "cells/tree_cells.hpp"
-#include "cloud2csg/restrict.hpp"
-#include "cloud2csg/simplify.hpp"
-#include "evolve/local_search.hpp"
+#include "cloud2csg/advanced/restrict.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+#include "paper/evolve/local_search.hpp"
 
 namespace cloud2csg {
 namespace {

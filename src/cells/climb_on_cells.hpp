@@ -3,7 +3,7 @@
 #include <span>
 
 #include "cells/take_apart.hpp"
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 
 /// Local searches for trees whose cells and leaves cost less, on the cells instead of points. Labels that are sure at
 /// every limit of options.least_evidence stay, and so do the cells that reach to infinity. All trees are over the set's

@@ -5,11 +5,11 @@
 #include <limits>
 #include <numeric>
 
-#include "base/parallel.hpp"
 #include "cells/side_kernels.hpp"
 #include "cells/sight_lines.hpp"
-#include "fitness/frame.hpp"
-#include "fitness/point_blocks.hpp"
+#include "core/base/parallel.hpp"
+#include "paper/objective/frame.hpp"
+#include "paper/objective/point_blocks.hpp"
 
 namespace cloud2csg {
 namespace {

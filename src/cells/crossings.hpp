@@ -4,7 +4,7 @@
 #include <unordered_map>
 
 #include "cells/cell_hash.hpp"
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 
 /// What points say of the cells on either side of the surface that they are on.
 namespace cloud2csg {

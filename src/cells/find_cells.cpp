@@ -8,8 +8,8 @@
 #include "cells/infinity.hpp"
 #include "cells/sight_lines.hpp"
 #include "cells/surface_samples.hpp"
-#include "fitness/spatial_order.hpp"
-#include "segment/sensor_views.hpp"
+#include "paper/objective/spatial_order.hpp"
+#include "paper/segment/sensor_views.hpp"
 
 namespace cloud2csg {
 namespace {

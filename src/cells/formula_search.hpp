@@ -12,8 +12,8 @@
 
 #include "cells/formula_tables.hpp"
 #include "cells/reduced_function.hpp"
-#include "cloud2csg/formula.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/formula.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 
 namespace cloud2csg {
 

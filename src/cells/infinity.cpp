@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/random.hpp"
+#include "core/base/random.hpp"
 
 namespace cloud2csg {
 namespace {

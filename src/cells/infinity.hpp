@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 
 namespace cloud2csg {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "cells/label_costs.hpp"
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 
 namespace cloud2csg {
 namespace {

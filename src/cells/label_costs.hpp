@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 
 namespace cloud2csg {
 

@@ -2,8 +2,8 @@
 
 #include "cells/formula_search.hpp"
 #include "cells/reduced_function.hpp"
-#include "cloud2csg/formula.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/formula.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "cloud2csg/formula.hpp"
+#include "cloud2csg/advanced/formula.hpp"
 
 namespace cloud2csg {
 namespace {

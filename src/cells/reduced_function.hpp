@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "cloud2csg/formula.hpp"
+#include "cloud2csg/advanced/formula.hpp"
 
 namespace cloud2csg {
 

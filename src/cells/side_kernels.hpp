@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fitness/point_kernels.hpp"
+#include "paper/objective/point_kernels.hpp"
 
 namespace cloud2csg {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {

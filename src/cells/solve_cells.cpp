@@ -7,7 +7,7 @@
 #include "cells/few_levels.hpp"
 #include "cells/take_apart.hpp"
 #include "cells/tree_cells.hpp"
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 
 namespace cloud2csg {
 namespace {

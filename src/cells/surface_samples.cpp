@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
-#include "geometry/random_between.hpp"
-#include "primitive/bounds_index.hpp"
-#include "primitive/plain_surface.hpp"
-#include "primitive/sampled_field.hpp"
+#include "core/base/parallel.hpp"
+#include "core/geometry/random_between.hpp"
+#include "core/primitive/bounds_index.hpp"
+#include "core/primitive/plain_surface.hpp"
+#include "core/primitive/sampled_field.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cells/decompose.hpp"
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 
 namespace cloud2csg {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "cloud2csg/cells.hpp"
-#include "cloud2csg/restrict.hpp"
+#include "cloud2csg/advanced/cells.hpp"
+#include "cloud2csg/advanced/restrict.hpp"
 
 namespace cloud2csg {
 

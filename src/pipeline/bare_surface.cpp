@@ -3,7 +3,7 @@
 #include <span>
 
 #include "cells/surface_samples.hpp"
-#include "geometry/neighbour_tree.hpp"
+#include "core/geometry/neighbour_tree.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/stopwatch.hpp"
-#include "cloud2csg/cells.hpp"
+#include "cloud2csg/advanced/cells.hpp"
+#include "core/base/stopwatch.hpp"
 
 namespace cloud2csg {
 

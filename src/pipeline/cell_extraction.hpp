@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cloud2csg/cells.hpp"
-#include "pipeline/preparation.hpp"
+#include "cloud2csg/advanced/cells.hpp"
+#include "paper/partition/partition.hpp"
 
 namespace cloud2csg {
 

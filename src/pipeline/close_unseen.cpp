@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "cloud/append.hpp"
-#include "geometry/place_text.hpp"
-#include "solids/hidden_walls.hpp"
-#include "solids/unseen_side.hpp"
+#include "core/geometry/append.hpp"
+#include "core/geometry/place_text.hpp"
+#include "raw/solids/hidden_walls.hpp"
+#include "raw/solids/unseen_side.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "cloud2csg/detect.hpp"
-#include "cloud2csg/segmentation.hpp"
+#include "cloud2csg/advanced/detect.hpp"
+#include "cloud2csg/advanced/segmentation.hpp"
 
 namespace cloud2csg {
 

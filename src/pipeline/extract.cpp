@@ -9,15 +9,15 @@
 #include <mutex>
 #include <numeric>
 
-#include "base/parallel.hpp"
-#include "base/stopwatch.hpp"
-#include "base/without_stop.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/base/without_stop.hpp"
+#include "paper/merge/merge_component.hpp"
+#include "paper/partition/partition.hpp"
 #include "pipeline/cell_extraction.hpp"
-#include "pipeline/component.hpp"
 #include "pipeline/fit.hpp"
-#include "pipeline/preparation.hpp"
 #include "pipeline/time_limit.hpp"
 
 namespace cloud2csg {

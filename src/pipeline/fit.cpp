@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fitness/spatial_order.hpp"
-#include "pipeline/point_fit.hpp"
+#include "paper/objective/point_fit.hpp"
+#include "paper/objective/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {

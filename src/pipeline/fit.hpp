@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cloud2csg/extract.hpp"
-#include "pipeline/preparation.hpp"
+#include "paper/partition/partition.hpp"
 
 namespace cloud2csg {
 

@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "base/stopwatch.hpp"
-#include "base/without_stop.hpp"
 #include "cloud2csg/error.hpp"
-#include "geometry/place_text.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/base/without_stop.hpp"
+#include "core/geometry/place_text.hpp"
 #include "pipeline/bare_surface.hpp"
 #include "pipeline/close_unseen.hpp"
 #include "pipeline/detect_rest.hpp"

@@ -2,10 +2,10 @@
 #include <limits>
 #include <optional>
 
-#include "base/stopwatch.hpp"
-#include "base/without_stop.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/base/without_stop.hpp"
 #include "pipeline/fit.hpp"
 #include "pipeline/time_limit.hpp"
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <span>
 
+#include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/csg_tree.hpp"
-#include "cloud2csg/detect.hpp"
 #include "cloud2csg/point_cloud.hpp"
 
 namespace cloud2csg {

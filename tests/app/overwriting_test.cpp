@@ -1,4 +1,4 @@
-#include "base/overwriting.hpp"
+#include "core/base/overwriting.hpp"
 
 #include "app/program.hpp"
 #include "cloud2csg/error.hpp"

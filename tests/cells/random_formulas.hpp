@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/random.hpp"
 #include "cloud2csg/csg_tree.hpp"
+#include "core/base/random.hpp"
 
 /// Formulas that are known, to be found again.
 namespace cloud2csg::test {

@@ -1,9 +1,9 @@
-#include "detect/agreement.hpp"
+#include "raw/detect/agreement.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "detect/minimal_surfaces.hpp"
+#include "raw/detect/minimal_surfaces.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/random.hpp"
-#include "cloud2csg/detect.hpp"
+#include "cloud2csg/advanced/detect.hpp"
+#include "core/base/random.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
 

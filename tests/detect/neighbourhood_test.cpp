@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "detect/connected.hpp"
-#include "detect/work_cloud.hpp"
+#include "raw/detect/connected.hpp"
+#include "raw/detect/work_cloud.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {

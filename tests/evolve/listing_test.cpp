@@ -1,4 +1,4 @@
-#include "evolve/listing.hpp"
+#include "paper/evolve/listing.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,7 +8,7 @@
 #include <bit>
 #include <numeric>
 
-#include "cloud2csg/evolve.hpp"
+#include "cloud2csg/advanced/evolve.hpp"
 #include "cloud2csg/sample.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"

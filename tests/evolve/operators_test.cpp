@@ -1,4 +1,4 @@
-#include "evolve/operators.hpp"
+#include "paper/evolve/operators.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "evolve/random_tree.hpp"
+#include "paper/evolve/random_tree.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <stop_token>
 
-#include "cloud2csg/evolve.hpp"
+#include "cloud2csg/advanced/evolve.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/sample.hpp"
-#include "cloud2csg/simplify.hpp"
-#include "evolve/genetic_algorithm.hpp"
+#include "paper/evolve/genetic_algorithm.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"
 #include "tree/random_trees.hpp"

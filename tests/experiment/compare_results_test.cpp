@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "bench/experiment/paper.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/experiment.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "cloud2csg/scaling.hpp"
+#include "bench/experiment/scaling.hpp"
 
 namespace cloud2csg::test {
 namespace {

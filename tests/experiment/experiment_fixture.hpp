@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/experiment.hpp"
-#include "experiment/table.hpp"
+#include "bench/experiment/paper.hpp"
+#include "bench/experiment/table.hpp"
 
 namespace cloud2csg::test {
 

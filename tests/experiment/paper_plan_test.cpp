@@ -6,8 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include "bench/experiment/paper.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/experiment.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <cstdlib>
 
-#include "base/atomic_file.hpp"
+#include "bench/experiment/gnuplot.hpp"
+#include "bench/experiment/paper_tables.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/atomic_file.hpp"
 #include "experiment/experiment_fixture.hpp"
-#include "experiment/gnuplot.hpp"
-#include "experiment/paper_tables.hpp"
 
 namespace cloud2csg::test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "base/random.hpp"
-#include "cloud2csg/scaling.hpp"
+#include "bench/experiment/scaling.hpp"
+#include "core/base/random.hpp"
 
 namespace cloud2csg::test {
 namespace {

@@ -1,8 +1,8 @@
-#include "experiment/reference_extraction.hpp"
+#include "bench/experiment/reference_extraction.hpp"
 
 #include "cloud2csg/sample.hpp"
-#include "evolve/genetic_algorithm.hpp"
 #include "experiment/experiment_fixture.hpp"
+#include "paper/evolve/genetic_algorithm.hpp"
 
 namespace cloud2csg::test {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <stop_token>
 
-#include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/atomic_file.hpp"
 #include "experiment/experiment_fixture.hpp"
 
 namespace cloud2csg::test {

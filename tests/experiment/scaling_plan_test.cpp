@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "bench/experiment/scaling.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/scaling.hpp"
 
 namespace cloud2csg::test {
 namespace {

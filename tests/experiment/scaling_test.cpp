@@ -1,14 +1,14 @@
-#include "cloud2csg/scaling.hpp"
+#include "bench/experiment/scaling.hpp"
 
 #include <algorithm>
 #include <stop_token>
 
-#include "base/atomic_file.hpp"
+#include "bench/experiment/peak_memory.hpp"
+#include "bench/experiment/scaling_figures.hpp"
+#include "bench/experiment/scaling_tables.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/atomic_file.hpp"
 #include "experiment/experiment_fixture.hpp"
-#include "experiment/peak_memory.hpp"
-#include "experiment/scaling_figures.hpp"
-#include "experiment/scaling_tables.hpp"
 
 namespace cloud2csg::test {
 namespace {

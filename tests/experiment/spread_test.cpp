@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "cloud2csg/experiment.hpp"
+#include "bench/experiment/paper.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiment/table.hpp"
+#include "bench/experiment/table.hpp"
 
 #include <gtest/gtest.h>
 

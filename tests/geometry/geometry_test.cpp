@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/place_text.hpp"
+#include "core/geometry/place_text.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -7,9 +7,9 @@
 #include <stop_token>
 #include <vector>
 
-#include "base/random.hpp"
-#include "cloud2csg/merge.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+#include "core/base/random.hpp"
 #include "tree/random_trees.hpp"
 
 /// Lists that are so long that they are first made short by pairs.

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "base/random.hpp"
-#include "cloud2csg/merge.hpp"
-#include "cloud2csg/overlap_graph.hpp"
-#include "cloud2csg/restrict.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/overlap_graph.hpp"
+#include "cloud2csg/advanced/restrict.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+#include "core/base/random.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {

@@ -1,4 +1,4 @@
-#include "merge/merge_check.hpp"
+#include "paper/merge/merge_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <string>
 
-#include "cloud2csg/restrict.hpp"
+#include "cloud2csg/advanced/restrict.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/sample.hpp"
-#include "cloud2csg/simplify.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"
 

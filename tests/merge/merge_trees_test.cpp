@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/merge.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {

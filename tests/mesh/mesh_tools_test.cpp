@@ -3,11 +3,11 @@
 
 #include <fstream>
 
-#include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
-#include "mesh/cell_topology.hpp"
+#include "core/base/atomic_file.hpp"
 #include "mesh/shapes.hpp"
+#include "shape/mesh/cell_topology.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,4 +1,4 @@
-#include "cloud2csg/overlap_graph.hpp"
+#include "cloud2csg/advanced/overlap_graph.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

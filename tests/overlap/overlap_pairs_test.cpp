@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "cloud2csg/overlap_graph.hpp"
+#include "cloud2csg/advanced/overlap_graph.hpp"
 #include "overlap/random_solids.hpp"
 
 namespace cloud2csg {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "base/random.hpp"
 #include "cloud2csg/primitive.hpp"
+#include "core/base/random.hpp"
 
 /// Random solids for the tests of the overlap stage.
 namespace cloud2csg::test {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "base/atomic_file.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/atomic_file.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
-#include "cloud2csg/simplify.hpp"
 #include "pipeline/strategies.hpp"
 #include "support/scene.hpp"
 #include "tree/random_trees.hpp"

@@ -6,9 +6,9 @@
 #include <limits>
 #include <string>
 
+#include "cloud2csg/advanced/segmentation.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
-#include "cloud2csg/segmentation.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "bench/families/family.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/extract.hpp"
-#include "cloud2csg/family.hpp"
-#include "cloud2csg/simplify.hpp"
 #include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 

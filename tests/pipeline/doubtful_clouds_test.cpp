@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "base/random.hpp"
-#include "cloud/append.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/reconstruct.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/append.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
 

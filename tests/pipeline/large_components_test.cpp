@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "base/random.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/extract.hpp"
-#include "cloud2csg/simplify.hpp"
+#include "core/base/random.hpp"
 #include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 

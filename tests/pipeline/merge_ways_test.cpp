@@ -3,7 +3,7 @@
 #include <stop_token>
 
 #include "cloud2csg/extract.hpp"
-#include "pipeline/component.hpp"
+#include "paper/merge/merge_component.hpp"
 #include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"

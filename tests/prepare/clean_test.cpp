@@ -1,4 +1,4 @@
-#include "cloud2csg/clean.hpp"
+#include "cloud2csg/advanced/clean.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "base/random.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"
+#include "core/base/random.hpp"
 
 /// Clouds with known normals, noise and outliers.
 namespace cloud2csg::testing_support {

@@ -4,11 +4,11 @@
 #include <numbers>
 #include <string_view>
 
-#include "cloud2csg/prepare.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "prepare/clouds.hpp"
-#include "prepare/orientation.hpp"
-#include "prepare/patches.hpp"
-#include "prepare/signed_sets.hpp"
+#include "raw/prepare/orientation.hpp"
+#include "raw/prepare/patches.hpp"
+#include "raw/prepare/signed_sets.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "cloud2csg/prepare.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "prepare/clouds.hpp"
 
 namespace cloud2csg {

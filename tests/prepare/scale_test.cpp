@@ -1,4 +1,4 @@
-#include "cloud2csg/scale.hpp"
+#include "cloud2csg/advanced/scale.hpp"
 
 #include <gtest/gtest.h>
 

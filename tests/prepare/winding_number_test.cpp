@@ -1,4 +1,4 @@
-#include "cloud2csg/winding_number.hpp"
+#include "cloud2csg/advanced/winding_number.hpp"
 
 #include <gtest/gtest.h>
 

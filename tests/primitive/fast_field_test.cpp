@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cloud2csg/primitive.hpp"
-#include "primitive/displacement-inl.hpp"
+#include "core/primitive/displacement-inl.hpp"
 #include "primitive/random_primitives.hpp"
 #include "support/forced_target.hpp"
 

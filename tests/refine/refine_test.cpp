@@ -1,4 +1,4 @@
-#include "cloud2csg/refine.hpp"
+#include "cloud2csg/advanced/refine.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,7 +8,7 @@
 #include <stop_token>
 
 #include "cloud2csg/error.hpp"
-#include "refine/slots.hpp"
+#include "pipeline/refine/slots.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
 

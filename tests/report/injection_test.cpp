@@ -4,10 +4,10 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "base/atomic_file.hpp"
 #include "cloud2csg/brep.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/report.hpp"
+#include "core/base/atomic_file.hpp"
 #include "support/outside_program.hpp"
 
 /// Names in a model are somebody else's text: in whatever is written of it, they stay names.

@@ -1,12 +1,12 @@
-#include "report/payload.hpp"
+#include "view/report/payload.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "cloud2csg/csg_tree.hpp"
-#include "report/cloud_sections.hpp"
 #include "report/decoded.hpp"
-#include "report/shown_tree.hpp"
+#include "view/report/cloud_sections.hpp"
+#include "view/report/shown_tree.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -5,14 +5,14 @@
 #include <Eigen/Core>
 #include <set>
 
+#include "cloud2csg/advanced/overlap_graph.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
-#include "cloud2csg/overlap_graph.hpp"
 #include "cloud2csg/sample.hpp"
 #include "pipeline/fit.hpp"
 #include "report/decoded.hpp"
-#include "report/deviation.hpp"
-#include "report/gather.hpp"
+#include "view/report/deviation.hpp"
+#include "view/report/gather.hpp"
 
 namespace cloud2csg {
 namespace {

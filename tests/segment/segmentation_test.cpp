@@ -1,4 +1,4 @@
-#include "cloud2csg/segmentation.hpp"
+#include "cloud2csg/advanced/segmentation.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,11 +1,11 @@
-#include "segment/sensor_views.hpp"
+#include "paper/segment/sensor_views.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <numeric>
 
-#include "base/random.hpp"
+#include "core/base/random.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "cloud2csg/detect.hpp"
+#include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/primitive.hpp"
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/random.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/primitive.hpp"
+#include "core/base/random.hpp"
 
 /// Random solids, clouds and trees that are made to be awkward: equal solids, coinciding faces, points on faces, edges
 /// and corners. All lies within some two units of the origin. Made from a RandomStream, because drawing each number

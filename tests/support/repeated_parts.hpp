@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cloud2csg/model.hpp"
-#include "export/parts.hpp"
+#include "io/scripts/parts.hpp"
 
 namespace cloud2csg::test {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-#include "cloud2csg/rank_classes.hpp"
+#include "cloud2csg/advanced/rank_classes.hpp"
 #include "support/random_scene.hpp"
 
 /// A random scene with the tables made from it.

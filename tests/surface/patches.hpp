@@ -6,7 +6,7 @@
 #include <ostream>
 #include <vector>
 
-#include "cloud2csg/surface.hpp"
+#include "cloud2csg/advanced/surface.hpp"
 #include "support/random_scene.hpp"
 
 /// Known surfaces, points on parts of them, and how far apart two surfaces are.

@@ -1,4 +1,4 @@
-#include "cloud2csg/restrict.hpp"
+#include "cloud2csg/advanced/restrict.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

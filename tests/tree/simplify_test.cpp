@@ -1,4 +1,4 @@
-#include "cloud2csg/simplify.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

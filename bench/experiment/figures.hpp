@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "bench/experiment/figure.hpp"
+#include "bench/experiment/paper.hpp"
+
+namespace cloud2csg {
+
+/// Durations at low and high sampling by mode, sizes of trees, share of the steps.
+[[nodiscard]] std::vector<Figure> paper_figures(const PaperResults& results);
+
+}  // namespace cloud2csg

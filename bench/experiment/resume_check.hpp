@@ -1,0 +1,38 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string_view>
+
+#include "bench/experiment/paper.hpp"
+#include "cloud2csg/error.hpp"
+
+namespace cloud2csg {
+
+/// Refuses to put runs together that cannot be compared.
+class ResumeCheck {
+ public:
+  explicit ResumeCheck(const std::filesystem::path& file) : file_(file) {}
+
+  template <typename Value>
+  void same(std::string_view what, const Value& there, const Value& now) const {
+    if (there == now) return;
+    throw Error({.file = file_.string(),
+                 .where = {},
+                 .expected = fmt::format("holds results with {} {}, not {}", what, there, now),
+                 .remedy = "choose another folder, or remove this one"});
+  }
+
+  void same_environment(const Environment& there, const Environment& now) const {
+    same("version", there.version, now.version);
+    same("compiler", there.compiler, now.compiler);
+    same("cpu", there.cpu, now.cpu);
+    same("cores", there.cores, now.cores);
+  }
+
+ private:
+  const std::filesystem::path& file_;
+};
+
+}  // namespace cloud2csg

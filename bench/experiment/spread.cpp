@@ -1,0 +1,33 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "bench/experiment/paper.hpp"
+
+namespace cloud2csg {
+
+Spread spread_of(std::span<const double> values) {
+  Spread spread{.count = values.size()};
+  if (values.empty()) return spread;
+  const auto count = static_cast<double>(values.size());
+  // From the first, so that equal values have exactly their mean and no deviation.
+  double differences = 0;
+  for (const double value : values) differences += value - values.front();
+  spread.mean = values.front() + differences / count;
+  if (values.size() < 2) return spread;
+  double squares = 0;
+  for (const double value : values) squares += (value - spread.mean) * (value - spread.mean);
+  spread.deviation = std::sqrt(squares / (count - 1));
+  return spread;
+}
+
+Spread ratio(const Spread& a, const Spread& b) {
+  assert(b.mean != 0);
+  // Written without relative deviations, so that a mean of 0 above is no special case.
+  const double quotient = a.mean / b.mean;
+  return {.count = std::min(a.count, b.count),
+          .mean = quotient,
+          .deviation = std::hypot(a.deviation, quotient * b.deviation) / std::abs(b.mean)};
+}
+
+}  // namespace cloud2csg

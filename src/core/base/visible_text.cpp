@@ -1,0 +1,29 @@
+#include "core/base/visible_text.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "core/base/utf8.hpp"
+
+namespace cloud2csg {
+
+std::string visible_text(std::string_view text) {
+  std::string visible;
+  while (!text.empty()) {
+    const std::optional<Utf8Character> first = first_character(text);
+    const std::size_t bytes = first ? first->bytes : 1;
+    if (first && is_plain_character(first->code)) {
+      visible += text.substr(0, bytes);
+    } else if (first && first->code > 0xFF) {
+      fmt::format_to(std::back_inserter(visible), "\\u{:04x}", first->code);
+    } else {
+      const auto byte = static_cast<unsigned char>(text.front());
+      fmt::format_to(std::back_inserter(visible), "\\x{:02x}", first ? first->code : byte);
+    }
+    text.remove_prefix(bytes);
+  }
+  return visible;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,114 @@
+#include "core/primitive/polytope.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "cloud2csg/error.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// Planes whose normals span a smaller volume than this meet too far away, or not at all.
+constexpr double k_parallel = 1e-9;
+
+[[noreturn]] void refuse(std::string where, std::string expected, std::string remedy) {
+  throw Error({.file = {}, .where = std::move(where), .expected = std::move(expected), .remedy = std::move(remedy)});
+}
+
+/// How exactly a point can be said to lie on a plane.
+double tolerance_of(const Polytope& polytope) {
+  double largest = 0;
+  for (const Plane& plane : polytope.planes) largest = std::max(largest, std::abs(plane.offset));
+  return 1e-9 * largest;
+}
+
+bool is_within(const Polytope& polytope, const Eigen::Vector3d& point, double tolerance) {
+  return std::ranges::all_of(polytope.planes,
+                             [&](const Plane& plane) { return plane.normal.dot(point) <= plane.offset + tolerance; });
+}
+
+/// Whether some direction leads away without ever meeting a plane. If so, one that lies in two of the planes does, or
+/// the normals do not span space.
+bool is_unbounded(const Polytope& polytope) {
+  const std::vector<Plane>& planes = polytope.planes;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Plane& plane : planes) spread += plane.normal * plane.normal.transpose();
+  if (spread.determinant() < k_parallel) return true;
+  for (std::size_t a = 0; a < planes.size(); ++a) {
+    for (std::size_t b = a + 1; b < planes.size(); ++b) {
+      const Eigen::Vector3d edge = planes[a].normal.cross(planes[b].normal);
+      if (edge.squaredNorm() < k_parallel * k_parallel) continue;
+      for (const double sign : {1.0, -1.0}) {
+        const Eigen::Vector3d direction = sign * edge.normalized();
+        const bool escapes =
+            std::ranges::all_of(planes, [&](const Plane& plane) { return plane.normal.dot(direction) <= k_parallel; });
+        if (escapes) return true;
+      }
+    }
+  }
+  return false;
+}
+
+void validate_plane(const Plane& plane, std::size_t index) {
+  const std::string where = fmt::format("planes/{}", index);
+  if (!plane.normal.allFinite() || !std::isfinite(plane.offset)) refuse(where, "four finite numbers", "");
+  const double length = plane.normal.norm();
+  if (std::abs(length - 1) > 1e-6) {
+    refuse(where, fmt::format("a normal of unit length, not {:.9g}", length),
+           "divide the normal and the offset by that length");
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> corners(const Polytope& polytope) {
+  const std::vector<Plane>& planes = polytope.planes;
+  const double tolerance = tolerance_of(polytope);
+  std::vector<Eigen::Vector3d> found;
+  for (std::size_t a = 0; a < planes.size(); ++a) {
+    for (std::size_t b = a + 1; b < planes.size(); ++b) {
+      const Eigen::Vector3d edge = planes[a].normal.cross(planes[b].normal);
+      for (std::size_t c = b + 1; c < planes.size(); ++c) {
+        const double volume = edge.dot(planes[c].normal);
+        if (std::abs(volume) < k_parallel) continue;
+        const Eigen::Vector3d corner =
+            (planes[a].offset * planes[b].normal.cross(planes[c].normal) +
+             planes[b].offset * planes[c].normal.cross(planes[a].normal) + planes[c].offset * edge) /
+            volume;
+        // Where more than three planes meet, each three of them give the same corner.
+        const bool is_known = std::ranges::any_of(found, [&](const Eigen::Vector3d& other) {
+          return (other - corner).squaredNorm() <= tolerance * tolerance;
+        });
+        if (!is_known && is_within(polytope, corner, tolerance)) found.push_back(corner);
+      }
+    }
+  }
+  return found;
+}
+
+Polytope grown(const Polytope& polytope, double distance) {
+  Polytope result = polytope;
+  for (Plane& plane : result.planes) plane.offset += distance;
+  return result;
+}
+
+void validate_polytope(const Polytope& polytope) {
+  for (std::size_t i = 0; i < polytope.planes.size(); ++i) validate_plane(polytope.planes[i], i);
+  if (polytope.planes.size() < 4) {
+    refuse("planes", fmt::format("at least 4 planes, not {}", polytope.planes.size()), "a bounded solid needs four");
+  }
+  if (is_unbounded(polytope)) refuse("planes", "planes that enclose a bounded solid", "add the missing sides");
+
+  const std::vector<Eigen::Vector3d> points = corners(polytope);
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& corner : points) middle += corner / static_cast<double>(points.size());
+  // The corners' mean is strictly inside exactly when the solid has volume.
+  if (points.size() < 4 || !is_within(polytope, middle, -tolerance_of(polytope))) {
+    refuse("planes", "planes whose half-spaces have a common volume", "check the signs of normals and offsets");
+  }
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,96 @@
+#include "io/clouds/text_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+namespace cloud2csg {
+namespace {
+
+constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+constexpr bool is_separator(char c) {
+  return is_blank(c) || c == ',' || c == ';';
+}
+
+std::string_view trim(std::string_view line) {
+  while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+  while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+  return line;
+}
+
+/// A piece of a bad file that is fit for a message: short, and without control characters.
+std::string printable(std::string_view token) {
+  constexpr std::size_t k_longest = 24;
+  std::string text;
+  for (const char c : token.substr(0, k_longest)) text += c >= ' ' && c <= '~' ? c : '?';
+  return token.size() > k_longest ? text + "..." : text;
+}
+
+}  // namespace
+
+TextRows::TextRows(const FileContent& content, std::size_t first_byte, std::size_t lines_before)
+    : content_(content), rest_(content.bytes().substr(first_byte)), line_number_(lines_before) {
+  constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
+  if (first_byte == 0 && rest_.starts_with(k_byte_order_mark)) rest_.remove_prefix(k_byte_order_mark.size());
+}
+
+std::optional<std::string_view> TextRows::next_line() {
+  while (!rest_.empty()) {
+    const std::size_t end = rest_.find('\n');
+    const std::string_view line = trim(rest_.substr(0, end));
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    ++line_number_;
+    if (!line.empty() && line.front() != '#' && !line.starts_with("//")) return line;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::span<const double>> TextRows::next_row() {
+  const std::optional<std::string_view> line = next_line();
+  if (!line) return std::nullopt;
+  row_.clear();
+  const char* cursor = line->data();
+  const char* const end = cursor + line->size();
+  while (cursor != end) {
+    const char* const token = cursor;
+    if (*cursor == '+') ++cursor;  // from_chars knows no plus sign
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(cursor, end, value);
+    if (error != std::errc{} || (stop != end && !is_separator(*stop))) {
+      fail_at({token, static_cast<std::size_t>(std::find_if(token, end, is_separator) - token)});
+    }
+    row_.push_back(value);
+    cursor = std::find_if_not(stop, end, is_separator);
+  }
+  return row_;
+}
+
+void TextRows::fail_at(std::string_view token) const {
+  content_.fail(where(), fmt::format("expected a number, found \"{}\"", printable(token)),
+                "lines that are no data must start with #");
+}
+
+std::vector<std::string> split_words(std::string_view line) {
+  std::vector<std::string> words;
+  const char* cursor = line.data();
+  const char* const end = cursor + line.size();
+  while ((cursor = std::find_if_not(cursor, end, is_blank)) != end) {
+    const char* const stop = std::find_if(cursor, end, is_blank);
+    words.emplace_back(cursor, stop);
+    cursor = stop;
+  }
+  return words;
+}
+
+std::optional<std::size_t> parse_count(std::string_view word) {
+  std::size_t value = 0;
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || stop != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/clouds/formats.hpp"
+#include "io/clouds/record_writer.hpp"
+
+namespace cloud2csg {
+
+namespace {
+
+/// Where the sensor stood, if all points were seen from one place and a VIEWPOINT can say so: at the origin it means
+/// that the place is unknown.
+std::optional<Eigen::Vector3d> common_sensor_position(const PointCloud& cloud) {
+  if (!cloud.has_sensor_positions()) return std::nullopt;
+  const Eigen::Vector3d first = cloud.sensor_positions[0];
+  if (first.isZero(0.0) || !first.allFinite()) return std::nullopt;
+  for (std::size_t i = 1; i < cloud.size(); ++i) {
+    if (cloud.sensor_positions[i] != first) return std::nullopt;
+  }
+  return first;
+}
+
+}  // namespace
+
+void write_ply(AtomicFile& out, const PointCloud& cloud, const CloudWriteOptions& options) {
+  std::vector<std::string_view> names{"x", "y", "z"};
+  if (cloud.has_normals()) names.insert(names.end(), {"nx", "ny", "nz"});
+  if (cloud.has_sensor_positions()) names.insert(names.end(), {"sensor_x", "sensor_y", "sensor_z"});
+  const char* const type = options.double_precision ? "double" : "float";
+  std::string header = fmt::format("ply\nformat {} 1.0\nelement vertex {}\n",
+                                   options.binary ? "binary_little_endian" : "ascii", cloud.size());
+  for (const std::string_view name : names) header += fmt::format("property {} {}\n", type, name);
+  if (!options.colours.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  out.write(header + "end_header\n");
+  write_records(out, cloud,
+                {.binary = options.binary,
+                 .double_precision = options.double_precision,
+                 .normals = cloud.has_normals(),
+                 .sensor_positions = cloud.has_sensor_positions(),
+                 .colours = options.colours});
+}
+
+void write_pcd(AtomicFile& out, const PointCloud& cloud, const CloudWriteOptions& options) {
+  const std::optional<Eigen::Vector3d> viewpoint = common_sensor_position(cloud);
+  const bool with_sensors = cloud.has_sensor_positions() && !viewpoint;
+  std::vector<std::string_view> names{"x", "y", "z"};
+  if (cloud.has_normals()) names.insert(names.end(), {"normal_x", "normal_y", "normal_z"});
+  if (with_sensors) names.insert(names.end(), {"sensor_x", "sensor_y", "sensor_z"});
+  const auto for_each_column = [&](std::string_view word) {
+    std::string words;
+    for (std::size_t i = 0; i < names.size(); ++i) words += word;
+    return words;
+  };
+  out.write("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n");
+  out.write(fmt::format("FIELDS {}\nSIZE{}\nTYPE{}\nCOUNT{}\n", fmt::join(names, " "),
+                        for_each_column(options.double_precision ? " 8" : " 4"), for_each_column(" F"),
+                        for_each_column(" 1")));
+  const Eigen::Vector3d position = viewpoint.value_or(Eigen::Vector3d::Zero());
+  out.write(fmt::format("WIDTH {0}\nHEIGHT 1\nVIEWPOINT {1} {2} {3} 1 0 0 0\nPOINTS {0}\nDATA {4}\n", cloud.size(),
+                        position.x(), position.y(), position.z(), options.binary ? "binary" : "ascii"));
+  write_records(out, cloud,
+                {.binary = options.binary,
+                 .double_precision = options.double_precision,
+                 .normals = cloud.has_normals(),
+                 .sensor_positions = with_sensors});
+}
+
+void write_xyz(AtomicFile& out, const PointCloud& cloud, const CloudWriteOptions& options) {
+  write_records(out, cloud,
+                {.binary = false,
+                 .double_precision = options.double_precision,
+                 .normals = cloud.has_normals(),
+                 .sensor_positions = false});
+}
+
+void write_pts(AtomicFile& out, const PointCloud& cloud, const CloudWriteOptions& options) {
+  out.write(fmt::format("{}\n", cloud.size()));
+  write_records(
+      out, cloud,
+      {.binary = false, .double_precision = options.double_precision, .normals = false, .sensor_positions = false});
+}
+
+}  // namespace cloud2csg

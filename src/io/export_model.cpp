@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/export.hpp"
+#include "core/base/atomic_file.hpp"
+#include "core/base/file_ending.hpp"
+#include "core/base/overwriting.hpp"
+#include "shape/mesh/model_extent.hpp"
+
+namespace cloud2csg {
+namespace {
+
+const CsgTree& tree_of(const Model& model, const std::filesystem::path& file) {
+  if (model.tree) return *model.tree;
+  throw Error({.file = file.string(),
+               .where = {},
+               .expected = "expected a model with a tree, found primitives only",
+               .remedy = "extract a tree first, or write .json"});
+}
+
+std::string text_of(const Eigen::Vector3d& corner) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", corner.x(), corner.y(), corner.z());
+}
+
+/// The comment for the head of a script: the caller's, else the model's, and where the solid is cut.
+std::string head_comment(std::string comment, const Model& model, const std::optional<AlignedBox>& cut) {
+  if (comment.empty()) comment = model.description;
+  if (cut) {
+    comment += fmt::format("{}The solid has no bounds: it is cut at {} to {}.", comment.empty() ? "" : "\n",
+                           text_of(cut->min()), text_of(cut->max()));
+  }
+  return comment;
+}
+
+/// With the mark by which the file is known as ours when it is to be overwritten.
+void write_marked(const std::filesystem::path& file, std::string_view comment, const std::string& text) {
+  write_text_file(file, fmt::format("{} {}\n{}", comment, k_program_mark, text));
+}
+
+template <class Options>
+ExportReport export_script(const std::filesystem::path& file, std::string_view comment, const Model& model,
+                           Options options,
+                           std::string (*to_script)(const CsgTree&, const PrimitiveSet&, const Options&)) {
+  const CsgTree& tree = tree_of(model, file);
+  ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
+  options.comment = head_comment(std::move(options.comment), model, report.cut_at);
+  write_marked(file, comment, to_script(tree, model.primitives, options));
+  return report;
+}
+
+/// The surface of the exact solid, where there is a kernel that makes one without fault.
+std::optional<TriangleMesh> exact_surface(const CsgTree& tree, const PrimitiveSet& primitives,
+                                          const ExportOptions& options, const RunContext& run) {
+  constexpr std::size_t k_most_leaves = 100;  // of more, the kernel is slow
+  constexpr double k_share_of_cell = 0.02;
+  if (!options.exact_meshes || leaf_count(tree) > k_most_leaves || !has_brep()) return std::nullopt;
+  BrepOptions brep = options.brep;
+  brep.mesh_deviation = k_share_of_cell / options.meshing.resolution;
+  try {
+    BrepMesh made = mesh_brep(tree, primitives, brep, run);
+    const bool is_right = made.report.is_exact(brep) && is_watertight(made.mesh);
+    return is_right ? std::optional(std::move(made.mesh)) : std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+ExportReport export_mesh(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
+                         const RunContext& run) {
+  const CsgTree& tree = tree_of(model, file);
+  const AlignedBox extent = model_extent(tree, model.primitives);
+  const std::optional<TriangleMesh> exact = exact_surface(tree, model.primitives, options, run);
+  write_mesh(file, exact ? *exact : mesh_surface(tree, model.primitives, extent, options.meshing, run));
+  return {.cut_at = cut_at(tree, model.primitives, extent)};
+}
+
+ExportReport export_brep(const std::filesystem::path& file, const Model& model, const std::string& ending,
+                         const BrepOptions& options, const RunContext& run) {
+  const auto write = ending == ".brep" ? write_brep : write_step;
+  const BrepReport report = write(file, tree_of(model, file), model.primitives, options, run);
+  return {.cut_at = report.cut_at, .brep = report};
+}
+
+}  // namespace
+
+ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
+                          const RunContext& run) {
+  const std::string ending = lower_ending(file);
+  if (ending == ".json") {
+    write_model(file, model);
+    return {};
+  }
+  if (ending == ".dot") {
+    write_marked(file, "//", to_graphviz(tree_of(model, file), model.primitives));
+    return {};
+  }
+  if (ending == ".scad") return export_script(file, "//", model, options.openscad, to_openscad);
+  if (ending == ".csg") return export_script(file, "//", model, options.openscad, to_openscad_csg);
+  if (ending == ".fcmacro") return export_script(file, "#", model, options.script, to_freecad_macro);
+  if (ending == ".py") return export_script(file, "#", model, options.script, to_cadquery);
+  if (ending == ".stl" || ending == ".off" || ending == ".obj" || ending == ".3mf")
+    return export_mesh(file, model, options, run);
+  if (ending == ".step" || ending == ".stp" || ending == ".brep") {
+    return export_brep(file, model, ending, options.brep, run);
+  }
+  throw Error(
+      {.file = file.string(),
+       .where = {},
+       .expected = fmt::format("expected a file ending in .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, "
+                               ".stl, .off, .obj, .3mf or .dot, found \"{}\"",
+                               ending),
+       .remedy = {}});
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/geometry.hpp"
+#include "cloud2csg/input.hpp"
+#include "core/base/file_ending.hpp"
+#include "core/base/parallel.hpp"
+#include "core/primitive/triangle_sampler.hpp"
+#include "io/clouds/ply_header.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::size_t k_chunk_points = 4096;
+constexpr std::uint64_t k_sampling_stage = 0x696e'7075'74;  // names its stream of random numbers
+
+bool is_one_of(std::string_view ending, std::initializer_list<std::string_view> endings) {
+  return std::ranges::find(endings, ending) != endings.end();
+}
+
+Input read_cloud(const std::filesystem::path& file, const RunContext& run) {
+  RawCloud raw = read_raw_cloud(file, run);
+  Input input{.cloud = std::move(raw.cloud)};
+  if (raw.normals_left_out) {
+    input.warnings.push_back(
+        fmt::format("{} normals are not finite or of length zero: all normals are left out.", raw.invalid_normals));
+  }
+  if (raw.invalid_points > 0) {
+    input.warnings.push_back(
+        fmt::format("{} of {} points are left out: a coordinate is not finite, or a normal has no direction.",
+                    raw.invalid_points, raw.invalid_points + input.cloud.size()));
+  }
+  return input;
+}
+
+/// Readers of meshes give single precision, whatever the file says.
+void warn_of_coarse_corners(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  constexpr double k_coarse = 1e-4;  // of the diagonal: a tenth of the least tolerance
+  const AlignedBox box = bounds_of(mesh.vertices);
+  if (box.isEmpty()) return;
+  const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  const double step = farthest * static_cast<double>(std::numeric_limits<float>::epsilon());
+  if (step <= k_coarse * box.diagonal().norm()) return;
+  warnings.push_back(fmt::format(
+      "The mesh is so far from the origin that its corners are read in steps of {:.2g}: move it there before, "
+      "or give a cloud.",
+      step));
+}
+
+Input read_and_sample(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
+  MendedMesh mended = mend_mesh(read_mesh(file), run);
+  try {
+    Input input{.cloud = sample_mesh(mended.mesh, options, run), .warnings = std::move(mended.warnings)};
+    warn_of_coarse_corners(mended.mesh, input.warnings);
+    input.mesh = std::move(mended.mesh);
+    return input;
+  } catch (const Error& error) {
+    if (error.parts().where != "mesh") throw;
+    Error::Parts parts = error.parts();
+    parts.file = file.string();
+    throw Error(std::move(parts));
+  }
+}
+
+}  // namespace
+
+PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, const RunContext& run) {
+  if (options.mesh_points == 0) {
+    throw Error({.file = {}, .where = "mesh_points", .expected = "expected at least one point", .remedy = {}});
+  }
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+  }
+  const TriangleSampler sampler(std::move(triangles));
+  if (!(sampler.area() > 0.0)) {
+    throw Error({.file = {}, .where = "mesh", .expected = "expected triangles with area, found none", .remedy = {}});
+  }
+  PointCloud cloud{.positions = Points(options.mesh_points), .normals = Points(options.mesh_points)};
+  for_each_index((cloud.size() + k_chunk_points - 1) / k_chunk_points, run, [&](std::size_t chunk) {
+    RandomStream random(options.seed, k_sampling_stage, chunk);
+    const std::size_t end = std::min(cloud.size(), (chunk + 1) * k_chunk_points);
+    for (std::size_t i = chunk * k_chunk_points; i < end; ++i) {
+      const TriangleSampler::Draw draw = sampler.draw(random);
+      cloud.positions.set(i, draw.position);
+      cloud.normals.set(i, sampler.normal(draw.triangle));
+    }
+  });
+  run.report("read", cloud.size(), cloud.size(), "points");
+  return cloud;
+}
+
+Input read_cloud_or_mesh(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
+  const std::string ending = lower_ending(file);
+  if (is_one_of(ending, {".stl", ".off", ".obj", ".3mf", ".glb"})) return read_and_sample(file, options, run);
+  if (ending == ".ply" && ply_has_faces(file)) return read_and_sample(file, options, run);
+  if (is_one_of(ending, {".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"})) return read_cloud(file, run);
+  throw Error({.file = file.string(),
+               .where = {},
+               .expected = "expected a point cloud (.ply, .pcd, .xyz, .xyzn, .txt, .pts) or a mesh (.stl, .off, .obj, "
+                           ".3mf, .glb, .ply with faces)",
+               .remedy = "rename or convert the file"});
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "cloud2csg/export.hpp"
+#include "core/primitive/overloaded.hpp"
+#include "io/scripts/python_body.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::array k_cadquery_functions{
+    script::Function{"= box(", R"(def box(size, position, axis=(0, 0, 1), degrees=0):
+    x, y, z = size
+    return placed(cq.Solid.makeBox(x, y, z, cq.Vector(-x / 2, -y / 2, -z / 2)), position, axis, degrees)
+)"},
+    script::Function{"= sphere(", R"(def sphere(radius, position):
+    whole = cq.Solid.makeSphere(radius, cq.Vector(0, 0, 0), cq.Vector(0, 0, 1), -90, 90, 360)
+    return placed(whole, position)
+)"},
+    script::Function{"= cylinder(", R"(def cylinder(radius, height, position, axis=(0, 0, 1), degrees=0):
+    solid = cq.Solid.makeCylinder(radius, height, cq.Vector(0, 0, -height / 2))
+    return placed(solid, position, axis, degrees)
+)"},
+    script::Function{"= cone(", R"(def cone(radius_bottom, radius_top, height, position, axis=(0, 0, 1), degrees=0):
+    solid = cq.Solid.makeCone(radius_bottom, radius_top, height, cq.Vector(0, 0, -height / 2))
+    return placed(solid, position, axis, degrees)
+)"},
+    script::Function{"= torus(", R"(def torus(major_radius, minor_radius, position, axis=(0, 0, 1), degrees=0):
+    return placed(cq.Solid.makeTorus(major_radius, minor_radius), position, axis, degrees)
+)"},
+    script::Function{"= polyhedron(", R"(def polyhedron(shells, position, axis=(0, 0, 1), degrees=0):
+    solid = None
+    for points, faces in shells:
+        corners = [cq.Vector(*point) for point in points]
+        outlines = [cq.Wire.makePolygon([corners[i] for i in face], close=True) for face in faces]
+        shell = cq.Shell.makeShell([cq.Face.makeFromWires(outline) for outline in outlines])
+        piece = cq.Solid.makeSolid(shell)
+        if solid is None:
+            solid = piece
+        elif turns_inward(points, faces):
+            solid = solid.cut(piece)
+        else:
+            solid = solid.fuse(piece)
+    return placed(solid, position, axis, degrees)
+
+
+def turns_inward(points, faces):
+    volume = 0
+    for face in faces:
+        a = cq.Vector(*points[face[0]])
+        for i, j in zip(face[1:], face[2:]):
+            volume += a.dot(cq.Vector(*points[i]).cross(cq.Vector(*points[j])))
+    return volume < 0
+)"}};
+
+constexpr const char* k_cadquery_head = R"(# For CadQuery 2.2 or later. The result is `part`: CQ-editor shows it;
+# cq.exporters.export(cq.Workplane(part), "part.step") writes it.
+# Lengths are in the model's units; a solid is turned about its axis through the origin, by degrees, then moved.
+import cadquery as cq
+)";
+
+constexpr const char* k_placed = R"(
+
+def placed(solid, position, axis=(0, 0, 1), degrees=0):
+    return solid.moved(cq.Location(cq.Vector(*position), cq.Vector(*axis), degrees))
+)";
+
+constexpr const char* k_cadquery_tail = R"(
+if "show_object" in globals():
+    show_object(part)
+)";
+
+std::set<std::string> cadquery_reserved_names() {
+  std::set<std::string> names = script::python_keywords();
+  names.insert({"cq", "part", "placed", "turns_inward", "box", "sphere", "cylinder", "cone", "torus", "polyhedron",
+                "show_object", "globals", "zip", "enumerate"});
+  return names;
+}
+
+/// The turn of least angle that places a solid: of one of revolution, that of its axis; of a sphere, none.
+Eigen::AngleAxisd turn_of(const brep::KernelSolid& solid) {
+  const Eigen::Quaterniond& q = solid.pose.orientation;
+  if (std::holds_alternative<Sphere>(solid.shape)) return {0, Eigen::Vector3d::UnitZ()};
+  if (std::holds_alternative<Box>(solid.shape) || std::holds_alternative<brep::Facets>(solid.shape)) {
+    return Eigen::AngleAxisd(q);
+  }
+  Eigen::Vector3d axis = q * Eigen::Vector3d::UnitZ();
+  // A cone has an upper end, a cylinder and a torus have none.
+  if (!std::holds_alternative<Cone>(solid.shape) && axis.z() < 0) axis = -axis;
+  return Eigen::AngleAxisd(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis));
+}
+
+/// The variables of a solid, and the statement that makes it of them.
+class SolidWriter {
+ public:
+  SolidWriter(const std::string& name, script::UniqueNames& names, const script::NumberFormat& number)
+      : name_(name), names_(names), number_(number) {}
+
+  script::SolidText write(const std::string& label, const brep::KernelSolid& solid) {
+    const std::string function = std::visit(*this, solid.shape);
+    add("position", vector(solid.pose.position));
+    const Eigen::AngleAxisd turn = turn_of(solid);
+    if (const double degrees = script::degrees_of(turn.angle()); std::abs(degrees) > 1e-10) {
+      const script::NumberFormat plain(1.0);
+      add("axis", fmt::format("({})", plain(Eigen::Vector3d(turn.axis()))));
+      add("degrees", plain(degrees));
+    }
+    return {.parameters = "\n" + script::comment(label, "# ") + variables_,
+            .statement = fmt::format("{} = {}({})\n", name_, function, script::arguments(arguments_))};
+  }
+
+  std::string operator()(const Box& box) {
+    add("size", vector(box.size));
+    return "box";
+  }
+  std::string operator()(const Sphere& sphere) {
+    add("radius", number_(sphere.radius));
+    return "sphere";
+  }
+  std::string operator()(const Cylinder& cylinder) {
+    add("radius", number_(cylinder.radius));
+    add("height", number_(cylinder.height));
+    return "cylinder";
+  }
+  std::string operator()(const Cone& cone) {
+    add("radius_bottom", number_(cone.radius_bottom));
+    add("radius_top", number_(cone.radius_top));
+    add("height", number_(cone.height));
+    return "cone";
+  }
+  std::string operator()(const Torus& torus) {
+    add("major_radius", number_(torus.major_radius));
+    add("minor_radius", number_(torus.minor_radius));
+    return "torus";
+  }
+  std::string operator()(const brep::Facets& facets) {
+    add("shells", script::shells_text(facets));
+    return "polyhedron";
+  }
+
+ private:
+  [[nodiscard]] std::string vector(const Eigen::Vector3d& value) const { return fmt::format("({})", number_(value)); }
+
+  void add(const char* what, const std::string& value) {
+    arguments_.push_back(names_.take(fmt::format("{}_{}", name_, what)));
+    variables_ += fmt::format("{} = {}\n", arguments_.back(), value);
+  }
+
+  const std::string& name_;
+  script::UniqueNames& names_;
+  const script::NumberFormat& number_;
+  std::string variables_ = {};
+  std::vector<std::string> arguments_ = {};
+};
+
+script::Dialect dialect(script::UniqueNames& names, const script::NumberFormat& number) {
+  using Operands = std::span<const std::string>;
+  return {.solid = [&names, &number](
+                       const std::string& name, const std::string& label,
+                       const brep::KernelSolid& solid) { return SolidWriter(name, names, number).write(label, solid); },
+          .unite =
+              [](Operands operands) {
+                return fmt::format("{}.fuse({})", operands.front(), script::arguments(operands.subspan(1)));
+              },
+          // One after the other: intersect() of several would be with what these have together.
+          .common =
+              [](Operands operands) {
+                std::string chain = operands.front();
+                for (const std::string& operand : operands.subspan(1)) chain += fmt::format(".intersect({})", operand);
+                return chain;
+              },
+          .cut = [](const std::string& base,
+                    Operands operands) { return fmt::format("{}.cut({})", base, script::arguments(operands)); }};
+}
+
+std::string cadquery_functions(const std::string& statements) {
+  std::string helpers = k_placed;
+  for (const script::Function& helper : k_cadquery_functions) {
+    if (statements.find(helper.call) != std::string::npos) helpers += std::string("\n\n") + helper.text;
+  }
+  return helpers;
+}
+
+}  // namespace
+
+std::string to_cadquery(const CsgTree& tree, const PrimitiveSet& primitives, const ScriptOptions& options) {
+  script::validate_facet_resolution(options.facet_resolution);
+  const script::Plan plan = script::plan_script(tree, primitives);
+  const script::NumberFormat number(plan.everything.sizes().maxCoeff());
+  script::UniqueNames names(cadquery_reserved_names());
+  const script::PythonBody body =
+      script::python_body(plan, primitives, options.facet_resolution, names, dialect(names, number));
+  return script::comment(options.comment, "# ") + k_cadquery_head + body.parameters + cadquery_functions(body.solids) +
+         "\n\n" + body.solids + "\n" + body.operations + k_cadquery_tail;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "cloud2csg/export.hpp"
+#include "core/primitive/overloaded.hpp"
+#include "io/scripts/python_body.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using script::exact;
+
+// FreeCAD's boxes begin at a corner, its cylinders and cones at the middle of the lower end: the placement moves them
+// there. MultiCommon means different things in different versions of FreeCAD, as soon as it has more than two operands.
+constexpr std::array k_freecad_functions{
+    script::Function{" = box(", R"(def box(label, size, position, rotation=(0, 0, 0, 1)):
+    x, y, z = size
+    return add("Part::Box", label, at(position, rotation, (-x / 2, -y / 2, -z / 2)), Length=x, Width=y, Height=z)
+)"},
+    script::Function{" = sphere(", R"(def sphere(label, radius, position, rotation=(0, 0, 0, 1)):
+    return add("Part::Sphere", label, at(position, rotation), Radius=radius)
+)"},
+    script::Function{" = cylinder(", R"(def cylinder(label, radius, height, position, rotation=(0, 0, 0, 1)):
+    return add("Part::Cylinder", label, at(position, rotation, (0, 0, -height / 2)), Radius=radius, Height=height)
+)"},
+    script::Function{" = cone(", R"(def cone(label, bottom, top, height, position, rotation=(0, 0, 0, 1)):
+    place = at(position, rotation, (0, 0, -height / 2))
+    return add("Part::Cone", label, place, Radius1=bottom, Radius2=top, Height=height)
+)"},
+    script::Function{" = torus(", R"(def torus(label, major, minor, position, rotation=(0, 0, 0, 1)):
+    return add("Part::Torus", label, at(position, rotation), Radius1=major, Radius2=minor)
+)"},
+    script::Function{" = polyhedron(", R"(def polyhedron(label, shells, position, rotation=(0, 0, 0, 1)):
+    shape = None
+    for points, faces in shells:
+        corners = [FreeCAD.Vector(*point) for point in points]
+        outlines = [Part.makePolygon([corners[i] for i in face + face[:1]]) for face in faces]
+        shell = Part.makeShell([Part.Face(outline) for outline in outlines])
+        shell.sewShape()
+        solid = Part.Solid(shell)
+        if solid.Volume < 0:  # a hole in one before
+            solid.reverse()
+            shape = shape.cut(solid)
+        else:
+            shape = solid if shape is None else shape.fuse(solid)
+    thing = add("Part::Feature", label, at(position, rotation))
+    thing.Shape = shape
+    thing.Placement = at(position, rotation)
+    return thing
+)"},
+    script::Function{"union(", R"(def union(*operands):
+    return combine("Part::MultiFuse", "Union", operands, Shapes=list(operands))
+)"},
+    script::Function{"common(", R"(def common(first, *others):
+    for other in others:  # in pairs: MultiCommon of more differs between versions of FreeCAD
+        first = combine("Part::MultiCommon", "Common", (first, other), Shapes=[first, other])
+    return first
+)"},
+    script::Function{"cut(", R"(def cut(base, *tools):
+    tool = tools[0] if len(tools) == 1 else combine("Part::MultiFuse", "Removed", tools, Shapes=list(tools))
+    return combine("Part::Cut", "Cut", (base, tool), Base=base, Tool=tool)
+)"}};
+
+constexpr const char* k_freecad_head =
+    R"(# Run it in FreeCAD (Macro > Macros...), or without a window: freecadcmd FILE.FCMacro
+# A length of 1 is one millimetre in FreeCAD. Rotations are quaternions: x, y, z, w.
+import FreeCAD
+import Part
+
+document = FreeCAD.newDocument("Part")
+
+
+def at(position, rotation, corner=(0, 0, 0)):
+    place = FreeCAD.Placement(FreeCAD.Vector(*position), FreeCAD.Rotation(*rotation))
+    return place.multiply(FreeCAD.Placement(FreeCAD.Vector(*corner), FreeCAD.Rotation()))
+
+
+def add(kind, label, placement, **properties):
+    thing = document.addObject(kind, kind.split("::")[1])
+    thing.Label = label
+    thing.Placement = placement
+    for name, value in properties.items():
+        setattr(thing, name, value)
+    return thing
+)";
+
+constexpr const char* k_combine = R"(
+
+def combine(kind, label, operands, **properties):
+    for operand in operands:
+        operand.Visibility = False
+    return add(kind, label, FreeCAD.Placement(), **properties)
+)";
+
+constexpr const char* k_freecad_tail = R"(part.Label = "part"
+document.recompute()
+if FreeCAD.GuiUp:
+    FreeCAD.Gui.SendMsgToActiveView("ViewFit")
+)";
+
+std::set<std::string> freecad_reserved_names() {
+  std::set<std::string> names = script::python_keywords();
+  names.insert({"FreeCAD", "Part", "document", "at", "add", "combine", "part", "box", "sphere", "cylinder", "cone",
+                "torus", "polyhedron", "union", "common", "cut", "setattr", "list", "len"});
+  return names;
+}
+
+struct Making {
+  const char* function;
+  std::string sizes;
+};
+
+Making making_of(const brep::KernelSolid& solid, const std::string& name) {
+  return std::visit(
+      Overloaded{
+          [](const Box& box) -> Making {
+            return {"box", "size=" + exact(box.size)};
+          },
+          [](const Sphere& sphere) -> Making {
+            return {"sphere", "radius=" + exact(sphere.radius)};
+          },
+          [](const Cylinder& cylinder) -> Making {
+            return {"cylinder", fmt::format("radius={}, height={}", exact(cylinder.radius), exact(cylinder.height))};
+          },
+          [](const Cone& cone) -> Making {
+            return {"cone", fmt::format("bottom={}, top={}, height={}", exact(cone.radius_bottom),
+                                        exact(cone.radius_top), exact(cone.height))};
+          },
+          [](const Torus& torus) -> Making {
+            return {"torus", fmt::format("major={}, minor={}", exact(torus.major_radius), exact(torus.minor_radius))};
+          },
+          [&name](const brep::Facets& /*facets*/) -> Making {
+            return {"polyhedron", name + "_shells"};
+          }},
+      solid.shape);
+}
+
+script::SolidText solid_text(const std::string& name, const std::string& label, const brep::KernelSolid& solid) {
+  script::SolidText text;
+  if (const auto* facets = std::get_if<brep::Facets>(&solid.shape)) {
+    text.parameters = fmt::format("{}_shells = {}\n", name, script::shells_text(*facets));
+  }
+  const Making making = making_of(solid, name);
+  const Eigen::Quaterniond& q = solid.pose.orientation;
+  const std::string rotation = q.vec().isZero(0) ? ""
+                                                 : fmt::format(", rotation=({}, {}, {}, {})", exact(q.x()),
+                                                               exact(q.y()), exact(q.z()), exact(q.w()));
+  text.statement = fmt::format("{} = {}({}, {}, position={}{})\n", name, making.function, script::python_string(label),
+                               making.sizes, exact(solid.pose.position), rotation);
+  return text;
+}
+
+script::Dialect dialect() {
+  using Operands = std::span<const std::string>;
+  return {.solid = solid_text,
+          .unite = [](Operands operands) { return fmt::format("union({})", script::arguments(operands)); },
+          .common = [](Operands operands) { return fmt::format("common({})", script::arguments(operands)); },
+          .cut =
+              [](const std::string& base, Operands operands) {
+                std::vector<std::string> all{base};
+                all.insert(all.end(), operands.begin(), operands.end());
+                return fmt::format("cut({})", script::arguments(all));
+              }};
+}
+
+/// Those functions of the macro that its statements call.
+std::string freecad_functions(const std::string& statements) {
+  std::string helpers;
+  bool combines = false;
+  for (const script::Function& helper : k_freecad_functions) {
+    if (statements.find(helper.call) == std::string::npos) continue;
+    const bool is_operation = std::string_view(helper.text).find("combine(") != std::string_view::npos;
+    if (is_operation && !std::exchange(combines, true)) helpers += k_combine;
+    helpers += "\n\n";
+    helpers += helper.text;
+  }
+  return helpers;
+}
+
+}  // namespace
+
+std::string to_freecad_macro(const CsgTree& tree, const PrimitiveSet& primitives, const ScriptOptions& options) {
+  script::validate_facet_resolution(options.facet_resolution);
+  const script::Plan plan = script::plan_script(tree, primitives);
+  script::UniqueNames names(freecad_reserved_names());
+  const script::PythonBody body = script::python_body(plan, primitives, options.facet_resolution, names, dialect());
+  return script::comment(options.comment, "# ") + k_freecad_head + freecad_functions(body.solids + body.operations) +
+         "\n\n" + body.parameters + body.solids + "\n" + body.operations + k_freecad_tail;
+}
+
+}  // namespace cloud2csg

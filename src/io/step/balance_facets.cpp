@@ -1,0 +1,75 @@
+#include "io/step/balance_facets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "io/step/tree_volume.hpp"
+
+namespace cloud2csg::brep {
+namespace {
+
+/// How far the surface is from points, along its normal there, outward positive; 0 where that is not known.
+std::vector<double> offsets_of_surface(const BoundedField& field, const Points& points) {
+  const std::vector<double> values = implicit_value(field.tree, field.primitives, points);
+  const Points gradients = implicit_gradient(field.tree, field.primitives, points);
+  std::vector<double> offsets(points.size(), 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double steepness = gradients[i].norm();
+    if (steepness > 0 && std::isfinite(values[i])) offsets[i] = -values[i] / steepness;
+  }
+  return offsets;
+}
+
+Eigen::Vector3d area_of(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto [a, b, c] = mesh.triangles[triangle];
+  return 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+}
+
+Points middles_of(const TriangleMesh& mesh) {
+  Points middles;
+  middles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    middles.push_back((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3);
+  }
+  return middles;
+}
+
+/// A vertex's part in what its triangles are off.
+struct Share {
+  double volume = 0;
+  double area = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+};
+
+}  // namespace
+
+void balance_facets(TriangleMesh& mesh, const CsgTree& tree, const PrimitiveSet& primitives) {
+  constexpr int k_rounds = 2;
+  const BoundedField field = bounded_field(tree, primitives);
+  for (int round = 0; round < k_rounds; ++round) {
+    const std::vector<double> at_middles = offsets_of_surface(field, middles_of(mesh));
+    const std::vector<double> at_vertices = offsets_of_surface(field, mesh.vertices);
+    std::vector<Share> shares(mesh.vertices.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto [a, b, c] = mesh.triangles[t];
+      const Eigen::Vector3d area = area_of(mesh, t);
+      // The mean over the triangle, exact for offsets that are quadratic.
+      const double mean = 0.75 * at_middles[t] + (at_vertices[a] + at_vertices[b] + at_vertices[c]) / 12;
+      const double longest = std::sqrt(area.norm());
+      const double bounded = std::clamp(mean, -0.5 * longest, 0.5 * longest);
+      for (const std::uint32_t corner : mesh.triangles[t]) {
+        shares[corner].volume += bounded * area.norm();
+        shares[corner].area += area.norm();
+        shares[corner].normal += area;
+      }
+    }
+    for (std::size_t v = 0; v < shares.size(); ++v) {
+      const double length = shares[v].normal.norm();
+      if (length <= 0) continue;
+      mesh.vertices.set(v, mesh.vertices[v] + (shares[v].volume / shares[v].area / length) * shares[v].normal);
+    }
+  }
+}
+
+}  // namespace cloud2csg::brep

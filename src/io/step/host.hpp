@@ -1,0 +1,35 @@
+#pragma once
+
+#include "cloud2csg/brep.hpp"
+#include "io/step/kernel.hpp"
+
+namespace cloud2csg::brep {
+
+/// What the kernel asks of a model.
+class ModelHost : public KernelHost {
+ public:
+  /// All but `names`, which STEP files have in place of tokens, must outlive this.
+  ModelHost(const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
+            const BrepOptions& options, const RunContext& run, std::vector<std::string> names = {});
+
+  [[nodiscard]] KernelSolid solid_of(PrimitiveIndex primitive) const override;
+  [[nodiscard]] std::optional<VolumeEstimate> volume_of(std::size_t node) const override;
+  [[nodiscard]] Facets facets_of(std::size_t node) const override;
+  [[nodiscard]] PrimitiveIndex primitive_at(const std::vector<Eigen::Vector3d>& points) const override;
+  void name_step(const std::filesystem::path& file) const override;
+  [[nodiscard]] const RunContext& run() const override { return run_; }
+
+ private:
+  [[nodiscard]] Facets facets_of(const CsgTree& tree) const;
+
+  const KernelJob& job_;
+  const PrimitiveSet& primitives_;
+  const AlignedBox& extent_;  ///< in the model's frame
+  const BrepOptions& options_;
+  const RunContext& run_;
+  RunContext quiet_;  ///< stops with the run, reports nothing
+  std::vector<PrimitiveIndex> used_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace cloud2csg::brep

@@ -1,0 +1,107 @@
+#include "io/step/kernel_solids.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "core/primitive/overloaded.hpp"
+#include "core/primitive/polytope_faces.hpp"
+
+namespace cloud2csg::brep {
+namespace {
+
+Eigen::Vector3d to_kernel(const Eigen::Vector3d& point, const WorkFrame& frame) {
+  return (point - frame.offset) / frame.scale;
+}
+
+Facets facets_of(const Polytope& polytope) {
+  PolytopeFaces surface = faces_of(polytope);
+  Facets facets{.corners = std::move(surface.corners), .faces = {}};
+  for (const std::vector<std::size_t>& face : surface.faces) facets.faces.emplace_back(face.begin(), face.end());
+  return facets;
+}
+
+KernelSolid block_below(const Pose& pose, const AlignedBox& extent) {
+  const double reach = (extent.center() - pose.position).norm() + 0.5 * extent.diagonal().norm();
+  // Numbers of few digits; a tenth more, so that no side is where the model is cut.
+  const double unit = std::pow(10.0, std::floor(std::log10(reach)) - 1.0);
+  const double half = std::ceil(1.1 * reach / unit) * unit;
+  return {.shape = Box{.size = Eigen::Vector3d::Constant(2 * half)},
+          .pose = compose(pose, {.position = {0, 0, -half}})};
+}
+
+void scale_shape(KernelSolid& solid, double factor) {
+  std::visit(Overloaded{[&](Box& box) { box.size *= factor; }, [&](Sphere& sphere) { sphere.radius *= factor; },
+                        [&](Cylinder& cylinder) {
+                          cylinder.radius *= factor;
+                          cylinder.height *= factor;
+                        },
+                        [&](Cone& cone) {
+                          cone.radius_bottom *= factor;
+                          cone.radius_top *= factor;
+                          cone.height *= factor;
+                        },
+                        [&](Torus& torus) {
+                          torus.major_radius *= factor;
+                          torus.minor_radius *= factor;
+                        },
+                        [&](Facets& facets) {
+                          for (Eigen::Vector3d& corner : facets.corners) corner *= factor;
+                        }},
+             solid.shape);
+}
+
+}  // namespace
+
+bool has_exact_surfaces(const Primitive& primitive) {
+  return is_plain(primitive);
+}
+
+KernelSolid kernel_solid(const Primitive& primitive, const AlignedBox& extent, const WorkFrame& frame) {
+  assert(has_exact_surfaces(primitive));
+  KernelSolid solid = std::visit(
+      [&](const auto& shape) -> KernelSolid {
+        using Type = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Type, HalfSpace>) {
+          return block_below(primitive.pose, extent);
+        } else if constexpr (std::is_same_v<Type, Polytope>) {
+          return {.shape = facets_of(shape), .pose = primitive.pose};
+        } else if constexpr (std::is_same_v<Type, Expression>) {
+          return {.shape = Facets(), .pose = primitive.pose};
+        } else {
+          return {.shape = shape, .pose = primitive.pose};
+        }
+      },
+      primitive.shape);
+  scale_shape(solid, 1 / frame.scale);
+  solid.pose.position = to_kernel(solid.pose.position, frame);
+  return solid;
+}
+
+Facets kernel_facets(const TriangleMesh& mesh, const WorkFrame& frame) {
+  Facets facets;
+  facets.corners.reserve(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) facets.corners.push_back(to_kernel(mesh.vertices[i], frame));
+  facets.faces.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) facets.faces.push_back({a, b, c});
+  return facets;
+}
+
+WorkFrame work_frame(const AlignedBox& extent) {
+  constexpr double k_least = 0.5;
+  constexpr double k_most = 2e4;
+  const double size = extent.sizes().maxCoeff();
+  WorkFrame frame;
+  // Powers of two leave the digits of all numbers as they are.
+  if (size < k_least || size > k_most) frame.scale = std::exp2(std::round(std::log2(size / 100)));
+  // Far away, coordinates have no room left for the kernel's tolerance.
+  if (extent.center().norm() > 100 * size) frame.offset = extent.center();
+  return frame;
+}
+
+AlignedBox to_kernel(const AlignedBox& box, const WorkFrame& frame) {
+  return {to_kernel(box.min(), frame), to_kernel(box.max(), frame)};
+}
+
+}  // namespace cloud2csg::brep

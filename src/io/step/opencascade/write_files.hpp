@@ -1,0 +1,40 @@
+#pragma once
+
+#include <TopoDS_Shape.hxx>
+
+#include "io/step/kernel.hpp"
+
+namespace cloud2csg::brep {
+
+/// A shape with its name.
+struct NamedShape {
+  TopoDS_Shape shape;
+  std::string name;
+};
+
+/// One part whose faces have names, or an assembly of it and of a group of components.
+struct StepContent {
+  NamedShape part;
+  std::vector<NamedShape> faces;  ///< of the part
+  std::vector<NamedShape> components = {};
+  std::string assembly_name = {};
+  std::string program = {};  ///< that writes the file
+};
+
+/// Names must be ASCII, without quotes, backslashes and control characters.
+/// @throws Standard_Failure, std::runtime_error
+void write_step_file(const std::filesystem::path& file, const StepContent& content);
+
+/// What a STEP file holds, as the kernel's own reader understands it.
+struct StepReading {
+  bool is_valid = false;
+  double volume = 0;
+  std::size_t solids = 0;
+};
+/// @throws Standard_Failure
+[[nodiscard]] StepReading read_step_file(const std::filesystem::path& file);
+
+/// @throws Standard_Failure, std::runtime_error
+void write_brep_file(const std::filesystem::path& file, const TopoDS_Shape& shape);
+
+}  // namespace cloud2csg::brep

@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "cloud2csg/brep.hpp"
+#include "cloud2csg/error.hpp"
+#include "core/base/atomic_file.hpp"
+#include "core/base/scratch_file.hpp"
+#include "io/step/host.hpp"
+#include "io/step/kernel_solids.hpp"
+#include "io/step/load_kernel.hpp"
+#include "io/step/step_text.hpp"
+#include "io/step/tree_volume.hpp"
+#include "shape/mesh/model_extent.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using brep::KernelFormat;
+using brep::KernelJob;
+using brep::KernelResult;
+
+void validate(const BrepOptions& options) {
+  const auto refuse = [](const char* field, std::string expected) {
+    throw Error({.file = {}, .where = field, .expected = std::move(expected), .remedy = {}});
+  };
+  if (options.facet_resolution < 4 || options.facet_resolution > 256) {
+    refuse("facet_resolution", fmt::format("expected 4 to 256 cells, found {}", options.facet_resolution));
+  }
+  if (!(options.volume_tolerance > 0 && options.volume_tolerance < 1)) {
+    refuse("volume_tolerance", fmt::format("expected a number between 0 and 1, found {}", options.volume_tolerance));
+  }
+  if (!(options.mesh_deviation >= 1e-6 && options.mesh_deviation < 1)) {
+    refuse("mesh_deviation", fmt::format("expected a number from 1e-6 to 1, found {}", options.mesh_deviation));
+  }
+}
+
+const brep::Kernel& kernel_for(const std::filesystem::path& file) {
+  const brep::Kernel& kernel = brep::load_kernel();
+  if (kernel.run != nullptr) return kernel;
+  throw Error({.file = file.string(),
+               .where = {},
+               .expected = "exact solids need OpenCASCADE, which cloud2csg has not: " + kernel.missing,
+               .remedy = kernel.remedy});
+}
+
+// Which names the tokens of a job stand for.
+constexpr std::size_t k_part = 0;
+constexpr std::size_t k_assembly = 1;
+constexpr std::size_t k_first_primitive = 2;
+
+std::vector<std::string> names_in_file(const std::filesystem::path& file, const PrimitiveSet& primitives,
+                                       const BrepOptions& options) {
+  const std::string part = options.name.empty() ? file.stem().string() : options.name;
+  std::vector<std::string> names{part, part + " assembly"};
+  for (const Primitive& primitive : primitives) names.push_back(primitive.id);
+  return names;
+}
+
+KernelJob job_of(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
+                 const BrepOptions& options, KernelFormat format) {
+  KernelJob job;
+  job.plan = brep::plan_solid(tree);
+  job.format = format;
+  job.levels = brep::levels_of(job.plan);
+  job.frame = brep::work_frame(extent);
+  job.extent = brep::to_kernel(extent, job.frame);
+  job.size = job.extent.diagonal().norm();
+  job.volume_tolerance = options.volume_tolerance;
+  job.program = "cloud2csg " CLOUD2CSG_VERSION;
+  job.part_name = brep::name_token(k_part);
+  job.assembly_name = brep::name_token(k_assembly);
+  for (std::size_t i = 0; i < primitives.size(); ++i) job.names.push_back(brep::name_token(k_first_primitive + i));
+  if (options.with_primitives) job.components = primitives_of(tree);
+  return job;
+}
+
+/// So that a message stays a line that can be read.
+std::string shortened(std::string text) {
+  constexpr std::size_t k_longest = 200;
+  if (text.size() <= k_longest) return text;
+  std::size_t end = k_longest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;  // not within a character
+  return text.substr(0, end) + "...";
+}
+
+BrepReport report_of(const KernelResult& result, const KernelJob& job, const CsgTree& tree,
+                     const PrimitiveSet& primitives) {
+  BrepReport report{.volume = result.volume,
+                    .is_valid = result.is_valid,
+                    .solids = result.solids,
+                    .faces = result.faces,
+                    .healed_faces = result.healed_faces};
+  for (const PrimitiveIndex index : primitives_of(tree)) {
+    if (!brep::has_exact_surfaces(primitives[index])) report.faceted.push_back(index);
+  }
+  for (const brep::KernelFailure& failure : result.failures) {
+    report.failed.push_back(
+        {.node = shortened(to_text(tree_of(job.plan, failure.node), primitives)), .reason = failure.reason});
+  }
+  return report;
+}
+
+brep::VolumeEstimate volume_within(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
+                                   const RunContext& run) {
+  constexpr int k_levels = 8;
+  const AlignedBox own = bounds_of(tree, primitives);
+  if (own.isEmpty()) return {};
+  return brep::tree_volume(tree, primitives, own.intersection(extent), k_levels, run);
+}
+
+/// What the kernel made, and what is to be said of it.
+struct Made {
+  KernelResult result;
+  BrepReport report;
+};
+
+Made make(const std::filesystem::path& file, const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives,
+          const AlignedBox& extent, const BrepOptions& options, const RunContext& run) {
+  const brep::ModelHost host(job, tree, primitives, extent, options, run, names_in_file(file, primitives, options));
+  Made made;
+  KernelResult& result = made.result;
+  kernel_for(file).run(&job, &host, &result);
+  if (result.error.empty() && result.is_empty) result.error = "the solid is empty";
+  if (!result.error.empty()) {
+    throw Error({.file = file.string(), .where = {}, .expected = result.error, .remedy = {}});
+  }
+  made.report = report_of(result, job, tree, primitives);
+  const brep::VolumeEstimate estimate = volume_within(tree, primitives, extent, run);
+  made.report.tree_volume = estimate.volume;
+  made.report.tree_volume_error = estimate.error;
+  made.report.cut_at = cut_at(tree, primitives, extent);
+  return made;
+}
+
+BrepReport write(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
+                 const BrepOptions& options, KernelFormat format, const RunContext& run) {
+  validate(options);
+  require_brep(file);
+  const AlignedBox extent = model_extent(tree, primitives);
+  KernelJob job = job_of(tree, primitives, extent, options, format);
+  const ScratchFile scratch;
+  job.file = scratch.path();
+  Made made = make(file, job, tree, primitives, extent, options, run);
+  write_text_file(file, read_text_file(scratch.path()));
+  return std::move(made.report);
+}
+
+}  // namespace
+
+bool BrepReport::is_exact(const BrepOptions& options) const {
+  return is_valid && failed.empty() && faceted.empty() && volume_difference() <= options.volume_tolerance;
+}
+
+double BrepReport::volume_difference() const {
+  const double difference = std::abs(volume - tree_volume);
+  return difference == 0 ? 0 : difference / std::max(tree_volume, 1e-300);
+}
+
+bool has_brep() {
+  return brep::load_kernel().run != nullptr;
+}
+
+bool is_brep_built_in() {
+  return brep::is_kernel_built_in();
+}
+
+BrepSupport brep_support() {
+  const brep::Kernel& kernel = brep::load_kernel();
+  return {.is_built_in = is_brep_built_in(),
+          .lacks_opencascade = kernel.lacks_opencascade,
+          .module = kernel.file,
+          .fault = kernel.missing,
+          .remedy = kernel.remedy};
+}
+
+void require_brep(const std::filesystem::path& file) {
+  (void)kernel_for(file);
+}
+
+BrepReport write_step(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
+                      const BrepOptions& options, const RunContext& run) {
+  return write(file, tree, primitives, options, KernelFormat::step, run);
+}
+
+BrepReport write_brep(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
+                      const BrepOptions& options, const RunContext& run) {
+  return write(file, tree, primitives, options, KernelFormat::brep, run);
+}
+
+BrepMesh mesh_brep(const CsgTree& tree, const PrimitiveSet& primitives, const BrepOptions& options,
+                   const RunContext& run) {
+  validate(options);
+  require_brep({});
+  const AlignedBox extent = model_extent(tree, primitives);
+  KernelJob job = job_of(tree, primitives, extent, options, KernelFormat::mesh);
+  job.mesh_deviation = options.mesh_deviation * job.size;
+  Made made = make({}, job, tree, primitives, extent, options, run);
+  TriangleMesh mesh{.vertices = {}, .triangles = std::move(made.result.mesh.triangles)};
+  for (std::size_t i = 0; i < made.result.mesh.vertices.size(); ++i) {
+    mesh.vertices.push_back(job.frame.scale * made.result.mesh.vertices[i] + job.frame.offset);
+  }
+  return {.mesh = std::move(mesh), .report = std::move(made.report)};
+}
+
+}  // namespace cloud2csg

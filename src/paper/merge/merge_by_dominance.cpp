@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cassert>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+#include "core/tree/folding.hpp"
+
+namespace cloud2csg {
+namespace {
+
+enum class Role { undecided, added, removed };
+
+/// The tree with one primitive taken for nothing, or for all of space.
+CsgTree substitute(const CsgTree& tree, PrimitiveIndex primitive, bool is_full) {
+  return fold_primitives(tree,
+                         [&](PrimitiveIndex p) { return p == primitive ? std::optional(is_full) : std::nullopt; });
+}
+
+/// Primitives of one role, taken out of all trees one after the other.
+struct Layer {
+  Role role;
+  std::vector<PrimitiveIndex> primitives;
+};
+
+class DominanceMerge {
+ public:
+  DominanceMerge(std::span<const CsgTree> trees, std::span<const Clique> cliques, const RunContext& run) : run_(run) {
+    assert(trees.size() == cliques.size());
+    for (std::size_t k = 0; k < trees.size(); ++k) add(simplify(trees[k]), cliques[k]);
+    decided_.assign(trees_with_.size(), 0);
+    for (PrimitiveIndex p = 0; p < trees_with_.size(); ++p) mark_stale(p);
+  }
+
+  MergeResult merge() {
+    while (!(stale_added_.empty() && stale_removed_.empty()) && !run_.stop.stop_requested()) {
+      // What is taken away goes first: differences stand outermost where there is a choice.
+      peel(Role::removed, stale_removed_);
+      peel(Role::added, stale_added_);
+    }
+    MergeResult result = merge_trees(core(), MergeOrder::paper, run_);
+    for (const Layer& layer : layers_) result.merges += layer.primitives.size();
+    result.trees = {simplify(with_layers(unite_all(result.trees)))};
+    return result;
+  }
+
+ private:
+  void add(CsgTree tree, const Clique& clique) {
+    if (tree == CsgTree::empty()) return;
+    for (const PrimitiveIndex p : clique) {
+      if (p >= trees_with_.size()) trees_with_.resize(p + std::size_t{1});
+      trees_with_[p].push_back(trees_.size());
+    }
+    trees_.push_back(std::move(tree));
+    cliques_.push_back(clique);
+  }
+
+  void mark_stale(PrimitiveIndex p) {
+    stale_added_.insert(p);
+    stale_removed_.insert(p);
+  }
+
+  /// What the primitive is to a partition; nothing: the tree says nothing, because nothing is left of it.
+  [[nodiscard]] std::optional<Role> claim_of(std::size_t tree, PrimitiveIndex p) const {
+    if (is_constant(trees_[tree])) return std::nullopt;
+    const CsgTree inside = substitute(trees_[tree], p, /*is_full=*/true);
+    // One that has primitives left, but not this one, has something in its place: that must go first.
+    if (!is_constant(inside)) return Role::undecided;
+    return inside == CsgTree::full() ? Role::added : Role::removed;
+  }
+
+  /// What the primitive is to all partitions that have it, if it is the same to all.
+  [[nodiscard]] Role role_of(PrimitiveIndex p) {
+    const std::vector<std::size_t>& trees = trees_with_[p];
+    // A tree that has decided stays so, whatever else is taken out: it is enough to ask the first that has not.
+    for (std::size_t& k = decided_[p]; k < trees.size(); ++k) {
+      if (claim_of(trees[k], p) == Role::undecided) return Role::undecided;
+    }
+    Role common = Role::undecided;
+    for (const std::size_t k : trees) {
+      const std::optional<Role> claim = claim_of(k, p);
+      if (!claim) continue;
+      const bool differs = common != Role::undecided && *claim != common;
+      if (differs || *claim == Role::undecided) return Role::undecided;
+      common = *claim;
+    }
+    return common;
+  }
+
+  /// Takes out all primitives of the role, also those that others uncover when they go, in a layer of their own.
+  void peel(Role role, std::set<PrimitiveIndex>& stale) {
+    Layer layer{.role = role, .primitives = {}};
+    while (!stale.empty() && !run_.stop.stop_requested()) {
+      const PrimitiveIndex p = *stale.begin();
+      stale.erase(stale.begin());
+      if (role_of(p) != role) continue;
+      layer.primitives.push_back(p);
+      take_out(p);
+    }
+    if (!layer.primitives.empty()) layers_.push_back(std::move(layer));
+  }
+
+  /// All trees are from now on about what is outside of the primitive.
+  void take_out(PrimitiveIndex p) {
+    for (const std::size_t k : std::exchange(trees_with_[p], {})) {
+      trees_[k] = simplify(substitute(trees_[k], p, /*is_full=*/false));
+      for (const PrimitiveIndex q : cliques_[k]) {
+        if (!trees_with_[q].empty()) mark_stale(q);
+      }
+    }
+  }
+
+  /// What is left of the trees: primitives that are neither wholly in the solid nor wholly out of it. All of space,
+  /// when that is what all trees say of what is outside of their primitives.
+  [[nodiscard]] std::vector<CsgTree> core() const {
+    const auto is_full = [](const CsgTree& tree) { return tree == CsgTree::full(); };
+    if (!trees_.empty() && std::ranges::all_of(trees_, is_full)) return {CsgTree::full()};
+    std::vector<CsgTree> left;
+    for (const CsgTree& tree : trees_) {
+      if (!is_constant(tree)) left.push_back(tree);
+    }
+    return left;
+  }
+
+  [[nodiscard]] CsgTree with_layers(CsgTree tree) const {
+    for (std::size_t k = layers_.size(); k-- > 0;) {
+      std::vector<CsgTree> leaves;
+      for (const PrimitiveIndex p : layers_[k].primitives) leaves.push_back(CsgTree::leaf(p));
+      const CsgTree all = unite_all(leaves);
+      tree = layers_[k].role == Role::removed ? subtract(tree, all) : unite(tree, all);
+    }
+    return tree;
+  }
+
+  const RunContext& run_;
+  std::vector<CsgTree> trees_;
+  std::vector<Clique> cliques_;
+  std::vector<std::vector<std::size_t>> trees_with_;  ///< by primitive
+  std::vector<std::size_t> decided_;                  ///< by primitive: so many of its first trees are not undecided
+  std::set<PrimitiveIndex> stale_added_, stale_removed_;  ///< whose role may have become this one
+  std::vector<Layer> layers_;                             ///< the outermost first
+};
+
+}  // namespace
+
+MergeResult merge_by_dominance(std::span<const CsgTree> trees, std::span<const Clique> cliques, const RunContext& run) {
+  return DominanceMerge(trees, cliques, run).merge();
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,187 @@
+#include "paper/merge/merge_component.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// Each joint solution is a pass over all points and a search: with more trees than this left over, or for more
+/// primitives, it takes too long.
+constexpr std::size_t k_joint_trees = 32;
+constexpr std::size_t k_joint_primitives = 64;
+
+Clique common(const Clique& a, const Clique& b) {
+  Clique both;
+  std::ranges::set_intersection(a, b, std::back_inserter(both));
+  return both;
+}
+
+class ComponentMerger {
+ public:
+  ComponentMerger(const Component& component, const SolveJointly& solve_jointly, const ComponentOptions& options,
+                  const RunContext& run)
+      : component_(component),
+        solve_jointly_(solve_jointly),
+        options_(options),
+        run_(run),
+        check_(component.windows, component.primitives, component.alpha, component.cliques, component.trees, run) {}
+
+  MergedComponent run() {
+    const bool merged = component_.trees.size() == 1 ? consider(MergeWay::single, component_.trees.front(), true)
+                                                     : merge_trees_of_partitions();
+    if (!merged) search();
+    if (options_.polish && has_whole_table()) polish();
+    result_.tree = simplify(result_.tree);
+    result_.statistics.worst_shortfall = check_.judge(result_.tree).worst_shortfall;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] bool has_tree() const { return !result_.statistics.ways.empty(); }
+  [[nodiscard]] bool has_whole_table() const { return component_.windows.size() == 1; }
+  [[nodiscard]] const RankClasses& whole_table() const { return *component_.windows.front().table; }
+
+  /// Keeps the tree when it is the best so far. Whether it is whole and keeps what the partitions promised.
+  bool consider(MergeWay way, const CsgTree& found, bool whole) {
+    const CsgTree tree = simplify(found);
+    const auto [score, worst_shortfall] = check_.judge(tree);
+    if (score > best_score_) {
+      best_score_ = score;
+      result_.tree = tree;
+      result_.statistics.ways = {way};
+    }
+    if (!whole) return false;
+    const bool holds = worst_shortfall <= k_tolerated_shortfall;
+    if (!holds) ++result_.statistics.failed_checks;
+    // A tree that holds but scores below an earlier one would not be taken: go on looking.
+    return holds && score >= best_score_;
+  }
+
+  bool merge_trees_of_partitions() {
+    if (has_whole_table()) {
+      return merge(MergeWay::paper) || merge(MergeWay::dominance) || merge(MergeWay::largest_common_subtree) ||
+             merge_jointly();
+    }
+    // In a large component there is always something that the paper's merge does not get right.
+    return merge(MergeWay::dominance) || merge(MergeWay::paper) || merge(MergeWay::largest_common_subtree) ||
+           merge_jointly();
+  }
+
+  bool merge(MergeWay way) { return merge(way, component_.trees); }
+
+  bool merge(MergeWay way, std::span<const CsgTree> trees) {
+    const bool is_stopped = run_.stop.stop_requested();
+    if (is_stopped) result_.complete = false;
+    if (is_stopped && has_tree()) return false;
+    const MergeResult merged = merge_result(way, trees);
+    result_.statistics.merges += merged.merges;
+    result_.statistics.blocked += merged.blocked;
+    remaining_ = merged.trees;
+    // Somewhere in a large component something is blocked: whether it matters is for the check to say.
+    const bool may_be_blocked = !has_whole_table();
+    return consider(way, unite_all(merged.trees), merged.trees.size() == 1 && (merged.blocked == 0 || may_be_blocked));
+  }
+
+  /// The first way is short, and without it there is no tree: it does not stop.
+  [[nodiscard]] MergeResult merge_result(MergeWay way, std::span<const CsgTree> trees) const {
+    const bool is_first = way == (has_whole_table() ? MergeWay::paper : MergeWay::dominance);
+    RunContext run = run_;
+    if (is_first) run.stop = {};
+    if (way == MergeWay::dominance) return merge_by_dominance(trees, component_.cliques, run);
+    return merge_trees(trees, way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree, run);
+  }
+
+  /// As long as trees that share primitives are left over, two of them are replaced by one tree for the primitives of
+  /// both, found from the points of both.
+  bool merge_jointly() {
+    std::vector<CsgTree> trees = remaining_;
+    while (trees.size() > 1 && trees.size() <= k_joint_trees && !run_.stop.stop_requested()) {
+      const auto [first, second] = most_entangled(trees);
+      Clique both;
+      std::ranges::set_union(primitives_of(trees[first]), primitives_of(trees[second]), std::back_inserter(both));
+      if (both.empty()) return false;  // trees that contradict themselves: all of space is left of them
+      if (both.size() > k_joint_primitives) return false;
+      trees[first] = solve_jointly_(both);
+      trees.erase(trees.begin() + static_cast<std::ptrdiff_t>(second));
+      ++result_.statistics.joint_solutions;
+      if (merge(MergeWay::joint, trees)) return true;
+      trees = remaining_;
+    }
+    return false;
+  }
+
+  /// The pair with the fewest primitives in all among those that share the most: the cheapest to solve together.
+  static std::pair<std::size_t, std::size_t> most_entangled(std::span<const CsgTree> trees) {
+    std::pair<std::size_t, std::size_t> best{0, 1};
+    std::pair<std::size_t, std::size_t> best_rank{0, std::numeric_limits<std::size_t>::max()};
+    for (std::size_t a = 0; a < trees.size(); ++a) {
+      for (std::size_t b = a + 1; b < trees.size(); ++b) {
+        const Clique of_a = primitives_of(trees[a]);
+        const Clique of_b = primitives_of(trees[b]);
+        const std::size_t shared = common(of_a, of_b).size();
+        const std::pair rank{shared, of_a.size() + of_b.size() - shared};
+        if (rank.first > best_rank.first || (rank.first == best_rank.first && rank.second < best_rank.second)) {
+          best = {a, b};
+          best_rank = rank;
+        }
+      }
+    }
+    return best;
+  }
+
+  void search() {
+    if (!has_whole_table()) {
+      search_anew();
+      return;
+    }
+    const Evolution found = evolve_tree_from(whole_table(), result_.tree, options_.search, options_.item, run_);
+    count(found);
+    consider(MergeWay::search, found.tree, true);
+    result_.statistics.ways = {MergeWay::search};  // it began with the best of the others, which may be the best still
+  }
+
+  /// Of a component without a table over all of it.
+  void search_anew() {
+    if (component_.primitives > RankClasses::k_byte_limit || run_.stop.stop_requested()) return;
+    Clique all(component_.primitives);
+    std::iota(all.begin(), all.end(), PrimitiveIndex{0});
+    consider(MergeWay::search, solve_jointly_(all), true);
+  }
+
+  /// Redundancy removal on the whole component: nodes go as long as E grows.
+  void polish() {
+    const Evolution polished = local_search(whole_table(), result_.tree, {.shrink_only = true}, run_);
+    count(polished);
+    result_.tree = polished.tree;
+  }
+
+  void count(const Evolution& evolution) {
+    result_.statistics.generations += evolution.generations;
+    result_.statistics.evaluations += evolution.evaluations;
+    result_.complete = result_.complete && evolution.complete;
+  }
+
+  const Component& component_;
+  const SolveJointly& solve_jointly_;
+  const ComponentOptions& options_;
+  const RunContext& run_;
+  MergeCheck check_;
+  MergedComponent result_;
+  std::vector<CsgTree> remaining_;
+  double best_score_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+MergedComponent merge_component(const Component& component, const SolveJointly& solve_jointly,
+                                const ComponentOptions& options, const RunContext& run) {
+  return ComponentMerger(component, solve_jointly, options, run).run();
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <queue>
+#include <span>
+#include <stop_token>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/advanced/merge.hpp"
+#include "cloud2csg/advanced/simplify.hpp"
+#include "paper/merge/common_subtree.hpp"
+
+namespace cloud2csg {
+namespace {
+
+bool share_a_primitive(const MergeCandidate& a, const MergeCandidate& b) {
+  auto in_a = a.primitives.begin();
+  auto in_b = b.primitives.begin();
+  // Usually one is a partition and the other has grown far beyond it.
+  if (a.primitives.size() > 8 * b.primitives.size()) {
+    return std::ranges::any_of(b.primitives, [&a](auto p) { return std::ranges::binary_search(a.primitives, p); });
+  }
+  while (in_a != a.primitives.end() && in_b != b.primitives.end()) {
+    if (*in_a == *in_b) return true;
+    *in_a < *in_b ? ++in_a : ++in_b;
+  }
+  return false;
+}
+
+/// Where two trees merge, if they do. The larger one receives the other; of equal ones the first.
+struct MergePlan {
+  const MergeCandidate& larger;
+  const MergeCandidate& smaller;
+  CommonSubtree common;
+};
+
+std::optional<MergePlan> plan_merge(const MergeCandidate& first, const MergeCandidate& second) {
+  if (!share_a_primitive(first, second)) return std::nullopt;
+  const bool second_is_larger = second.tree.size() > first.tree.size();
+  const MergeCandidate& larger = second_is_larger ? second : first;
+  const MergeCandidate& smaller = second_is_larger ? first : second;
+  std::optional<CommonSubtree> common = largest_common_subtree(larger, smaller);
+  if (!common) return std::nullopt;
+  return MergePlan{larger, smaller, *std::move(common)};
+}
+
+MergeCandidate carry_out(const MergePlan& plan) {
+  return make_merge_candidate(simplify(put_in_place(plan.larger, plan.common, plan.smaller.tree)));
+}
+
+std::vector<MergeCandidate> simplified_candidates(std::span<const CsgTree> trees) {
+  std::vector<MergeCandidate> candidates;
+  for (const CsgTree& tree : trees) {
+    CsgTree simple = simplify(tree);
+    if (simple != CsgTree::empty()) candidates.push_back(make_merge_candidate(std::move(simple)));
+  }
+  if (candidates.empty() && !trees.empty()) candidates.push_back(make_merge_candidate(CsgTree::empty()));
+  return candidates;
+}
+
+/// Merges the first of the trees from `head` on with the first later one that it merges with.
+bool merge_head(std::vector<MergeCandidate>& list, std::size_t head) {
+  for (std::size_t next = head + 1; next < list.size(); ++next) {
+    const std::optional<MergePlan> plan = plan_merge(list[head], list[next]);
+    if (!plan) continue;
+    list[head] = carry_out(*plan);
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(next));
+    return true;
+  }
+  return false;
+}
+
+/// Returns the number of merges.
+std::size_t merge_in_order_of_the_paper(std::vector<MergeCandidate>& list, const std::stop_token& stop) {
+  std::size_t merges = 0;
+  for (bool may_find_more = true; may_find_more;) {
+    may_find_more = false;
+    for (std::size_t head = 0; head < list.size(); ++head) {
+      while (!stop.stop_requested() && merge_head(list, head)) {
+        ++merges;
+        may_find_more = may_find_more || head > 0;  // one of those passed over
+      }
+    }
+  }
+  return merges;
+}
+
+/// Takes out the places that `is_gone`; the others stay in their order.
+template <typename IsGone>
+void drop_gone(std::vector<MergeCandidate>& list, const IsGone& is_gone) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!is_gone(i) && kept++ != i) list[kept - 1] = std::move(list[i]);
+  }
+  list.resize(kept);
+}
+
+/// The queue of mergeable pairs, largest common subtree first, then in the order of the list.
+class LargestFirst {
+ public:
+  LargestFirst(std::vector<MergeCandidate>& slots, std::stop_token stop)
+      : slots_(slots), versions_(slots.size(), 0), stop_(std::move(stop)) {}
+
+  /// Returns the number of merges; slots of trees that went into others are removed.
+  std::size_t merge_all() {
+    for (std::size_t i = 0; i < slots_.size() && !stop_.stop_requested(); ++i) {
+      for (std::size_t j = i + 1; j < slots_.size(); ++j) consider(i, j);
+    }
+    std::size_t merges = 0;
+    while (!pairs_.empty() && !stop_.stop_requested()) {
+      const Pair pair = pairs_.top();
+      pairs_.pop();
+      if (versions_[pair.i] != pair.version_i || versions_[pair.j] != pair.version_j) continue;
+      merge(pair);
+      ++merges;
+    }
+    drop_gone(slots_, [this](std::size_t i) { return versions_[i] == k_gone; });
+    return merges;
+  }
+
+ private:
+  struct Pair {
+    std::size_t common_size, i, j, version_i, version_j;
+    /// Whether the other pair goes first.
+    bool operator<(const Pair& other) const {
+      if (common_size != other.common_size) return common_size < other.common_size;
+      return i != other.i ? i > other.i : j > other.j;
+    }
+  };
+  static constexpr std::size_t k_gone = static_cast<std::size_t>(-1);
+
+  void consider(std::size_t i, std::size_t j) {
+    if (const auto plan = plan_merge(slots_[i], slots_[j])) {
+      pairs_.push({plan->common.size, i, j, versions_[i], versions_[j]});
+    }
+  }
+
+  /// Precondition: neither tree has changed since the pair was considered, so there is a plan.
+  void merge(const Pair& pair) {
+    slots_[pair.i] = carry_out(plan_merge(slots_[pair.i], slots_[pair.j]).value());
+    ++versions_[pair.i];
+    versions_[pair.j] = k_gone;
+    for (std::size_t other = 0; other < slots_.size(); ++other) {
+      if (other == pair.i || versions_[other] == k_gone) continue;
+      consider(std::min(pair.i, other), std::max(pair.i, other));
+    }
+  }
+
+  std::vector<MergeCandidate>& slots_;
+  std::vector<std::size_t> versions_;  ///< by slot: raised when its tree changes
+  std::priority_queue<Pair> pairs_;
+  std::stop_token stop_;
+};
+
+/// Lists up to this length are merged in their order alone.
+constexpr std::size_t k_short_list = 64;
+
+/// For long lists: each tree merges with the first later one that it merges with and that has not merged yet, so that
+/// in each round trees become about twice as large. A result that grows by one partition at a time would be copied as
+/// often as there are partitions.
+class PairingRounds {
+ public:
+  PairingRounds(std::vector<MergeCandidate>& list, std::stop_token stop) : list_(list), stop_(std::move(stop)) {}
+
+  /// Until the list is short or nothing merges. Returns the number of merges.
+  std::size_t merge() {
+    std::size_t merges = 0;
+    while (list_.size() > k_short_list && !stop_.stop_requested()) {
+      const std::size_t merged = merge_pairs();
+      if (merged == 0) break;
+      merges += merged;
+    }
+    return merges;
+  }
+
+ private:
+  std::size_t merge_pairs() {
+    index_primitives();
+    std::vector<bool> has_merged(list_.size(), false), is_gone(list_.size(), false);
+    std::size_t merges = 0;
+    for (std::size_t i = 0; i < list_.size() && !stop_.stop_requested(); ++i) {
+      if (has_merged[i]) continue;
+      for (const std::size_t j : later_neighbours(i)) {
+        if (has_merged[j]) continue;
+        const std::optional<MergePlan> plan = plan_merge(list_[i], list_[j]);
+        if (!plan) continue;
+        list_[i] = carry_out(*plan);
+        has_merged[i] = has_merged[j] = is_gone[j] = true;
+        ++merges;
+        break;
+      }
+    }
+    drop_gone(list_, [&is_gone](std::size_t i) { return is_gone[i]; });
+    return merges;
+  }
+
+  void index_primitives() {
+    trees_with_.clear();
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      for (const PrimitiveIndex p : list_[i].primitives) trees_with_[p].push_back(i);
+    }
+  }
+
+  /// Later trees that share a primitive with tree i, ascending.
+  [[nodiscard]] std::vector<std::size_t> later_neighbours(std::size_t i) const {
+    std::vector<std::size_t> later;
+    for (const PrimitiveIndex p : list_[i].primitives) {
+      const std::vector<std::size_t>& trees = trees_with_.at(p);
+      later.insert(later.end(), std::ranges::upper_bound(trees, i), trees.end());
+    }
+    std::ranges::sort(later);
+    later.erase(std::unique(later.begin(), later.end()), later.end());
+    return later;
+  }
+
+  std::vector<MergeCandidate>& list_;
+  std::unordered_map<PrimitiveIndex, std::vector<std::size_t>> trees_with_;  // as the round began
+  std::stop_token stop_;
+};
+
+std::size_t blocked_pairs(std::span<const MergeCandidate> list) {
+  std::size_t blocked = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t j = i + 1; j < list.size(); ++j) blocked += share_a_primitive(list[i], list[j]) ? 1 : 0;
+  }
+  return blocked;
+}
+
+}  // namespace
+
+MergeResult merge_trees(std::span<const CsgTree> trees, MergeOrder order, const RunContext& run) {
+  std::vector<MergeCandidate> list = simplified_candidates(trees);
+  MergeResult result;
+  result.merges = PairingRounds(list, run.stop).merge();
+  result.merges += order == MergeOrder::paper ? merge_in_order_of_the_paper(list, run.stop)
+                                              : LargestFirst(list, run.stop).merge_all();
+  result.blocked = blocked_pairs(list);
+  for (MergeCandidate& candidate : list) result.trees.push_back(std::move(candidate.tree));
+  return result;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,108 @@
+#include "cloud2csg/advanced/objective.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+namespace cloud2csg {
+namespace {
+
+/// What a subtree is at one point: the value, and which primitive it is of.
+struct Selected {
+  double value;
+  PrimitiveIndex primitive;
+  bool complemented;
+};
+
+/// Zero counts as positive, and so as negative when complemented.
+bool has_negative_rank(const Selected& s) {
+  return s.value < 0 || (s.value == 0 && s.complemented);
+}
+
+/// Whether a's signed rank is below b's: by value; equal values by the index of the primitive, mirrored when negative.
+bool ranks_below(const Selected& a, const Selected& b) {
+  if (a.value != b.value) return a.value < b.value;
+  if (has_negative_rank(a) != has_negative_rank(b)) return has_negative_rank(a);
+  return has_negative_rank(a) ? a.primitive > b.primitive : a.primitive < b.primitive;
+}
+
+Selected negated(Selected s) {
+  return {-s.value, s.primitive, !s.complemented};
+}
+Selected lower(const Selected& a, const Selected& b) {
+  return ranks_below(b, a) ? b : a;
+}
+Selected upper(const Selected& a, const Selected& b) {
+  return ranks_below(a, b) ? b : a;
+}
+
+/// What each primitive is at a block of points: made once a block, so that the walk below only reads.
+struct BlockFields {
+  std::vector<std::vector<double>> distances;  // by primitive, then by point; empty for primitives not in the tree
+  std::vector<Points> gradients;
+};
+
+BlockFields evaluate_block(const CsgTree& tree, const PrimitiveSet& primitives, PointsView positions) {
+  BlockFields fields{std::vector<std::vector<double>>(primitives.size()), std::vector<Points>(primitives.size())};
+  for (const PrimitiveIndex p : primitives_of(tree)) {
+    fields.distances[p] = signed_distance(primitives[p], positions);
+    fields.gradients[p] = gradient(primitives[p], positions);
+  }
+  return fields;
+}
+
+Selected select(const CsgTree& tree, std::size_t node, const BlockFields& fields, std::size_t point) {
+  const CsgNode& here = tree.nodes()[node];
+  assert(here.operation() != Operation::empty && here.operation() != Operation::full);
+  if (here.operation() == Operation::primitive) {
+    return {fields.distances[here.primitive()][point], here.primitive(), false};
+  }
+  const Selected second = select(tree, tree.second_child(node), fields, point);
+  if (here.operation() == Operation::complement) return negated(second);
+  const Selected first = select(tree, tree.first_child(node), fields, point);
+  switch (here.operation()) {
+    case Operation::union_of:
+      return lower(first, second);
+    case Operation::intersection:
+      return upper(first, second);
+    default:
+      return upper(first, negated(second));
+  }
+}
+
+constexpr std::size_t k_block = 1024;
+
+}  // namespace
+
+Objective resolve(const ObjectiveOptions& options, std::size_t points, double noise) {
+  return {.alpha = options.alpha.value_or(std::log(static_cast<double>(std::max<std::size_t>(points, 1)))),
+          .beta = options.beta.value_or(1.0 / noise),
+          .gamma = options.gamma};
+}
+
+double point_score(double distance, double angle, const Objective& objective) {
+  const double d = objective.beta * distance;
+  const double theta = objective.gamma * angle;
+  return std::exp(-d * d) + std::exp(-theta * theta);
+}
+
+double reference_objective(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
+                           std::span<const std::uint32_t> points, const Objective& objective) {
+  double sum = 0;
+  for (std::size_t begin = 0; begin < points.size(); begin += k_block) {
+    const std::span<const std::uint32_t> block = points.subspan(begin, std::min(k_block, points.size() - begin));
+    Points positions;
+    for (const std::uint32_t point : block) positions.push_back(cloud.positions[point]);
+    const BlockFields fields = evaluate_block(tree, primitives, positions);
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      const Selected selected = select(tree, tree.root(), fields, i);
+      const Eigen::Vector3d slope = fields.gradients[selected.primitive][i].normalized();
+      const double cosine = (selected.complemented ? -slope : slope).dot(cloud.normals[block[i]]);
+      sum += point_score(selected.value, std::acos(std::clamp(cosine, -1.0, 1.0)), objective);
+    }
+  }
+  return sum - objective.alpha * static_cast<double>(tree.size());
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,68 @@
+#include "paper/objective/point_blocks.hpp"
+
+#include <type_traits>
+
+namespace cloud2csg {
+namespace {
+
+/// Of some rows of columns x, y and z.
+template <class Columns>
+AlignedBox bounds_of_rows(const Columns& columns, std::size_t begin, std::size_t end) {
+  AlignedBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& values = columns[static_cast<std::size_t>(axis)].values;
+    using Row = Eigen::Array<typename std::decay_t<decltype(values)>::value_type, Eigen::Dynamic, 1>;
+    const Eigen::Map<const Row> rows(&values[begin], static_cast<Eigen::Index>(end - begin));
+    box.min()[axis] = static_cast<double>(rows.minCoeff());
+    box.max()[axis] = static_cast<double>(rows.maxCoeff());
+  }
+  return box;
+}
+
+}  // namespace
+
+template <class Real>
+PointBlocks<Real>::PointBlocks(const PointCloud& cloud, const AlignedBox& box, std::span<const std::uint32_t> order)
+    : cloud_(&cloud), order_(order), origin_(origin(box)), columns_(std::make_unique<std::array<Column, 6>>()) {}
+
+template <class Real>
+Eigen::Vector3d PointBlocks<Real>::origin(const AlignedBox& box) {
+  return sizeof(Real) < sizeof(double) ? Eigen::Vector3d(box.center()) : Eigen::Vector3d::Zero();
+}
+
+template <class Real>
+AlignedBox PointBlocks<Real>::bounds(std::size_t block) const {
+  const std::size_t begin = block * k_block_points;
+  return bounds_of_rows(*columns_, begin, begin + size(block));
+}
+
+template <class Real>
+AlignedBox PointBlocks<Real>::bounds() const {
+  return bounds_of_rows(*columns_, 0, points_);
+}
+
+template <class Real>
+void PointBlocks<Real>::load(std::size_t chunk) {
+  begin_ = chunk * k_chunk_points;
+  points_ = std::min(k_chunk_points, cloud_->size() - begin_);
+  take_column(0, cloud_->positions.x, origin_.x());
+  take_column(1, cloud_->positions.y, origin_.y());
+  take_column(2, cloud_->positions.z, origin_.z());
+  take_column(3, cloud_->normals.x, 0);
+  take_column(4, cloud_->normals.y, 0);
+  take_column(5, cloud_->normals.z, 0);
+}
+
+template <class Real>
+void PointBlocks<Real>::take_column(std::size_t which, const std::vector<double>& from, double origin) {
+  auto& values = (*columns_)[which].values;
+  const std::span<const std::uint32_t> sources = order_.subspan(begin_, points_);
+  for (std::size_t i = 0; i < points_; ++i) values[i] = static_cast<Real>(from[sources[i]] - origin);
+  const auto end = static_cast<std::ptrdiff_t>(count() * k_block_points);
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(points_), values.begin() + end, values[points_ - 1]);
+}
+
+template class PointBlocks<double>;
+template class PointBlocks<float>;
+
+}  // namespace cloud2csg

@@ -1,0 +1,86 @@
+#include "cloud2csg/advanced/rank_classes.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "paper/objective/select_kernels.hpp"
+
+namespace cloud2csg {
+namespace {
+
+template <class Rank>
+RankTable<Rank> table_of(const AlignedVector<Rank>& ranks, const AlignedVector<float>& scores, std::size_t primitives,
+                         std::size_t padded) {
+  return {.ranks = ranks.data(), .scores = scores.data(), .primitives = primitives, .padded = padded};
+}
+
+/// Nothing and all of space have no surface: they score nothing at any point.
+bool has_no_surface(const CsgTree& tree) {
+  assert(is_constant(tree) || std::ranges::none_of(tree.nodes(), [](const CsgNode& node) {
+           return node.is_leaf() && node.operation() != Operation::primitive;
+         }));
+  return is_constant(tree);
+}
+
+}  // namespace
+
+double RankClasses::geometry(const CsgTree& tree, RankScratch& scratch) const {
+  if (has_no_surface(tree)) return 0;
+  return std::visit(
+      [&](const auto& ranks) {
+        return tree_geometry(table_of(ranks, scores_, primitive_count(), padded_count_), tree.nodes(), scratch);
+      },
+      ranks_);
+}
+
+std::vector<float> RankClasses::class_scores(const CsgTree& tree, RankScratch& scratch) const {
+  std::vector<float> scores(class_count_);
+  if (has_no_surface(tree)) return scores;
+  std::visit(
+      [&](const auto& ranks) {
+        tree_class_scores(table_of(ranks, scores_, primitive_count(), padded_count_), tree.nodes(), scratch, scores);
+      },
+      ranks_);
+  return scores;
+}
+
+std::vector<double> RankClasses::sums_by_nearest(std::span<const float> values) const {
+  assert(values.size() == class_count_);
+  std::vector<double> sums(primitive_count(), 0.0);
+  for (std::size_t c = 0; c < class_count_; ++c) sums[nearest_[c]] += static_cast<double>(values[c]);
+  return sums;
+}
+
+double RankClasses::reference_geometry(const CsgTree& tree) const {
+  if (has_no_surface(tree)) return 0;
+  double sum = 0;
+  const std::size_t row = 2 * primitive_count() + 1;
+  std::visit(
+      [&](const auto& ranks) {
+        const auto table = table_of(ranks, scores_, primitive_count(), padded_count_);
+        for (std::size_t c = 0; c < class_count_; ++c) {
+          const int rank = select_rank(table, tree.nodes(), c);
+          sum += static_cast<double>(
+              scores_[c * row + static_cast<std::size_t>(static_cast<int>(primitive_count()) + rank)]);
+        }
+      },
+      ranks_);
+  return sum;
+}
+
+std::span<const std::int8_t> RankClasses::column(PrimitiveIndex local) const {
+  assert(primitive_count() <= k_byte_limit);
+  return std::span(std::get<AlignedVector<std::int8_t>>(ranks_)).subspan(local * padded_count_, padded_count_);
+}
+
+RankClasses::ColumnGeometry RankClasses::column_geometry(std::span<const std::int8_t> column) const {
+  return cloud2csg::column_geometry(
+      table_of(std::get<AlignedVector<std::int8_t>>(ranks_), scores_, primitive_count(), padded_count_), column);
+}
+
+void RankClasses::combine(Operation operation, std::span<const std::int8_t> a, std::span<const std::int8_t> b,
+                          std::span<std::int8_t> out) {
+  combine_columns(operation, a, b, out);
+}
+
+}  // namespace cloud2csg

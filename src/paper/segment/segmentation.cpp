@@ -1,0 +1,123 @@
+#include "cloud2csg/advanced/segmentation.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/base/robust_deviation.hpp"
+#include "core/primitive/sampled_field.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::size_t k_noise_sample = 4096;
+constexpr std::size_t k_noise_block = 1024;
+constexpr double k_noise_floor = 1e-5;  // of the diagonal
+constexpr double k_noise_ceiling = 0.1;
+constexpr double k_outlier_sigmas = 5.0;
+constexpr double k_sigmas = 3.0;
+constexpr std::uint64_t k_sampling_stage = 0x6e6f'6973;  // names its stream of random numbers
+
+double cosine_of_deg(double degrees) {
+  return std::cos(degrees * std::numbers::pi / 180.0);
+}
+
+/// Whether a point's normal is along the slope, or against it, to within an angle with this cosine. False where there
+/// is no slope.
+bool agrees(const Eigen::Vector3d& slope, const Eigen::Vector3d& normal, double least_cosine) {
+  const double length = slope.norm();
+  return length > 0 && std::abs(slope.dot(normal)) / length >= least_cosine;
+}
+
+struct Sample {
+  Points positions, normals;
+};
+
+/// One point out of every few, which one by chance: scans come in rows, and a fixed step may follow a column of them.
+Sample one_of_every_few(const PointCloud& cloud, std::size_t most) {
+  Sample sample;
+  RandomStream random(0, k_sampling_stage);
+  const std::size_t few = (cloud.size() + most - 1) / most;
+  for (std::size_t begin = 0; begin < cloud.size(); begin += few) {
+    const std::size_t i = begin + random.below(std::min(few, cloud.size() - begin));
+    sample.positions.push_back(cloud.positions[i]);
+    sample.normals.push_back(cloud.normals[i]);
+  }
+  return sample;
+}
+
+/// Lowers `nearest` to the distances from the primitives whose slope agrees with the normal.
+void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& primitives, double least_cosine,
+                  std::span<double> nearest) {
+  const double least_square = least_cosine * least_cosine;
+  for (const Primitive& primitive : primitives) {
+    const SampledField field = sample_field(primitive, positions);
+    // As agrees(), without roots and branches.
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const double gx = field.slopes.x[i];
+      const double gy = field.slopes.y[i];
+      const double gz = field.slopes.z[i];
+      const double dot = gx * normals.x[i] + gy * normals.y[i] + gz * normals.z[i];
+      const double square = gx * gx + gy * gy + gz * gz;
+      const bool is_along = (dot * dot >= least_square * square) & (square > 0);
+      const double distance = std::abs(field.distances[i]);
+      nearest[i] = (is_along & (distance < nearest[i])) ? distance : nearest[i];
+    }
+  }
+}
+
+}  // namespace
+
+double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, double angle_tolerance_deg,
+                      const RunContext& run) {
+  assert(cloud.has_normals());
+  const Sample sample = one_of_every_few(cloud, k_noise_sample);
+  std::vector<double> nearest(sample.positions.size(), std::numeric_limits<double>::infinity());
+  for_each_index((nearest.size() + k_noise_block - 1) / k_noise_block, run, [&](std::size_t block) {
+    const std::size_t begin = block * k_noise_block;
+    const std::size_t count = std::min(k_noise_block, nearest.size() - begin);
+    find_nearest(sample.positions.view().subview(begin, count), sample.normals.view().subview(begin, count), primitives,
+                 cosine_of_deg(angle_tolerance_deg), std::span(nearest).subspan(begin, count));
+  });
+  std::erase_if(nearest, [](double distance) { return !std::isfinite(distance); });
+  const AlignedBox box = bounds_of(sample.positions);
+  const double diagonal = box.isEmpty() ? 0.0 : box.diagonal().norm();
+  // Points all in one place have no scale; but it must not be zero, since others divide by it.
+  const double scale = diagonal > 0 ? diagonal : 1.0;
+  if (nearest.empty()) return k_noise_floor * scale;
+  const double with_outliers = robust_deviation(nearest);
+  std::erase_if(nearest, [&](double distance) { return distance > k_outlier_sigmas * with_outliers; });
+  return std::clamp(robust_deviation(nearest), k_noise_floor * scale, k_noise_ceiling * scale);
+}
+
+SegmentationTolerances segmentation_tolerances(const SegmentationOptions& options, double noise) {
+  return {.distance = options.distance_tolerance.value_or(k_sigmas * noise),
+          .cosine = cosine_of_deg(options.angle_tolerance_deg)};
+}
+
+Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primitives,
+                            const SegmentationTolerances& tolerances, const RunContext& run) {
+  assert(cloud.has_normals());
+  Segmentation result;
+  std::vector<bool> assigned(cloud.size(), false);
+  for (const Primitive& primitive : primitives) {
+    run.throw_if_stopped();
+    const SampledField field = sample_field(primitive, cloud.positions);
+    std::vector<std::uint32_t>& points = result.points_of.emplace_back();
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const bool is_near = std::abs(field.distances[i]) <= tolerances.distance;
+      if (!is_near || !agrees(field.slopes[i], cloud.normals[i], tolerances.cosine)) continue;
+      points.push_back(static_cast<std::uint32_t>(i));
+      assigned[i] = true;
+    }
+    run.report("segment", result.points_of.size(), primitives.size(), "primitives");
+  }
+  result.unassigned = static_cast<std::size_t>(std::ranges::count(assigned, false));
+  return result;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "cloud2csg/advanced/detect.hpp"
+#include "cloud2csg/error.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "raw/detect/connected.hpp"
+#include "raw/detect/grow.hpp"
+#include "raw/detect/propose.hpp"
+#include "raw/detect/settle.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::uint64_t k_propose_stage = 0x70726f70;
+constexpr std::uint64_t k_subset_stage = 0x73756273;
+
+/// The candidates that most points of a subset agree with, the best first.
+std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimits& limits, std::size_t draws,
+                                     std::uint64_t seed, std::uint64_t round, const RunContext& run) {
+  std::vector<std::vector<Surface>> proposed(draws);
+  for_each_index(draws, run, [&](std::size_t i) {
+    RandomStream random(seed, k_propose_stage, round, i);
+    proposed[i] = propose_surfaces(points, limits.agreement, random);
+  });
+  std::vector<Surface> candidates;
+  for (const auto& some : proposed) candidates.insert(candidates.end(), some.begin(), some.end());
+
+  constexpr std::size_t k_subset = 3000;
+  RandomStream random(seed, k_subset_stage, round);
+  const std::vector<OrientedPoint> subset = points.draw(k_subset, random);
+  std::vector<double> scores(candidates.size());
+  for_each_index(candidates.size(), run, [&](std::size_t i) {
+    scores[i] = preference(candidates[i].type) * support_of(candidates[i], subset, limits.agreement);
+  });
+  constexpr std::size_t k_best = 6;
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
+  std::vector<Surface> best;
+  for (std::size_t k = 0; k < std::min(k_best, order.size()); ++k) best.push_back(candidates[order[k]]);
+  return best;
+}
+
+std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimits& limits, std::size_t draws,
+                                     std::uint64_t seed, std::uint64_t round, const RunContext& run) {
+  const std::vector<Surface> candidates = best_candidates(points, limits, draws, seed, round, run);
+  std::vector<std::optional<GrownSurface>> grown(candidates.size());
+  for_each_index(candidates.size(), run,
+                 [&](std::size_t i) { grown[i] = grow_surface(candidates[i], points, limits); });
+  std::erase_if(grown, [](const auto& g) { return !g; });
+  if (grown.empty()) return std::nullopt;
+  const auto value = [](const std::optional<GrownSurface>& g) { return preference(g->surface.type) * g->support; };
+  const auto best =
+      std::max_element(grown.begin(), grown.end(), [&](const auto& a, const auto& b) { return value(a) < value(b); });
+  return with_simplest_type(with_widest_type(std::move(**best), points, limits), points, limits);
+}
+
+/// Takes one surface after the other, until many draws find none.
+std::vector<GrownSurface> find_all(const WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
+                                   const RunContext& run) {
+  constexpr std::size_t k_draws = 64;
+  constexpr std::size_t k_most_draws = 512;
+  FreePoints points(cloud);
+  std::vector<GrownSurface> found;
+  std::size_t draws = k_draws;
+  for (std::uint64_t round = 0; draws <= k_most_draws && points.list().size() >= limits.least_points; ++round) {
+    run.throw_if_stopped();
+    run.report("detect", cloud.size() - points.list().size(), cloud.size(), "points");
+    std::optional<GrownSurface> surface = find_one(points, limits, draws, seed, round, run);
+    draws = surface ? k_draws : 2 * draws;
+    if (!surface) continue;
+    points.take(surface->points);
+    found.push_back(std::move(*surface));
+  }
+  return found;
+}
+
+Surface in_the_cloud(Surface surface, const WorkCloud& work) {
+  surface.position = surface.position * work.diagonal + work.middle;
+  surface.radius *= work.diagonal;
+  surface.minor_radius *= work.diagonal;
+  return surface;
+}
+
+double rms_distance(const GrownSurface& grown, const WorkCloud& work) {
+  return with_agreement(grown.surface, [&](const auto& rule) {
+    double sum = 0;
+    for (const std::uint32_t i : grown.points) {
+      const double distance = rule(work.points[i].position, work.points[i].normal).distance;
+      sum += distance * distance;
+    }
+    return std::sqrt(sum / static_cast<double>(grown.points.size()));
+  });
+}
+
+/// What its points leave open of the axis, in degrees: a short piece of a pipe says little.
+double turn_of(const GrownSurface& grown, const WorkCloud& work) {
+  constexpr std::size_t k_points = 1000;  // of more, the axis is as sure as it need be
+  std::vector<Eigen::Vector3d> positions;
+  for (const OrientedPoint& p : work.some_of(grown.points, k_points)) positions.push_back(p.position);
+  const std::optional<SurfaceFit> fit = fit_surface(grown.surface, positions);
+  return fit ? fit->uncertainty.axis * 180 / std::numbers::pi : 0;
+}
+
+DetectedSurface detected(const GrownSurface& grown, const WorkCloud& work) {
+  DetectedSurface result{.surface = in_the_cloud(grown.surface, work),
+                         .points = {},
+                         .rms = rms_distance(grown, work) * work.diagonal,
+                         .turn_deg = turn_of(grown, work)};
+  result.points.reserve(grown.points.size());
+  for (const std::uint32_t i : grown.points) result.points.push_back(work.index[i]);
+  std::sort(result.points.begin(), result.points.end());
+  return result;
+}
+
+/// In a cloud of diagonal one: as an option says, or else what is flat.
+double most_radius_of(const DetectOptions& options, double diagonal) {
+  const double flat = AgreementLimits{.distance = 0, .cosine = 0}.most_radius;
+  return options.most_size ? std::min(flat, *options.most_size / diagonal) : flat;
+}
+
+/// Whether a surface is neither smaller nor larger than surfaces are to be. Those that are are found first, so that no
+/// others make up for them: no strips of planes for a small bore.
+bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const DetectOptions& options, double link) {
+  if (!options.least_size && !options.most_size) return true;
+  const SurfaceType type = grown.surface.type;
+  const bool has_radius = type == SurfaceType::sphere || type == SurfaceType::cylinder || type == SurfaceType::torus;
+  const double extent = work.extent_of(connected_groups(work.points, grown.points, link).front());
+  double least = extent;
+  double most = extent;
+  if (has_radius) {
+    least = std::min(least, type == SurfaceType::torus ? grown.surface.minor_radius : grown.surface.radius);
+    most = std::max(most, grown.surface.radius);
+  }
+  return least * work.diagonal >= options.least_size.value_or(0) &&
+         (!options.most_size || most * work.diagonal <= *options.most_size);
+}
+
+void require_positive(const char* field, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw Error({.file = {},
+               .where = field,
+               .expected = fmt::format("expected a finite number above 0, got {}", value),
+               .remedy = {}});
+}
+
+}  // namespace
+
+void validate(const DetectOptions& options) {
+  require_positive("angle_tolerance_deg", options.angle_tolerance_deg);
+  if (options.angle_tolerance_deg > 90) {
+    throw Error({.file = {},
+                 .where = "angle_tolerance_deg",
+                 .expected = fmt::format("expected at most 90 degrees, got {}", options.angle_tolerance_deg),
+                 .remedy = {}});
+  }
+  if (options.distance_tolerance) require_positive("distance_tolerance", *options.distance_tolerance);
+  if (options.least_size) require_positive("least_size", *options.least_size);
+  if (options.most_size) require_positive("most_size", *options.most_size);
+  if (options.least_size && options.most_size && *options.least_size > *options.most_size) {
+    throw Error({.file = {},
+                 .where = "least_size",
+                 .expected = fmt::format("expected no more than most_size, got {} and {}", *options.least_size,
+                                         *options.most_size),
+                 .remedy = {}});
+  }
+}
+
+std::size_t detection_least_points(const DetectOptions& options, std::size_t points) {
+  constexpr std::size_t k_least_points = 30;
+  constexpr std::size_t k_least_share = 2000;
+  return options.least_points.value_or(std::max(k_least_points, points / k_least_share));
+}
+
+double detection_tolerance(const DetectOptions& options, const Scale& scale) {
+  constexpr double k_noise_factor = 3;
+  constexpr double k_least_share = 0.0015;
+  return options.distance_tolerance.value_or(std::max(k_noise_factor * scale.noise, k_least_share * scale.diagonal));
+}
+
+Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const DetectOptions& options,
+                          const RunContext& run) {
+  validate(options);
+  const WorkCloud work = make_work_cloud(cloud);
+  const double tolerance = detection_tolerance(options, scale);
+  constexpr double k_link_in_spacings = 4;
+  const SearchLimits limits{.agreement = {.distance = tolerance / work.diagonal,
+                                          .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180),
+                                          .most_radius = most_radius_of(options, work.diagonal)},
+                            .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
+                            .least_points = detection_least_points(options, cloud.size())};
+
+  Detection result{.surfaces = {}, .unexplained = cloud.size(), .distance_tolerance = tolerance};
+  for (const GrownSurface& grown : settle_surfaces(find_all(work, limits, options.seed, run), work, limits, run)) {
+    if (!has_allowed_size(grown, work, options, limits.link)) continue;
+    result.surfaces.push_back(detected(grown, work));
+    result.unexplained -= grown.points.size();
+  }
+  run.report("detect", cloud.size(), cloud.size(), "points");
+  return result;
+}
+
+}  // namespace cloud2csg

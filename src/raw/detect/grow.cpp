@@ -1,0 +1,122 @@
+#include "raw/detect/grow.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "raw/detect/connected.hpp"
+#include "raw/detect/propose.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// So many points tell the surface of all.
+constexpr std::size_t k_sample = 400;
+
+std::vector<std::uint32_t> agreeing_of(const Surface& surface, const FreePoints& points,
+                                       const AgreementLimits& limits) {
+  return with_agreement(surface, [&](const auto& rule) {
+    std::vector<std::uint32_t> agreeing;
+    for (const std::uint32_t i : points.list()) {
+      const OrientedPoint& p = points[i];
+      if (limits.hold(rule(p.position, p.normal))) agreeing.push_back(i);
+    }
+    return agreeing;
+  });
+}
+
+/// The largest group of points that agree and hang together; empty when there are fewer than the least.
+std::vector<std::uint32_t> connected_points(const Surface& surface, const FreePoints& points,
+                                            const SearchLimits& limits) {
+  const std::vector<std::uint32_t> agreeing = agreeing_of(surface, points, limits.agreement);
+  if (agreeing.size() < limits.least_points) return {};
+  std::vector<std::uint32_t> largest =
+      std::move(connected_groups(points.cloud().points, agreeing, limits.link).front());
+  return largest.size() < limits.least_points ? std::vector<std::uint32_t>{} : largest;
+}
+
+double support_by(const std::vector<std::uint32_t>& indices, const Surface& surface, const FreePoints& points,
+                  const AgreementLimits& limits) {
+  return with_agreement(surface, [&](const auto& rule) {
+    double sum = 0;
+    for (const std::uint32_t i : indices) sum += limits.support(rule(points[i].position, points[i].normal));
+    return sum;
+  });
+}
+
+}  // namespace
+
+double preference(SurfaceType type) {
+  switch (type) {
+    case SurfaceType::plane:
+      return 1.0;
+    case SurfaceType::sphere:
+    case SurfaceType::cylinder:
+      return 0.97;
+    case SurfaceType::cone:
+      return 0.9;
+    case SurfaceType::torus:
+      return 0.85;
+  }
+  return 0;
+}
+
+std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints& points, const SearchLimits& limits) {
+  // Wide at first: a start from few points is not yet where it will be.
+  SearchLimits wide = limits;
+  wide.agreement.distance *= 1.5;
+  std::vector<std::uint32_t> seen = connected_points(start, points, wide);
+  GrownSurface best{.surface = start, .points = {}};
+  constexpr int k_rounds = 4;
+  for (int round = 0; round < k_rounds && !seen.empty(); ++round) {
+    const std::optional<Surface> fitted =
+        fit_plausible(best.surface, points.cloud().some_of(seen, k_sample), limits.agreement);
+    if (!fitted) break;
+    seen = connected_points(*fitted, points, limits);
+    const double support = support_by(seen, *fitted, points, limits.agreement);
+    if (support <= best.support) break;
+    best = {.surface = *fitted, .points = seen, .support = support};
+  }
+  return best.points.empty() ? std::nullopt : std::optional(std::move(best));
+}
+
+GrownSurface with_widest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
+  constexpr std::array k_most_flexible{SurfaceType::cone, SurfaceType::torus};
+  if (grown.surface.type == SurfaceType::plane) return grown;
+  // Beyond the points that it has: these lie on it as well as they can, and hide what it should be.
+  SearchLimits wide = limits;
+  wide.agreement.distance *= 4;
+  const std::vector<OrientedPoint> around =
+      points.cloud().some_of(connected_points(grown.surface, points, wide), k_sample);
+  const auto value = [](const Surface& surface, double support) { return preference(surface.type) * support; };
+  for (const SurfaceType type : k_most_flexible) {
+    if (preference(type) >= preference(grown.surface.type)) continue;
+    const std::optional<Surface> other = estimate_plausible(type, around, limits.agreement);
+    if (!other || value(*other, support_of(*other, around, limits.agreement)) <=
+                      value(grown.surface, support_of(grown.surface, around, limits.agreement))) {
+      continue;
+    }
+    std::optional<GrownSurface> result = grow_surface(*other, points, limits);
+    if (result && value(result->surface, result->support) > value(grown.surface, grown.support)) {
+      grown = std::move(*result);
+    }
+  }
+  return grown;
+}
+
+GrownSurface with_simplest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
+  constexpr std::array k_simplest_first{SurfaceType::plane, SurfaceType::sphere, SurfaceType::cylinder,
+                                        SurfaceType::cone};
+  constexpr double k_nearly = 0.95;
+  const std::vector<OrientedPoint> sample = points.cloud().some_of(grown.points, k_sample);
+  const double support = support_of(grown.surface, sample, limits.agreement);
+  for (const SurfaceType type : k_simplest_first) {
+    if (preference(type) <= preference(grown.surface.type)) break;
+    const std::optional<Surface> simpler = estimate_plausible(type, sample, limits.agreement);
+    if (!simpler || support_of(*simpler, sample, limits.agreement) < k_nearly * support) continue;
+    std::optional<GrownSurface> result = grow_surface(*simpler, points, limits);
+    if (result && result->support >= k_nearly * grown.support) return std::move(*result);
+  }
+  return grown;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "cloud2csg/advanced/normals.hpp"
+#include "cloud2csg/advanced/winding_number.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "raw/prepare/local_fit.hpp"
+#include "raw/prepare/neighbours.hpp"
+#include "raw/prepare/orient_fits.hpp"
+#include "raw/prepare/orientation.hpp"
+#include "raw/prepare/patches.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t k_doubt_links = 12;
+constexpr double k_check_angle_deg = 35.0;
+constexpr double k_check_agreement = 0.8;
+constexpr std::size_t k_check_sample = 2048;
+constexpr std::size_t k_check_field = 16'384;            ///< points whose winding numbers tell inside from outside
+constexpr std::uint64_t k_field_stage = 0x6669'656c'64;  // names its stream of random numbers
+constexpr double k_inward_level = -0.2;                  ///< of winding numbers on the surface
+constexpr double k_wall_cosine = 0.7;                    ///< between normals on the two sides of a wall, at least
+constexpr double k_wall_rise = 0.35;                     ///< sine of the way across it, at least
+constexpr std::uint64_t k_check_stage = 0x6e6f'726d;     // names its stream of random numbers
+
+/// Whether most neighbours have a normal on the same side. Those across a thin wall, which are beside the point in the
+/// direction of its normal and have the opposite one, say nothing.
+bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::size_t i,
+                            std::span<const std::uint32_t> near) {
+  double votes = 0.0;
+  for (const std::uint32_t j : near) {
+    const double cosine = cloud.normals[i].dot(cloud.normals[j]);
+    const Eigen::Vector3d step = places[j] - places[i];
+    const bool is_across = cosine < -k_wall_cosine && std::abs(step.dot(cloud.normals[i])) > k_wall_rise * step.norm();
+    if (!is_across) votes += cosine > 0.0 ? 1.0 : -1.0;
+  }
+  return votes >= 0.0;
+}
+
+/// Whether most of a point's neighbours agree with its normal.
+double mean_agreement(const Points& places, const Points& normals, std::size_t i,
+                      std::span<const std::uint32_t> neighbours) {
+  double sum = 0.0;
+  double weight = 0.0;
+  for (const std::uint32_t j : neighbours) {
+    const double vote = agreement(places[j] - places[i], normals[i], normals[j]);
+    sum += vote * std::abs(vote);
+    weight += vote * vote;
+  }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
+/// Points whose neighbours or, without sensors, winding number contradict; the place of the one in their middle.
+void count_doubtful(EstimatedNormals& result, const Points& places, const Points& normals,
+                    const NeighbourTable& neighbours, const std::vector<char>& is_doubtful) {
+  std::vector<std::uint32_t> doubtful;
+  for (std::uint32_t i = 0; i < places.size(); ++i) {
+    const std::span<const std::uint32_t> near = neighbours.of(i).first(std::min(k_doubt_links, neighbours.width));
+    const bool is_contradicted = !is_doubtful.empty() && is_doubtful[i] != 0;
+    if (is_contradicted || mean_agreement(places, normals, i, near) < 0.0) doubtful.push_back(i);
+  }
+  result.doubtful = doubtful.size();
+  if (!doubtful.empty()) result.doubtful_at = places[doubtful[doubtful.size() / 2]];
+}
+
+/// Sensors know the side; without them the whole of the cloud tells.
+Orientation orientation_of(const PointCloud& cloud, const LocalFits& fits, const Points& places, const Points& normals,
+                           const Scale& scale, const RunContext& run, const StageShare& share) {
+  if (!cloud.has_sensor_positions()) {
+    const std::vector<double> areas = surface_areas(places, normals, fits.neighbours, scale.noise);
+    return find_orientation(places, normals, fits.neighbours, areas, scale.noise, run, share);
+  }
+  Points sensors(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) sensors.set(i, cloud.sensor_positions[fits.order[i]] - fits.centre);
+  return {.flipped = orient_to_sensors(places, normals, sensors, fits.neighbours, run, share)};
+}
+
+/// One point of every few, which one by chance: scans come in rows.
+std::vector<std::uint32_t> sample_of(std::size_t count, std::size_t wanted) {
+  RandomStream random(0, k_field_stage);
+  const std::size_t few = (count + wanted - 1) / wanted;
+  std::vector<std::uint32_t> sample;
+  for (std::size_t begin = 0; begin < count; begin += few) {
+    sample.push_back(static_cast<std::uint32_t>(begin + random.below(std::min(few, count - begin))));
+  }
+  return sample;
+}
+
+/// Whether most of the normals at these points look away from their sensors.
+bool look_away(const PointCloud& cloud, std::span<const std::uint32_t> points) {
+  double sum = 0.0;
+  for (const std::uint32_t i : points) {
+    sum += cloud.normals[i].dot((cloud.sensor_positions[i] - cloud.positions[i]).stableNormalized());
+  }
+  return sum < 0.0;
+}
+
+}  // namespace
+
+EstimatedNormals orient_fits(const PointCloud& cloud, const LocalFits& fits, const Scale& scale, const RunContext& run,
+                             const StageShare& share) {
+  EstimatedNormals result{.normals = Points(cloud.size())};
+  Points normals(cloud.size());
+  Points places(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    normals.set(i, fits.planes[i].normal);
+    places.set(i, fits.points[i] - fits.planes[i].offset * fits.planes[i].normal);
+  }
+  const Orientation orientation = orientation_of(cloud, fits, places, normals, scale, run, share.part(0, 0.9));
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (orientation.flipped[i] != 0) normals.set(i, -normals[i]);
+  }
+  result.bodies = orientation.bodies;
+  count_doubtful(result, places, normals, fits.neighbours, orientation.is_doubtful);
+  result.doubtful_at += fits.centre;
+  for (std::size_t i = 0; i < cloud.size(); ++i) result.normals.set(fits.order[i], normals[i]);
+  share.report(run, 1);
+  return result;
+}
+
+EstimatedNormals estimate_normals(const PointCloud& cloud, const Scale& scale, const RunContext& run) {
+  const StageShare share("normals", cloud.size(), "points");
+  const LocalFits fits = fit_locally(cloud, plane_neighbours(scale), scale.noise, run, share.part(0, 0.6));
+  return orient_fits(cloud, fits, scale, run, share.part(0.6, 1));
+}
+
+NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const RunContext& run) {
+  assert(cloud.normals.size() == cloud.size());
+  const CentredPoints local = centred(cloud.positions);
+  const NeighbourTree tree(local.points);
+  RandomStream random(0, k_check_stage);
+  const std::size_t width = std::min(plane_neighbours(scale) + 1, cloud.size());
+  std::vector<std::uint32_t> indices(width);
+  std::vector<double> squares(width);
+  std::size_t across = 0;
+  std::size_t alike = 0;
+  const std::size_t checked = std::min(k_check_sample, cloud.size());
+  std::vector<std::uint32_t> sample(checked);
+  for (std::uint32_t& i : sample) {
+    i = random.below(cloud.size());
+    const std::size_t found = tree.find(local.points[i], indices, squares);
+    const std::span<const std::uint32_t> near = std::span(indices).first(found).subspan(1);
+    const double tolerance = std::max(3.0 * scale.noise, 0.05 * std::sqrt(squares[found - 1]));
+    const LocalPlane plane = fit_local_plane(local.points, i, near, tolerance);
+    const double cosine = std::abs(plane.normal.dot(cloud.normals[i]));
+    across += cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0) ? 1 : 0;
+    alike += agrees_with_neighbours(cloud, local.points, i, near) ? 1 : 0;
+  }
+  run.throw_if_stopped();
+  const auto count = static_cast<double>(checked);
+  const bool is_across = static_cast<double>(across) >= k_check_agreement * count;
+  const bool is_alike = static_cast<double>(alike) >= k_check_agreement * count;
+  if (!is_across || !is_alike) return NormalsVerdict::unoriented;
+  if (cloud.has_sensor_positions()) {
+    return look_away(cloud, sample) ? NormalsVerdict::inward : NormalsVerdict::outward;
+  }
+  const std::vector<double> levels = winding_numbers(select_points(cloud, sample_of(cloud.size(), k_check_field)),
+                                                     select_points(cloud, sample).positions, run);
+  // Half a turn less in the middle of the surface, where it closes; about none for a sheet, whose sides are alike.
+  const double mean = std::accumulate(levels.begin(), levels.end(), 0.0) / count;
+  return mean < k_inward_level ? NormalsVerdict::inward : NormalsVerdict::outward;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,155 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "cloud2csg/advanced/scale.hpp"
+#include "cloud2csg/error.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "raw/prepare/local_fit.hpp"
+#include "raw/prepare/neighbours.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t k_least_points = 10;
+constexpr std::size_t k_sample = 512;
+constexpr std::size_t k_sample_chunk = 64;
+constexpr std::size_t k_spacing_neighbours = 8;
+constexpr std::array<std::size_t, 5> k_sizes{24, 48, 96, 192,
+                                             384};  ///< of the neighbourhoods that quadrics are fitted to
+/// A neighbourhood smaller than so many deviations is a ball of noise: what looks like its plane is chance.
+constexpr double k_least_radius = 5.0;
+/// Radii of equally many neighbours, the wide over the narrow: without outliers they differ less.
+constexpr double k_uneven_density = 1.45;
+/// Of the sample's deviations: edges and details are above.
+constexpr double k_smooth_share = 0.35;
+/// Points beyond these shares along an axis count only when others are near.
+constexpr double k_core_share = 0.005;
+constexpr double k_stray_spacings = 6.0;
+constexpr std::size_t k_stray_neighbours = 4;
+constexpr std::uint64_t k_sampling_stage = 0x7363'616c'65;  // names its stream of random numbers
+
+double quantile(std::vector<double> values, double share) {
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+/// One point out of every few, which one by chance: scans come in rows, and a fixed step may follow a column of them.
+std::vector<std::uint32_t> sample_of(std::size_t count) {
+  std::vector<std::uint32_t> sample;
+  RandomStream random(0, k_sampling_stage);
+  const std::size_t few = (count + k_sample - 1) / k_sample;
+  for (std::size_t begin = 0; begin < count; begin += few) {
+    sample.push_back(static_cast<std::uint32_t>(begin + random.below(std::min(few, count - begin))));
+  }
+  return sample;
+}
+
+/// What the neighbourhoods of a sample of points look like.
+struct Neighbourhoods {
+  std::vector<double> spacings;
+  std::vector<double> radii;
+  std::vector<double> deviations;
+};
+
+Neighbourhoods measure(const Points& points, const NeighbourTree& tree, std::span<const std::uint32_t> sample,
+                       std::size_t size, const RunContext& run) {
+  Neighbourhoods result;
+  for (std::vector<double>* values : {&result.spacings, &result.radii, &result.deviations}) {
+    values->resize(sample.size());
+  }
+  for_each_index((sample.size() + k_sample_chunk - 1) / k_sample_chunk, run, [&](std::size_t chunk) {
+    std::vector<std::uint32_t> indices(std::min(size, points.size()));
+    std::vector<double> squares(indices.size());
+    const std::size_t end = std::min(sample.size(), (chunk + 1) * k_sample_chunk);
+    for (std::size_t s = chunk * k_sample_chunk; s < end; ++s) {
+      tree.find(points[sample[s]], indices, squares);
+      const std::size_t near = std::min(k_spacing_neighbours, indices.size() - 1);
+      result.spacings[s] = std::sqrt(std::numbers::pi * squares[near] / static_cast<double>(near));
+      result.radii[s] = std::sqrt(squares.back());
+      result.deviations[s] = indices.size() < 12 ? 0.0 : quadric_deviation(points, indices);
+    }
+  });
+  return result;
+}
+
+/// The deviations of the sample; where density is very uneven, of its denser half: outliers, be they as many as points,
+/// are mostly elsewhere.
+std::vector<double> credible_deviations(const Neighbourhoods& found) {
+  if (quantile(found.radii, 0.8) < k_uneven_density * quantile(found.radii, 0.2)) return found.deviations;
+  const double limit = quantile(found.radii, 0.5);
+  std::vector<double> deviations;
+  for (std::size_t s = 0; s < found.radii.size(); ++s) {
+    if (found.radii[s] <= limit) deviations.push_back(found.deviations[s]);
+  }
+  return deviations;
+}
+
+/// From neighbourhoods as small as the noise allows: larger ones have more edges, and take longer.
+void measure_spacing_and_noise(Scale& scale, const Points& points, const NeighbourTree& tree, const RunContext& run) {
+  const std::vector<std::uint32_t> sample = sample_of(points.size());
+  for (const std::size_t size : k_sizes) {
+    if (size > k_sizes.front() && size > points.size() / 4) break;
+    const Neighbourhoods found = measure(points, tree, sample, size, run);
+    if (size == k_sizes.front()) scale.spacing = quantile(found.spacings, 0.5);
+    scale.noise = quantile(credible_deviations(found), k_smooth_share);
+    if (quantile(found.radii, 0.5) >= k_least_radius * scale.noise) break;
+  }
+}
+
+AlignedBox box_without_strays(const Points& points, const NeighbourTree& tree, double spacing) {
+  Vector3d low;
+  Vector3d high;
+  const std::array<const std::vector<double>*, 3> axes{&points.x, &points.y, &points.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = quantile(*axes[static_cast<std::size_t>(axis)], k_core_share);
+    high[axis] = quantile(*axes[static_cast<std::size_t>(axis)], 1.0 - k_core_share);
+  }
+  AlignedBox box(low, high);
+  const AlignedBox core = box;
+  std::array<std::uint32_t, k_stray_neighbours + 1> indices{};
+  std::array<double, k_stray_neighbours + 1> squares{};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (core.contains(points[i])) continue;
+    const std::size_t found = tree.find(points[i], indices, squares);
+    if (std::sqrt(squares[found - 1]) <= k_stray_spacings * spacing) box.extend(points[i]);
+  }
+  return box;
+}
+
+}  // namespace
+
+Scale estimate_scale(const PointCloud& cloud, const RunContext& run) {
+  if (cloud.size() < k_least_points) {
+    throw Error({.file = {},
+                 .where = "cloud",
+                 .expected = fmt::format("expected at least {} points, found {}", k_least_points, cloud.size()),
+                 .remedy = {}});
+  }
+  const CentredPoints local = centred(cloud.positions);
+  const NeighbourTree tree(local.points);
+  run.throw_if_stopped();
+  Scale scale;
+  measure_spacing_and_noise(scale, local.points, tree, run);
+  scale.box = box_without_strays(local.points, tree, scale.spacing);
+  scale.diagonal = scale.box.diagonal().norm();
+  scale.box.translate(local.centre);
+  if (!(scale.diagonal > 0.0) || !(scale.spacing > 0.0)) {
+    throw Error({.file = {},
+                 .where = "cloud",
+                 .expected = "expected points at different places, found most of them at the same",
+                 .remedy = "leave out repeated points"});
+  }
+  return scale;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,236 @@
+#include "raw/prepare/orientation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "core/base/parallel.hpp"
+#include "raw/prepare/patch_signs.hpp"
+#include "raw/prepare/patches.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t k_links = 12;  ///< neighbours that a point votes with
+/// Patches: small beside what a part has of details, and few enough for all pairs of them.
+constexpr std::size_t k_wanted_patches = 2000;
+constexpr std::size_t k_least_patch = 5;
+constexpr std::size_t k_smallest_largest_patch = 16;
+constexpr std::size_t k_most_patches = 4096;
+/// Beyond so many radii the middle of a patch stands for it.
+constexpr double k_far = 3.0;
+/// Of the points: a body of less is not counted.
+constexpr double k_body_share = 0.002;
+/// A winding number that is this far from one half contradicts the orientation.
+constexpr double k_doubt = 0.35;
+constexpr int k_spreads = 8;
+constexpr int k_sweeps = 3;
+
+/// Everything that the steps share.
+struct Cloud {
+  const Points& places;
+  const Points& normals;
+  const NeighbourTable& neighbours;
+  const std::vector<double>& areas;
+
+  [[nodiscard]] std::size_t size() const { return places.size(); }
+  [[nodiscard]] std::span<const std::uint32_t> linked(std::size_t i) const {
+    return neighbours.of(i).first(std::min(k_links, neighbours.width));
+  }
+  /// Cubed: sure votes count for more than many vague ones.
+  [[nodiscard]] double vote(std::size_t i, std::size_t j) const {
+    const double vote = agreement(places[j] - places[i], normals[i], normals[j]);
+    return vote * vote * vote;
+  }
+};
+
+std::vector<PatchVote> votes_between(const Cloud& cloud, const Patches& patches) {
+  std::vector<PatchVote> links;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const std::uint32_t own = patches.of_point[i];
+    if (own == Patches::k_none) continue;
+    for (const std::uint32_t j : cloud.linked(i)) {
+      const std::uint32_t other = patches.of_point[j];
+      if (other == Patches::k_none || other == own) continue;
+      const double vote = cloud.vote(i, j) * (patches.flipped[i] == patches.flipped[j] ? 1.0 : -1.0);
+      links.push_back({std::min(own, other), std::max(own, other), vote});
+    }
+  }
+  const auto key = [](const PatchVote& vote) { return std::pair(vote.one, vote.other); };
+  std::stable_sort(links.begin(), links.end(), [&](const PatchVote& a, const PatchVote& b) { return key(a) < key(b); });
+  std::vector<PatchVote> sums;
+  for (const PatchVote& link : links) {
+    if (!sums.empty() && key(sums.back()) == key(link)) {
+      sums.back().votes += link.votes;
+    } else {
+      sums.push_back(link);
+    }
+  }
+  return sums;
+}
+
+struct Dipole {
+  Vector3d place;
+  Vector3d strength;  ///< normal x area / 4 pi
+  double smoothing;   ///< square of the radius of its disc
+
+  [[nodiscard]] double at(const Vector3d& where) const {
+    const Vector3d to = place - where;
+    const double square = std::max(to.squaredNorm(), smoothing);
+    return square > 0.0 ? strength.dot(to) / (square * std::sqrt(square)) : 0.0;
+  }
+};
+
+/// The dipoles of a patch, and one that stands for all of them from afar.
+struct PatchSource {
+  std::vector<Dipole> dipoles;
+  Dipole all = {Vector3d::Zero(), Vector3d::Zero(), 0.0};
+  double near_square = 0.0;
+
+  [[nodiscard]] double at(const Vector3d& where) const {
+    if ((where - all.place).squaredNorm() > near_square) return all.at(where);
+    double sum = 0.0;
+    for (const Dipole& dipole : dipoles) sum += dipole.at(where);
+    return sum;
+  }
+};
+
+PatchSource source_of(const Cloud& cloud, const Patches& patches, std::span<const std::uint32_t> points) {
+  PatchSource source;
+  for (const std::uint32_t i : points) {
+    const double sign = patches.flipped[i] != 0 ? -1.0 : 1.0;
+    source.dipoles.push_back({cloud.places[i], sign * cloud.areas[i] / (4.0 * std::numbers::pi) * cloud.normals[i],
+                              cloud.areas[i] / std::numbers::pi});
+    source.all.place += cloud.places[i] / static_cast<double>(points.size());
+    source.all.strength += source.dipoles.back().strength;
+  }
+  for (const Dipole& dipole : source.dipoles) {
+    source.near_square = std::max(source.near_square, k_far * k_far * (dipole.place - source.all.place).squaredNorm());
+  }
+  return source;
+}
+
+/// The field of each patch at the middles of all. Its own is none: it lies in its plane.
+PatchFields fields_of(const Cloud& cloud, const Patches& patches, const RunContext& run, const StageShare& share) {
+  std::vector<PatchSource> sources;
+  for (const std::vector<std::uint32_t>& points : patches.points) {
+    sources.push_back(source_of(cloud, patches, points));
+  }
+  const std::size_t count = sources.size();
+  PatchFields fields{.count = count, .values = std::vector<float>(count * count, 0.0F)};
+  for_each_index_by_chunks(count, 1, run, share, [&](std::size_t source) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i != source) fields.values[source * count + i] = static_cast<float>(sources[source].at(sources[i].all.place));
+    }
+  });
+  return fields;
+}
+
+/// The patches with the most points, if there are more than pairs can be made of.
+Patches largest_of(Patches patches) {
+  if (patches.points.size() <= k_most_patches) return patches;
+  std::stable_sort(patches.points.begin(), patches.points.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  patches.points.resize(k_most_patches);
+  std::fill(patches.of_point.begin(), patches.of_point.end(), Patches::k_none);
+  for (std::uint32_t patch = 0; patch < patches.points.size(); ++patch) {
+    for (const std::uint32_t i : patches.points[patch]) patches.of_point[i] = patch;
+  }
+  return patches;
+}
+
+double neighbours_votes(const Cloud& cloud, std::uint32_t i, const std::vector<char>& flipped,
+                        const std::vector<char>& is_known) {
+  double votes = 0.0;
+  for (const std::uint32_t j : cloud.linked(i)) {
+    if (is_known[j] != 0) votes += cloud.vote(i, j) * (flipped[i] == flipped[j] ? 1.0 : -1.0);
+  }
+  return votes;
+}
+
+/// Points that are in no patch follow their neighbours, the next ones first.
+void spread(const Cloud& cloud, std::vector<char>& flipped, std::vector<char>& is_known) {
+  for (int round = 0; round < k_spreads; ++round) {
+    std::vector<char> next = flipped;
+    std::vector<char> known_next = is_known;
+    for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+      if (is_known[i] != 0) continue;
+      const double votes = neighbours_votes(cloud, i, flipped, is_known);
+      if (votes == 0.0) continue;
+      if (votes < 0.0) next[i] ^= 1;
+      known_next[i] = 1;
+    }
+    if (known_next == is_known) return;
+    flipped = std::move(next);
+    is_known = std::move(known_next);
+  }
+}
+
+/// Points whose neighbours outvote them turn; single ones at edges, where the local plane was none.
+void sweep(const Cloud& cloud, std::vector<char>& flipped) {
+  const std::vector<char> all(cloud.size(), 1);
+  for (int round = 0; round < k_sweeps; ++round) {
+    std::vector<char> next = flipped;
+    for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+      if (neighbours_votes(cloud, i, flipped, all) < 0.0) next[i] ^= 1;
+    }
+    if (next == flipped) return;
+    flipped = std::move(next);
+  }
+}
+
+std::size_t count_bodies(const Patches& patches, const PatchSigns& signs, std::size_t points) {
+  std::map<std::uint32_t, std::size_t> sizes;
+  for (std::size_t patch = 0; patch < patches.points.size(); ++patch) {
+    sizes[signs.body_of[patch]] += patches.points[patch].size();
+  }
+  const double least = k_body_share * static_cast<double>(points);
+  return static_cast<std::size_t>(std::count_if(
+      sizes.begin(), sizes.end(), [&](const auto& body) { return static_cast<double>(body.second) >= least; }));
+}
+
+}  // namespace
+
+double agreement(const Vector3d& step, const Vector3d& normal, const Vector3d& other_normal) {
+  const double square = step.squaredNorm();
+  const double cosine = normal.dot(other_normal);
+  if (!(square > 0.0)) return cosine;
+  return cosine - 2.0 * normal.dot(step) * other_normal.dot(step) / square;
+}
+
+Orientation find_orientation(const Points& places, const Points& normals, const NeighbourTable& neighbours,
+                             const std::vector<double>& areas, double noise, const RunContext& run,
+                             const StageShare& share) {
+  const Cloud cloud{places, normals, neighbours, areas};
+  const std::size_t most = std::max(k_smallest_largest_patch, cloud.size() / k_wanted_patches);
+  const Patches patches = largest_of(grow_patches(places, normals, neighbours, noise, k_least_patch, most));
+  run.throw_if_stopped();
+  std::vector<double> weights;
+  for (const std::vector<std::uint32_t>& points : patches.points) {
+    weights.push_back(static_cast<double>(points.size()));
+  }
+  const PatchSigns signs =
+      find_patch_signs(fields_of(cloud, patches, run, share), weights, votes_between(cloud, patches), run);
+  Orientation result{.flipped = patches.flipped,
+                     .is_doubtful = std::vector<char>(cloud.size(), 0),
+                     .bodies = count_bodies(patches, signs, cloud.size())};
+  std::vector<char> is_known(cloud.size(), 0);
+  for (std::size_t patch = 0; patch < patches.points.size(); ++patch) {
+    const bool is_doubtful = std::abs(signs.windings[patch] - 0.5) > k_doubt;
+    for (const std::uint32_t i : patches.points[patch]) {
+      result.flipped[i] ^= signs.flipped[patch];
+      result.is_doubtful[i] = is_doubtful ? 1 : 0;
+      is_known[i] = 1;
+    }
+  }
+  spread(cloud, result.flipped, is_known);
+  sweep(cloud, result.flipped);
+  return result;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "cloud2csg/advanced/prepare.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/geometry/place_text.hpp"
+#include "raw/prepare/orient_fits.hpp"
+#include "raw/prepare/outliers.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// Of the diagonal: more noise than this hides details that a part usually has.
+constexpr double k_much_noise = 0.01;
+constexpr double k_many_outliers = 0.01;
+constexpr double k_much_doubt = 0.01;
+
+void warn_of_cleaning(PreparedCloud& prepared, std::size_t points) {
+  const CleanReport& report = prepared.cleaning;
+  const std::size_t outliers = report.isolated + report.off_surface;
+  if (static_cast<double>(outliers) > k_many_outliers * static_cast<double>(points)) {
+    prepared.warnings.push_back(fmt::format("{} of {} points are outliers and are left out.", outliers, points));
+  }
+  if (prepared.scale.noise > k_much_noise * prepared.scale.diagonal) {
+    prepared.warnings.push_back(
+        fmt::format("The noise is {:.2g} % of the cloud's diagonal: details below {:.3g} are lost.",
+                    100.0 * prepared.scale.noise / prepared.scale.diagonal, 6.0 * prepared.scale.noise));
+  }
+}
+
+void turn(Points& normals) {
+  for (std::vector<double>* axis : {&normals.x, &normals.y, &normals.z}) {
+    for (double& value : *axis) value = -value;
+  }
+}
+
+/// Keeps the normals when they are good. @returns whether they are.
+bool keep_given_normals(PreparedCloud& prepared, const RunContext& run) {
+  switch (check_normals(prepared.cloud, prepared.scale, run)) {
+    case NormalsVerdict::outward:
+      return true;
+    case NormalsVerdict::inward:
+      turn(prepared.cloud.normals);
+      prepared.warnings.emplace_back("The normals lead into the solid. They were turned.");
+      return true;
+    case NormalsVerdict::unoriented:
+      prepared.warnings.emplace_back("The normals contradict the surface or each other. They were estimated anew.");
+      return false;
+  }
+  return false;
+}
+
+void warn_of_normals(PreparedCloud& prepared, const EstimatedNormals& estimated) {
+  prepared.normals_estimated = true;
+  const std::size_t points = prepared.cloud.size();
+  if (static_cast<double>(estimated.doubtful) > k_much_doubt * static_cast<double>(points)) {
+    prepared.warnings.push_back(
+        fmt::format("The orientation of the normals is doubtful for {:.3g} % of the points, near {}: give sensor "
+                    "positions or normals if there are any.",
+                    100.0 * static_cast<double>(estimated.doubtful) / static_cast<double>(points),
+                    place_text(estimated.doubtful_at, prepared.scale.diagonal)));
+  }
+}
+
+/// Whether leaving out so many points changes how the rest looks.
+bool is_much(std::size_t left_out, std::size_t points) {
+  return static_cast<double>(left_out) >= k_settled * static_cast<double>(points);
+}
+
+bool has_duplicates(const LocalFits& fits) {
+  for (std::size_t i = 0; i < fits.points.size(); ++i) {
+    const std::span<const float> distances = fits.neighbours.distances_of(i);
+    if (!distances.empty() && distances.front() == 0.0F) return true;
+  }
+  return false;
+}
+
+/// Of most clouds cleaning leaves out nothing, or nearly so: then the planes by which it judged are those of the
+/// normals, too. @returns whether it is so, and the cloud is prepared.
+bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options, PreparedCloud& prepared,
+                         Stopwatch& watch, const RunContext& run) {
+  if (!options.clean.remove_outliers || cloud.size() > options.clean.point_budget) return false;
+  // Where this does not do, cleaning begins anew: it counts as the first of its passes.
+  const StageShare cleaning("clean", cloud.size(), "points");
+  const StageShare trial = cleaning.part(0, 0.25);
+  const LocalFits fits =
+      fit_locally(cloud, plane_neighbours(prepared.scale), prepared.scale.noise, run, trial.part(0, 0.9));
+  if (has_duplicates(fits)) return false;
+  const std::vector<Verdict> verdicts =
+      judge_points(fits, prepared.scale, Strictness::trusting, run, trial.part(0.9, 1));
+  std::vector<std::uint32_t> kept;
+  CleanReport report;
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    if (verdicts[i] == Verdict::stays) kept.push_back(fits.order[i]);
+    report.isolated += verdicts[i] == Verdict::isolated ? 1 : 0;
+    report.off_surface += verdicts[i] == Verdict::off_surface ? 1 : 0;
+  }
+  if (is_much(cloud.size() - kept.size(), cloud.size())) return false;
+  cleaning.report(run, 1);
+  prepared.clean_seconds = watch.lap();
+  std::sort(kept.begin(), kept.end());
+  EstimatedNormals estimated =
+      orient_fits(cloud, fits, prepared.scale, run, StageShare("normals", cloud.size(), "points"));
+  PointCloud oriented = cloud;
+  oriented.normals = std::move(estimated.normals);
+  prepared.normals_seconds = watch.lap();
+  prepared.cloud = select_points(oriented, kept);
+  prepared.cleaning = report;
+  warn_of_cleaning(prepared, cloud.size());
+  warn_of_normals(prepared, estimated);
+  return true;
+}
+
+}  // namespace
+
+PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& options, const RunContext& run) {
+  Stopwatch watch;
+  PreparedCloud prepared{.cloud = {}, .scale = estimate_scale(cloud, run), .cleaning = {}};
+  if (options.is_exact) {
+    prepared.cloud = cloud;
+    prepared.scale.noise = 0;
+    return prepared;
+  }
+  const bool has_given_normals = options.keep_normals && cloud.has_normals();
+  if (!has_given_normals && prepare_clean_cloud(cloud, options, prepared, watch, run)) return prepared;
+  CleanCloud clean = clean_cloud(cloud, prepared.scale, options.clean, run);
+  prepared.cloud = std::move(clean.cloud);
+  prepared.cleaning = clean.report;
+  // Outliers and repeated points are gone: now it is right.
+  if (is_much(cloud.size() - prepared.cloud.size(), cloud.size())) prepared.scale = estimate_scale(prepared.cloud, run);
+  warn_of_cleaning(prepared, cloud.size());
+  prepared.clean_seconds = watch.lap();
+  const bool are_good = has_given_normals && keep_given_normals(prepared, run);
+  prepared.normals_seconds = watch.seconds();
+  if (are_good) return prepared;
+  EstimatedNormals estimated = estimate_normals(prepared.cloud, prepared.scale, run);
+  prepared.cloud.normals = std::move(estimated.normals);
+  prepared.normals_seconds = watch.seconds();
+  warn_of_normals(prepared, estimated);
+  return prepared;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "cloud2csg/advanced/solids.hpp"
+#include "cloud2csg/error.hpp"
+#include "raw/solids/given_values.hpp"
+#include "raw/solids/list_search.hpp"
+#include "raw/solids/surfaces_of_known.hpp"
+#include "raw/solids/write_solids.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr double k_least_tolerance = 1e-3;  // of the diagonal
+constexpr double k_tolerance_sigmas = 2;
+
+void require_positive(const std::string& field, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw Error({.file = {},
+               .where = field,
+               .expected = fmt::format("expected a finite number above 0, got {}", value),
+               .remedy = {}});
+}
+
+/// The noise that was given, or else the root mean square of the residuals.
+double noise_of(std::span<const DetectedSurface> surfaces, std::span<const KnownSolid> known,
+                const SolidOptions& options) {
+  if (options.places.noise) return *options.places.noise;
+  double squares = 0;
+  double points = 0;
+  const auto add = [&](std::size_t count, double rms) {
+    squares += static_cast<double>(count) * rms * rms;
+    points += static_cast<double>(count);
+  };
+  for (const DetectedSurface& detected : surfaces) add(detected.points.size(), detected.rms);
+  for (const KnownSolid& solid : known) add(solid.own.points.size(), solid.own.rms);
+  return points > 0 ? std::sqrt(squares / points) : 0.0;
+}
+
+/// The tolerance in force.
+double tolerance_of(const PointCloud& cloud, const SolidOptions& options, double noise) {
+  return options.regularity.distance_tolerance.value_or(
+      std::max(k_tolerance_sigmas * noise, k_least_tolerance * bounds_of(cloud.positions).diagonal().norm()));
+}
+
+/// Gives the found surfaces the values that are given and, beside those of known solids, makes all regular.
+GivenSurfaces made_regular(const PointCloud& cloud, std::span<const DetectedSurface> found,
+                           std::span<const DetectedSurface> of_known, const RegularityOptions& options,
+                           double tolerance) {
+  GivenSurfaces result = take_given_values(cloud, found, options, options.given_tolerance.value_or(tolerance));
+  if (!options.snap) return result;
+  std::vector<DetectedSurface> all = result.surfaces;
+  all.insert(all.end(), of_known.begin(), of_known.end());
+  std::vector<FixedValues> fixed = result.fixed;
+  fixed.resize(all.size(), {.direction = true, .position = true, .radius = true});
+  RegularSurfaces regular = regularise(all, tolerance, options.angle_tolerance_deg, fixed);
+  regular.surfaces.resize(found.size());
+  result.surfaces = std::move(regular.surfaces);
+  result.snaps.insert(result.snaps.end(), regular.snaps.begin(), regular.snaps.end());
+  return result;
+}
+
+void validate(const RegularityOptions& options) {
+  require_positive("angle_tolerance_deg", options.angle_tolerance_deg);
+  require_positive("axis_tolerance_deg", options.axis_tolerance_deg);
+  if (options.distance_tolerance) require_positive("distance_tolerance", *options.distance_tolerance);
+  if (options.given_tolerance) require_positive("given_tolerance", *options.given_tolerance);
+  for (const double radius : options.radii) require_positive("radii", radius);
+  for (const Eigen::Vector3d& axis : options.axes) require_positive("axes", axis.norm());
+}
+
+}  // namespace
+
+void validate(const SolidOptions& options) {
+  require_positive("leaf_cost", options.leaf_cost);
+  if (options.leaf_cost > 1) {
+    throw Error({.file = {},
+                 .where = "leaf_cost",
+                 .expected = fmt::format("expected a share of the solid, at most 1, got {}", options.leaf_cost),
+                 .remedy = {}});
+  }
+  require_positive("plane_cost", options.plane_cost);
+  require_positive("most_rules", static_cast<double>(options.most_rules));
+  validate(options.regularity);
+}
+
+SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
+                          const SolidOptions& options, const RunContext& run) {
+  return choose_solids(cloud, surfaces, {}, options, run);
+}
+
+SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
+                          std::span<const KnownSolid> known, const SolidOptions& options, const RunContext& run) {
+  validate(options);
+  const bool is_any_seen =
+      std::ranges::any_of(known, [](const KnownSolid& solid) { return !solid.own.points.empty(); });
+  if (surfaces.empty() && !is_any_seen) {
+    throw Error({.file = {}, .where = "surfaces", .expected = "expected a surface or more, got none", .remedy = {}});
+  }
+  PlaceOptions place_options = options.places;
+  place_options.noise = noise_of(surfaces, known, options);
+  place_options.volume_places =
+      std::max(place_options.volume_places, options.volume_places_a_surface * surfaces.size());
+  place_options.surface_points =
+      std::max(place_options.surface_points, options.surface_points_a_surface * surfaces.size());
+  SolidChoice choice;
+  choice.places = label_places(cloud, place_options, run);
+  const double tolerance = tolerance_of(cloud, options, *place_options.noise);
+  KnownTerms terms{.solids = {}, .surfaces = surfaces_of_known(cloud, known)};
+  for (const KnownSolid& one : known) terms.solids.push_back(one.solid);
+  GivenSurfaces regular = made_regular(cloud, surfaces, terms.surfaces, options.regularity, tolerance);
+  run.throw_if_stopped();
+  const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance, terms);
+  const TermCosts costs{.leaf = options.leaf_cost, .plane = options.plane_cost};
+  const DecisionList list = search_list(space, costs, options.most_rules, run);
+  WrittenSolids written = write_solids(space, list);
+  choice.solids = std::move(written.solids);
+  choice.tree = std::move(written.tree);
+  choice.disagreement = disagreement(choice.tree, choice.solids, choice.places);
+  choice.snaps = std::move(regular.snaps);
+  choice.warnings = std::move(regular.warnings);
+  if (list.size() >= options.most_rules) {
+    choice.warnings.push_back(
+        fmt::format("the solid has more than {} parts: what is smaller than these is left out", options.most_rules));
+  }
+  return choice;
+}
+
+}  // namespace cloud2csg

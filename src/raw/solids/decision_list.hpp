@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raw/solids/term_search.hpp"
+
+/// Decision lists: the first rule whose term has a place says whether it is in the solid; where none has, it is out.
+namespace cloud2csg {
+
+struct Rule {
+  Term term = {};
+  std::vector<std::uint8_t> members = {};  ///< by place of the term space
+  bool is_in = true;
+};
+
+using DecisionList = std::vector<Rule>;
+
+/// By place, the rule that decides; the list's size where none does.
+[[nodiscard]] std::vector<std::uint16_t> deciding_rules(const DecisionList& list, std::size_t places);
+
+/// What places lose that the list has wrong, plus the cost of its terms.
+[[nodiscard]] double cost_of(const DecisionList& list, std::span<const double> pulls, const TermCosts& costs);
+
+/// By rule, how much less the list costs without it. O(places x rules).
+[[nodiscard]] std::vector<double> removal_savings(const DecisionList& list, std::span<const double> pulls,
+                                                  const TermCosts& costs);
+
+/// By place, what a new rule in front of rule `position` gains by having it.
+[[nodiscard]] std::vector<double> insertion_gains(const DecisionList& list, std::span<const std::uint16_t> deciding,
+                                                  std::span<const double> pulls, std::size_t position, bool is_in);
+
+/// The positions where a new rule is tried: in front of all, and behind each block of rules that say otherwise. Behind
+/// rules that say the same it would gain no more than in front of them; the middle of a block is left out for speed.
+[[nodiscard]] std::vector<std::size_t> insertion_positions(const DecisionList& list, bool is_in);
+
+}  // namespace cloud2csg

@@ -1,0 +1,194 @@
+#include "raw/solids/given_values.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t k_most_points = 4000;  // tell where a surface is
+constexpr std::size_t k_most_named = 5;      // surfaces in one warning
+
+std::string place_of(const Surface& surface) {
+  const Vector3d& at = surface.position;
+  return fmt::format("at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z());
+}
+
+/// "2 radii are none of those given: a, b" with the first few named.
+std::string sentence(const std::string& what, const std::vector<std::string>& named) {
+  const auto last = named.begin() + static_cast<std::ptrdiff_t>(std::min(k_most_named, named.size()));
+  std::string text = fmt::format("{}: {}", what, fmt::join(named.begin(), last, "; "));
+  if (last != named.end()) text += fmt::format("; and {} more", named.end() - last);
+  return text;
+}
+
+/// A surface and its points, which say what it may be.
+class Candidate {
+ public:
+  Candidate(const DetectedSurface& detected, const Points& positions) : surface_(detected.surface) {
+    const std::size_t count = std::min(k_most_points, detected.points.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      points_.push_back(positions[detected.points[k * detected.points.size() / count]]);
+    }
+    rms_ = rms_of(surface_);
+  }
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] double rms() const { return rms_; }
+  [[nodiscard]] bool has_points() const { return !points_.empty(); }
+
+  /// Takes a surface of another direction or radius, moved to where it suits the points best, if these are no more than
+  /// `tolerance` farther from it. @returns by how much they are when it was not taken.
+  std::optional<double> try_taking(const Surface& other, double tolerance) {
+    const Surface settled = moved_to_points(other);
+    const double rms = rms_of(settled);
+    const double excess = std::sqrt(std::max(rms * rms - rms_ * rms_, 0.0));
+    if (excess > tolerance) return excess;
+    surface_ = settled;
+    rms_ = rms;
+    return std::nullopt;
+  }
+
+  /// The same whatever the points say.
+  void take(const Surface& other) {
+    surface_ = moved_to_points(other);
+    rms_ = rms_of(surface_);
+  }
+
+ private:
+  [[nodiscard]] double rms_of(const Surface& surface) const {
+    double squares = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const double distance = signed_distance(surface, points_[i]);
+      squares += distance * distance;
+    }
+    return points_.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(points_.size()));
+  }
+
+  /// By least squares of the distances; not along what the points leave open.
+  [[nodiscard]] Surface moved_to_points(Surface surface) const {
+    constexpr int k_rounds = 8;
+    constexpr double k_open = 1e-6;
+    for (int round = 0; round < k_rounds && has_points(); ++round) {
+      Eigen::Matrix3d matrix = k_open * static_cast<double>(points_.size()) * Eigen::Matrix3d::Identity();
+      Vector3d side = Vector3d::Zero();
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const Vector3d slope = normal(surface, points_[i]);
+        matrix += slope * slope.transpose();
+        side += signed_distance(surface, points_[i]) * slope;
+      }
+      surface.position += matrix.ldlt().solve(side);
+    }
+    return surface;
+  }
+
+  Surface surface_;
+  Points points_;
+  double rms_ = 0;
+};
+
+/// Takes what is given, surface by surface.
+class GivenValues {
+ public:
+  GivenValues(const PointCloud& cloud, std::span<const DetectedSurface> surfaces, const RegularityOptions& options,
+              double tolerance)
+      : cloud_(cloud), options_(options), tolerance_(tolerance) {
+    result_.surfaces.assign(surfaces.begin(), surfaces.end());
+    result_.fixed.resize(surfaces.size());
+  }
+
+  GivenSurfaces run() {
+    if (options_.axes.empty() && options_.radii.empty()) return std::move(result_);
+    for (std::uint32_t i = 0; i < result_.surfaces.size(); ++i) {
+      Candidate candidate(result_.surfaces[i], cloud_.positions);
+      take_axis(i, candidate);
+      take_radii(i, candidate);
+      result_.surfaces[i].surface = candidate.surface();
+      if (candidate.has_points()) result_.surfaces[i].rms = candidate.rms();
+    }
+    if (!other_axes_.empty()) {
+      result_.warnings.push_back(
+          sentence("directions near those given, which their points contradict, stay as they are", other_axes_));
+    }
+    if (!other_radii_.empty()) {
+      result_.warnings.push_back(sentence("radii that are none of those given stay as they are", other_radii_));
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void take_axis(std::uint32_t i, Candidate& candidate) {
+    Surface surface = candidate.surface();
+    if (options_.axes.empty() || surface.type == SurfaceType::sphere) return;
+    double least_sine = 2;
+    Vector3d nearest = surface.axis;
+    for (const Vector3d& given : options_.axes) {
+      const Vector3d axis = given.normalized();
+      const double sine = surface.axis.cross(axis).norm();
+      if (sine >= least_sine) continue;
+      least_sine = sine;
+      nearest = surface.axis.dot(axis) < 0 ? Vector3d(-axis) : axis;
+    }
+    const double turn_deg = std::asin(std::min(least_sine, 1.0)) * 180 / std::numbers::pi;
+    if (turn_deg > std::max(options_.axis_tolerance_deg, options_.angle_tolerance_deg)) return;
+    surface.axis = nearest;
+    if (turn_deg <= options_.angle_tolerance_deg) {
+      candidate.take(surface);
+    } else if (const auto excess = candidate.try_taking(surface, tolerance_)) {
+      other_axes_.push_back(fmt::format("{} {}, off by {:.2g} deg, which moves it {:.2g} from its points",
+                                        type_name(surface.type), place_of(surface), turn_deg, *excess));
+      return;
+    }
+    result_.fixed[i].direction = true;
+    if (turn_deg > 0)
+      result_.snaps.push_back({.kind = RegularityKind::given_direction, .surface = i, .change = turn_deg});
+  }
+
+  void take_radii(std::uint32_t i, Candidate& candidate) {
+    const SurfaceType type = candidate.surface().type;
+    if (options_.radii.empty() || type == SurfaceType::plane || type == SurfaceType::cone) return;
+    // Of a torus the tube first: where its middle is follows from it.
+    const bool is_tube_given = type != SurfaceType::torus || take_radius(i, candidate, &Surface::minor_radius);
+    result_.fixed[i].radius = take_radius(i, candidate, &Surface::radius) && is_tube_given;
+  }
+
+  bool take_radius(std::uint32_t i, Candidate& candidate, double Surface::*radius) {
+    Surface surface = candidate.surface();
+    const double measured = surface.*radius;
+    surface.*radius =
+        *std::ranges::min_element(options_.radii, {}, [&](double given) { return std::abs(given - measured); });
+    const bool is_torus = surface.type != SurfaceType::torus || surface.radius > surface.minor_radius;
+    if (!is_torus || candidate.try_taking(surface, tolerance_)) {
+      other_radii_.push_back(
+          fmt::format("{} {} of {:.4g}", type_name(surface.type), place_of(candidate.surface()), measured));
+      return false;
+    }
+    const double change = std::abs(surface.*radius - measured);
+    if (change > 0) result_.snaps.push_back({.kind = RegularityKind::given_radius, .surface = i, .change = change});
+    return true;
+  }
+
+  const PointCloud& cloud_;
+  const RegularityOptions& options_;
+  double tolerance_;
+  GivenSurfaces result_;
+  std::vector<std::string> other_axes_, other_radii_;
+};
+
+}  // namespace
+
+GivenSurfaces take_given_values(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
+                                const RegularityOptions& options, double tolerance) {
+  return GivenValues(cloud, surfaces, options, tolerance).run();
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,236 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cloud2csg/advanced/solids.hpp"
+#include "cloud2csg/advanced/winding_number.hpp"
+#include "cloud2csg/error.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/neighbour_tree.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::uint64_t k_place_stage = 0x706c'6163'65;  // names its streams of random numbers
+constexpr std::size_t k_least_points = 16;
+constexpr double k_clear_in = 0.7;
+constexpr double k_clear_out = 0.3;
+constexpr double k_far_margin = 0.3;         // of the diagonal, beyond the margin
+constexpr std::size_t k_chunk_places = 256;  // places between two looks at the stop token
+
+[[noreturn]] void refuse(const char* where, std::string expected, std::string remedy = {}) {
+  throw Error({.file = {}, .where = where, .expected = std::move(expected), .remedy = std::move(remedy)});
+}
+
+[[noreturn]] void refuse_without_inside() {
+  refuse("cloud", "expected the surface of a solid, found one that encloses nothing",
+         "give points from all sides of the object, and outward normals or sensor positions if there are any");
+}
+
+void check(const PointCloud& cloud, const PlaceOptions& options) {
+  if (!cloud.has_normals()) refuse("cloud", "expected a cloud with outward normals");
+  if (cloud.size() < k_least_points) refuse("cloud", fmt::format("expected at least {} points", k_least_points));
+  if (options.noise && !(*options.noise >= 0 && std::isfinite(*options.noise))) {
+    refuse("noise", fmt::format("expected a finite number, 0 or more, got {}", *options.noise));
+  }
+  if (options.volume_places == 0) refuse("volume_places", "expected at least 1");
+  if (options.surface_points == 0) refuse("surface_points", "expected at least 1");
+  if (!(options.margin > 0 && options.margin <= 1)) {
+    refuse("margin", fmt::format("expected more than 0 and at most 1, got {}", options.margin));
+  }
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One place by chance in each of the cells of a lattice.
+Points stratified(const AlignedBox& box, std::size_t count, std::uint64_t seed) {
+  const double side = std::cbrt(box.volume() / static_cast<double>(count));
+  Eigen::Vector3i cells;
+  for (int axis = 0; axis < 3; ++axis) {
+    cells[axis] = static_cast<int>(std::clamp(std::round(box.sizes()[axis] / side), 1.0, static_cast<double>(count)));
+  }
+  RandomStream random(seed, k_place_stage, 0);
+  Points places;
+  for (int x = 0; x < cells.x(); ++x) {
+    for (int y = 0; y < cells.y(); ++y) {
+      for (int z = 0; z < cells.z(); ++z) {
+        const Eigen::Vector3d at(x + random.uniform(), y + random.uniform(), z + random.uniform());
+        places.push_back(box.min() + at.cwiseQuotient(cells.cast<double>()).cwiseProduct(box.sizes()));
+      }
+    }
+  }
+  return places;
+}
+
+/// Labels places one by one; keeps what they all need.
+class Labelling {
+ public:
+  Labelling(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run)
+      : cloud_(cloud), options_(options), run_(run), index_(cloud.positions), areas_(point_areas(cloud, run)) {
+    const AlignedBox box = bounds_of(cloud.positions);
+    diagonal_ = box.diagonal().norm();
+    if (!(diagonal_ > 0)) refuse("cloud", "expected points that are not all in one place");
+    spacing_ = std::sqrt(median(areas_));
+    noise_ = options.noise.value_or(0.1 * spacing_);
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(options.margin * diagonal_);
+    grown_ = AlignedBox(box.min() - margin, box.max() + margin);
+    if (!(enclosed_volume() > 0)) refuse_without_inside();
+  }
+
+  void add_volume(LabelledPlaces& places) const {
+    const WindingField winding(cloud_.positions, cloud_.normals, areas_);
+    const Points candidates = stratified(grown_, options_.volume_places, options_.seed);
+    std::vector<double> numbers(candidates.size());
+    for_each_index_by_chunks(candidates.size(), k_chunk_places, run_,
+                             [&](std::size_t i) { numbers[i] = winding.at(candidates[i]); });
+    // Areas are right but for a factor that all share, which the places that are clearly inside tell.
+    std::vector<double> inside;
+    for (const double number : numbers) {
+      if (number > 0.5) inside.push_back(number);
+    }
+    if (inside.empty()) refuse_without_inside();
+    const double unit = median(inside);
+    const std::vector<int> sides = sides_of(candidates, numbers, unit);
+    const auto count_in = static_cast<double>(std::max<std::ptrdiff_t>(std::ranges::count(sides, 1), 1));
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (sides[i] == 0) continue;
+      places.positions.push_back(candidates[i]);
+      places.weights.push_back(sides[i] / count_in);
+    }
+    add_far(places, 1 / (count_in * grown_.volume() / static_cast<double>(candidates.size())));
+  }
+
+  /// Some far around, so that no solid reaches out there unseen.
+  void add_far(LabelledPlaces& places, double weight_of_volume) const {
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(k_far_margin * diagonal_);
+    const AlignedBox far(grown_.min() - margin, grown_.max() + margin);
+    const Points candidates = stratified(far, std::max<std::size_t>(options_.volume_places / 8, 1), options_.seed);
+    const double weight = weight_of_volume * far.volume() / static_cast<double>(candidates.size());
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (grown_.contains(candidates[i])) continue;
+      places.positions.push_back(candidates[i]);
+      places.weights.push_back(-weight);
+    }
+  }
+
+  void add_surface(LabelledPlaces& places) const {
+    const std::vector<std::uint32_t> points = some_points();
+    std::vector<double> depths(points.size());
+    for_each_index_by_chunks(points.size(), k_chunk_places, run_,
+                             [&](std::size_t i) { depths[i] = depth_at(points[i]); });
+    double area = 0;
+    for (const std::uint32_t point : points) area += areas_[point];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (const int side : {-1, 1}) {
+        const Eigen::Vector3d place = cloud_.positions[points[i]] + side * depths[i] * cloud_.normals[points[i]];
+        if (depths[i] <= 0 || side_by_nearest(place) != -side) continue;
+        places.positions.push_back(place);
+        places.weights.push_back(-side * 0.5 * areas_[points[i]] / area);
+      }
+    }
+  }
+
+ private:
+  /// By the divergence theorem; negative where normals point inwards.
+  [[nodiscard]] double enclosed_volume() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      sum += areas_[i] * cloud_.normals[i].dot(cloud_.positions[i] - grown_.center());
+    }
+    return sum / 3;
+  }
+
+  /// 1 in the solid, -1 outside, 0 unclear: of places as near to points as these are to each other by the nearest.
+  [[nodiscard]] std::vector<int> sides_of(const Points& places, const std::vector<double>& numbers, double unit) const {
+    std::vector<int> sides(places.size());
+    for_each_index_by_chunks(places.size(), k_chunk_places, run_, [&](std::size_t i) {
+      const double number = numbers[i] / unit;
+      sides[i] = number > k_clear_in ? 1 : number < k_clear_out ? -1 : 0;
+      if (index_.nearest(places[i]).distance > 1.5 * spacing_) return;
+      const int by_nearest = side_by_nearest(places[i]);
+      sides[i] = sides[i] == 0 || sides[i] == by_nearest ? by_nearest : 0;
+    });
+    return sides;
+  }
+
+  /// The side of the nearest point's plane, 0 where that is within the noise.
+  [[nodiscard]] int side_by_nearest(const Eigen::Vector3d& place) const {
+    const std::uint32_t point = index_.nearest(place).point;
+    const double height = cloud_.normals[point].dot(place - cloud_.positions[point]);
+    return std::abs(height) <= 1.5 * noise_ ? 0 : height < 0 ? 1 : -1;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> some_points() const {
+    RandomStream random(options_.seed, k_place_stage, 1);
+    const std::size_t few = (cloud_.size() + options_.surface_points - 1) / options_.surface_points;
+    std::vector<std::uint32_t> points;
+    for (std::size_t begin = 0; begin < cloud_.size(); begin += few) {
+      points.push_back(static_cast<std::uint32_t>(begin + random.below(std::min(few, cloud_.size() - begin))));
+    }
+    return points;
+  }
+
+  /// How far the places beside a point are from it: less where another surface is near on either side.
+  [[nodiscard]] double depth_at(std::uint32_t point) const {
+    const double depth = std::max({3 * noise_, 0.3 * spacing_, 0.002 * diagonal_});
+    const Eigen::Vector3d position = cloud_.positions[point];
+    const Eigen::Vector3d normal = cloud_.normals[point];
+    double least = depth;
+    for (const std::uint32_t other : index_.within(position, 3 * depth)) {
+      const Eigen::Vector3d offset = cloud_.positions[other] - position;
+      const double height = std::abs(offset.dot(normal));
+      const bool faces = cloud_.normals[other].dot(normal) < -0.5 && height > 0.7 * offset.norm();
+      if (faces) least = std::min(least, 0.4 * height);
+    }
+    return least > 1.5 * noise_ ? least : 0.0;
+  }
+
+  const PointCloud& cloud_;
+  const PlaceOptions& options_;
+  const RunContext& run_;
+  NeighbourTree index_;
+  std::vector<double> areas_;
+  double diagonal_ = 0, spacing_ = 0, noise_ = 0;
+  AlignedBox grown_;
+};
+
+}  // namespace
+
+LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run) {
+  check(cloud, options);
+  const Labelling labelling(cloud, options, run);
+  LabelledPlaces places;
+  labelling.add_volume(places);
+  labelling.add_surface(places);
+  return places;
+}
+
+double disagreement(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places) {
+  const std::vector<double> values = implicit_value(tree, solids, places.positions);
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if ((values[i] < 0) != (places.weights[i] > 0)) sum += std::abs(places.weights[i]);
+  }
+  return sum;
+}
+
+Eigen::Vector3d worst_place(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places) {
+  const std::vector<double> values = implicit_value(tree, solids, places.positions);
+  std::size_t worst = 0;
+  double largest = -1;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if ((values[i] < 0) == (places.weights[i] > 0) || std::abs(values[i]) <= largest) continue;
+    worst = i;
+    largest = std::abs(values[i]);
+  }
+  return places.positions[worst];
+}
+
+}  // namespace cloud2csg

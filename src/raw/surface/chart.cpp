@@ -1,0 +1,176 @@
+#include "raw/surface/chart.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "raw/surface/profile.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr double k_least_half_angle = 1e-4;  // narrower, a cone is a cylinder and its apex has no digits left
+
+/// The distance, and its slopes by the sizes.
+struct SizedProfile {
+  ProfileDistance profile;
+  std::array<double, 2> by_size;
+};
+
+SizedProfile profile_at(SurfaceType type, const Chart::Place& place, const AxialPoint& at) {
+  switch (type) {
+    case SurfaceType::plane:
+      return {{at.height, 0, 1}, {}};
+    case SurfaceType::sphere: {
+      const double length = std::hypot(at.radial, at.height);
+      const double divisor = length > 0 ? length : 1.0;
+      return {{length - place.sizes[0], at.radial / divisor, at.height / divisor}, {-1, 0}};
+    }
+    case SurfaceType::cylinder:
+      return {{at.radial - place.sizes[0], 1, 0}, {-1, 0}};
+    case SurfaceType::cone:
+      return {{at.radial * place.cosine - at.height * place.sine - place.sizes[0], place.cosine, -place.sine},
+              {-1, -at.radial * place.sine - at.height * place.cosine}};
+    case SurfaceType::torus: {
+      const ProfileDistance profile = torus_profile(place.sizes[0], place.sizes[1], at);
+      return {profile, {-profile.by_radial, -1}};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Chart::Chart(const Surface& start) : start_(start) {
+  const Eigen::Vector3d& axis = start.axis;
+  const Eigen::Vector3d first = axis.unitOrthogonal();
+  directions_ = {first, axis.cross(first), axis};
+  // The middle of the points is the origin: the axis' point, or the plane's, that is nearest to it.
+  const double along = axis.dot(start.position);
+  switch (start.type) {
+    case SurfaceType::plane:
+      tilts_ = 2, shifts_begin_ = 2, shifts_ = 1, sizes_ = 0;
+      start_.position = along * axis;
+      break;
+    case SurfaceType::sphere:
+      tilts_ = 0, shifts_ = 3, sizes_ = 1;
+      start_sizes_ = {start.radius};
+      break;
+    case SurfaceType::cylinder:
+      tilts_ = 2, shifts_ = 2, sizes_ = 1;
+      start_.position -= along * axis;
+      start_sizes_ = {start.radius};
+      break;
+    case SurfaceType::cone:
+      tilts_ = 2, shifts_ = 2, sizes_ = 2;
+      start_.position -= along * axis;
+      start_sizes_ = {-along * std::sin(start.half_angle), start.half_angle};
+      break;
+    case SurfaceType::torus:
+      tilts_ = 2, shifts_ = 3, sizes_ = 2;
+      start_sizes_ = {start.radius, start.minor_radius};
+      break;
+  }
+}
+
+Chart::Row Chart::start() const {
+  Row row = {};
+  for (std::size_t i = 0; i < sizes_; ++i) row[sizes_begin() + i] = start_sizes_[i];
+  return row;
+}
+
+Chart::Place Chart::at(std::span<const double> values) const {
+  assert(values.size() == unknowns());
+  Place place{
+      .position = start_.position, .axis = start_.axis, .axis_by_tilt = {}, .sizes = {}, .sine = 0, .cosine = 1};
+  std::size_t next = 0;
+  if (tilts_ > 0) {
+    const Eigen::Vector3d tilted = start_.axis + values[0] * directions_[0] + values[1] * directions_[1];
+    const double length = tilted.norm();
+    place.axis = tilted / length;
+    for (std::size_t i = 0; i < 2; ++i) {
+      place.axis_by_tilt[i] = (directions_[i] - place.axis.dot(directions_[i]) * place.axis) / length;
+    }
+    next = 2;
+  }
+  for (std::size_t i = 0; i < shifts_; ++i) {
+    place.position += values[next++] * directions_[shifts_begin_ + i];
+  }
+  for (std::size_t i = 0; i < sizes_; ++i) place.sizes[i] = values[next++];
+  if (start_.type == SurfaceType::cone) {
+    place.sine = std::sin(place.sizes[1]);
+    place.cosine = std::cos(place.sizes[1]);
+  }
+  return place;
+}
+
+double Chart::distance(const Place& place, const Eigen::Vector3d& point) const {
+  return profile_at(start_.type, place, axial_point(place.position, place.axis, point)).profile.distance;
+}
+
+double Chart::distance(const Place& place, const Eigen::Vector3d& point, Row& slopes) const {
+  const AxialPoint at = axial_point(place.position, place.axis, point);
+  const auto [profile, by_size] = profile_at(start_.type, place, at);
+  std::size_t next = 0;
+  if (tilts_ > 0) {
+    // A turn of the axis towards the point brings the point up the axis and nearer to it.
+    const double by_turn = profile.by_height * at.radial - profile.by_radial * at.height;
+    for (const Eigen::Vector3d& turn : place.axis_by_tilt) slopes[next++] = by_turn * at.outward.dot(turn);
+  }
+  const Eigen::Vector3d gradient = profile.by_radial * at.outward + profile.by_height * place.axis;
+  for (std::size_t i = 0; i < shifts_; ++i) {
+    slopes[next++] = -gradient.dot(directions_[shifts_begin_ + i]);
+  }
+  for (std::size_t i = 0; i < sizes_; ++i) slopes[next++] = by_size[i];
+  return profile.distance;
+}
+
+bool Chart::is_surface(const Place& place) const {
+  if (!place.position.allFinite() || !place.axis.allFinite()) return false;
+  switch (start_.type) {
+    case SurfaceType::plane:
+      return true;
+    case SurfaceType::sphere:
+    case SurfaceType::cylinder:
+      return std::isfinite(place.sizes[0]) && place.sizes[0] > 0;
+    case SurfaceType::cone: {
+      const double opening = std::abs(place.sizes[1]);
+      return std::isfinite(place.sizes[0]) && opening >= k_least_half_angle &&
+             opening <= std::numbers::pi / 2 - k_least_half_angle;
+    }
+    case SurfaceType::torus:
+      return std::isfinite(place.sizes[0]) && place.sizes[0] > 0 && std::isfinite(place.sizes[1]) && place.sizes[1] > 0;
+  }
+  return false;
+}
+
+Surface Chart::surface(const Place& place) const {
+  Surface surface = start_;
+  surface.position = place.position;
+  surface.axis = place.axis;
+  switch (start_.type) {
+    case SurfaceType::plane:
+      surface.position = place.position.dot(place.axis) * place.axis;
+      break;
+    case SurfaceType::sphere:
+      surface.radius = place.sizes[0];
+      break;
+    case SurfaceType::cylinder:
+      surface.position -= place.position.dot(place.axis) * place.axis;
+      surface.radius = place.sizes[0];
+      break;
+    case SurfaceType::cone:
+      surface.position -= place.sizes[0] / place.sine * place.axis;
+      surface.half_angle = std::abs(place.sizes[1]);
+      // A cone that the fit turned inside out opens the other way.
+      if (place.sizes[1] < 0) surface.axis = -place.axis;
+      break;
+    case SurfaceType::torus:
+      surface.radius = place.sizes[0];
+      surface.minor_radius = place.sizes[1];
+      break;
+  }
+  return surface;
+}
+
+}  // namespace cloud2csg

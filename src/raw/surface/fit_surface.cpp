@@ -1,0 +1,233 @@
+#include <ceres/tiny_solver.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "cloud2csg/advanced/surface.hpp"
+#include "core/base/robust_deviation.hpp"
+#include "raw/surface/chart.hpp"
+#include "raw/surface/robust_loss.hpp"
+#include "raw/surface/unit_frame.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr int k_most_rounds = 6;            // under Tukey's loss; the noise has settled after two or three
+constexpr double k_settled = 0.02;          // relative change of the noise
+constexpr double k_smallest_noise = 1e-12;  // in the unit frame
+
+/// The residuals of a surface at points, in multiples of the noise, as ceres::TinySolver wants them: it is made for
+/// few unknowns, and a problem of 4000 residuals is built in no time.
+struct RobustDistances {
+  using Scalar = double;
+  // NOLINTNEXTLINE(readability-identifier-naming): the solver's names
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
+
+  const Chart& chart;
+  std::span<const Eigen::Vector3d> points;
+  double noise;
+  RobustLoss loss;
+
+  // NOLINTBEGIN(readability-identifier-naming): the solver's names
+  [[nodiscard]] int NumResiduals() const { return static_cast<int>(points.size()); }
+  [[nodiscard]] int NumParameters() const { return static_cast<int>(chart.unknowns()); }
+  // NOLINTEND(readability-identifier-naming)
+
+  bool operator()(const double* unknowns, double* residuals, double* jacobian) const {
+    const std::size_t count = chart.unknowns();
+    const Chart::Place place = chart.at({unknowns, count});
+    Chart::Row slopes = {};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double distance =
+          jacobian == nullptr ? chart.distance(place, points[i]) : chart.distance(place, points[i], slopes);
+      const auto [value, slope] = loss(distance / noise);
+      residuals[i] = value;
+      if (jacobian == nullptr) continue;
+      for (std::size_t k = 0; k < count; ++k) jacobian[k * points.size() + i] = slope * slopes[k] / noise;
+    }
+    return true;
+  }
+};
+
+using Unknowns = Eigen::VectorXd;
+
+/// The cost is in squares of the noise: to within a change of c the unknowns are where they should be to within sqrt(c)
+/// of what is uncertain about them.
+constexpr double k_rough = 1e-2;
+constexpr double k_precise = 1e-6;
+
+Unknowns solve(const Chart& chart, std::span<const Eigen::Vector3d> points, double noise, const RobustLoss& loss,
+               double tolerance) {
+  const Chart::Row start = chart.start();
+  Unknowns unknowns = Eigen::Map<const Unknowns>(start.data(), static_cast<Eigen::Index>(chart.unknowns()));
+  ceres::TinySolver<RobustDistances> solver;
+  solver.options.function_tolerance = tolerance;
+  solver.options.max_num_iterations = 50;
+  solver.Solve({.chart = chart, .points = points, .noise = noise, .loss = loss}, &unknowns);
+  return unknowns;
+}
+
+double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> points) {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) distances.push_back(std::abs(signed_distance(surface, point)));
+  return robust_deviation(distances);
+}
+
+/// The points, or some of them, evenly over their order.
+std::vector<Eigen::Vector3d> some_of(std::span<const Eigen::Vector3d> points, std::size_t most) {
+  const std::size_t count = std::min(points.size(), most);
+  std::vector<Eigen::Vector3d> result;
+  result.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) result.push_back(points[i * points.size() / count]);
+  return result;
+}
+
+/// What points in the unit frame say.
+struct Solution {
+  Surface surface;
+  double noise;
+};
+
+class Fitter {
+ public:
+  Fitter(std::vector<Eigen::Vector3d> points, double floor, std::optional<double> noise)
+      : points_(std::move(points)), floor_(floor), given_(noise) {}
+
+  [[nodiscard]] std::optional<Solution> fit(const Surface& start) const {
+    return given_ ? fit_within(start, *given_) : fit_and_measure(start);
+  }
+
+  [[nodiscard]] SurfaceUncertainty uncertainty(const Solution& solution, double rms) const;
+
+ private:
+  /// Looks wide first, so that the points of a start that is a little off have a say, and then closely.
+  [[nodiscard]] std::optional<Solution> fit_within(const Surface& start, double noise) const {
+    std::optional<Surface> surface = start;
+    for (const double factor : {8.0, 2.0, 1.0}) {
+      if (!surface) return std::nullopt;
+      surface = improved(*surface, factor * noise, {LossType::tukey, k_tukey}, factor > 1 ? k_rough : k_precise);
+    }
+    if (!surface) return std::nullopt;
+    return Solution{.surface = *surface, .noise = noise};
+  }
+
+  [[nodiscard]] std::optional<Solution> fit_and_measure(const Surface& start) const {
+    // Under Huber's loss every point pulls, so that a start that is far off finds its way.
+    double noise = std::max(measured_noise(start, points_), floor_);
+    std::optional<Surface> surface = improved(start, noise, {LossType::huber, k_huber}, k_rough);
+    bool is_settled = false;
+    for (int round = 0; surface && !is_settled && round < k_most_rounds; ++round) {
+      const double measured = std::max(measured_noise(*surface, points_), floor_);
+      // Of the first loss' noise, being equal says nothing.
+      is_settled = round + 1 == k_most_rounds || (round > 0 && std::abs(measured - noise) < k_settled * noise);
+      noise = measured;
+      surface = improved(*surface, noise, {LossType::tukey, k_tukey}, is_settled ? k_precise : k_rough);
+    }
+    if (!surface) return std::nullopt;
+    return Solution{.surface = *surface, .noise = noise};
+  }
+
+  [[nodiscard]] std::optional<Surface> improved(const Surface& surface, double noise, const RobustLoss& loss,
+                                                double tolerance) const {
+    const Chart chart(surface);
+    const Unknowns unknowns = solve(chart, points_, noise, loss, tolerance);
+    const Chart::Place place = chart.at({unknowns.data(), static_cast<std::size_t>(unknowns.size())});
+    if (!chart.is_surface(place)) return std::nullopt;
+    return chart.surface(place);
+  }
+
+  std::vector<Eigen::Vector3d> points_;
+  double floor_;
+  std::optional<double> given_;
+};
+
+/// The standard deviation in the worst direction of some of the unknowns; infinite where the covariance is absent.
+double worst_deviation(const std::optional<Eigen::MatrixXd>& covariance, Eigen::Index begin, Eigen::Index count) {
+  if (count == 0) return 0;
+  if (!covariance) return std::numeric_limits<double>::infinity();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(covariance->block(begin, begin, count, count),
+                                                             Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(parts.eigenvalues().maxCoeff(), 0.0));
+}
+
+/// Absent where some unknowns are not determined.
+std::optional<Eigen::MatrixXd> inverse_of(const Eigen::MatrixXd& information) {
+  constexpr double k_singular = 1e-13;
+  const Eigen::LDLT<Eigen::MatrixXd> parts(information);
+  const bool is_regular = parts.info() == Eigen::Success && parts.isPositive() &&
+                          parts.vectorD().minCoeff() > k_singular * parts.vectorD().maxCoeff();
+  if (!is_regular) return std::nullopt;
+  return parts.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+}
+
+SurfaceUncertainty Fitter::uncertainty(const Solution& solution, double rms) const {
+  const Chart chart(solution.surface);
+  const Chart::Row start = chart.start();
+  const Chart::Place place = chart.at({start.data(), chart.unknowns()});
+  const auto count = static_cast<Eigen::Index>(chart.unknowns());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  Chart::Row slopes = {};
+  Eigen::Index inliers = 0;
+  for (const Eigen::Vector3d& point : points_) {
+    if (std::abs(chart.distance(place, point, slopes)) > k_tukey * solution.noise) continue;
+    const auto row = Eigen::Map<const Eigen::VectorXd>(slopes.data(), count);
+    information += row * row.transpose();
+    ++inliers;
+  }
+  std::optional<Eigen::MatrixXd> covariance;
+  if (inliers > count) covariance = inverse_of(information);
+  if (covariance) *covariance *= rms * rms * static_cast<double>(inliers) / static_cast<double>(inliers - count);
+
+  const auto tilts = static_cast<Eigen::Index>(chart.tilts());
+  const auto shifts = static_cast<Eigen::Index>(chart.shifts());
+  const auto sizes = tilts + shifts;
+  const double first = worst_deviation(covariance, sizes, std::min<Eigen::Index>(count - sizes, 1));
+  const double second = worst_deviation(covariance, sizes + 1, count - sizes == 2 ? 1 : 0);
+  const bool is_cone = solution.surface.type == SurfaceType::cone;
+  return {.position = worst_deviation(covariance, tilts, shifts),
+          .axis = worst_deviation(covariance, 0, tilts),
+          .radius = is_cone ? first / std::cos(solution.surface.half_angle) : first,
+          .half_angle = is_cone ? second : 0,
+          .minor_radius = is_cone ? 0 : second};
+}
+
+}  // namespace
+
+std::optional<SurfaceFit> fit_surface(const Surface& start, std::span<const Eigen::Vector3d> points,
+                                      const FitOptions& options) {
+  assert(std::abs(start.axis.norm() - 1) < 1e-6);
+  if (points.size() < static_cast<std::size_t>(Chart(start).unknowns())) return std::nullopt;
+  const std::vector<Eigen::Vector3d> some =
+      some_of(points, std::max<std::size_t>(options.most_points, Chart::k_most_unknowns));
+  const UnitFrame frame = unit_frame(some);
+  // Coordinates far from the origin are rounded themselves: no residual below that means anything.
+  const double rounding = std::numeric_limits<double>::epsilon() * frame.origin.norm() / frame.scale;
+  const double floor = std::max(k_smallest_noise, 4 * rounding);
+  const auto noise = options.noise ? std::optional(std::max(*options.noise / frame.scale, floor)) : std::nullopt;
+  const Fitter fitter(to_frame(frame, some), floor, noise);
+  const std::optional<Solution> solution = fitter.fit(to_frame(frame, start));
+  if (!solution) return std::nullopt;
+
+  SurfaceFit fit{.surface = from_frame(frame, solution->surface), .noise = solution->noise * frame.scale};
+  double squares = 0;
+  for (const Eigen::Vector3d& point : points) {
+    const double distance = signed_distance(fit.surface, point);
+    if (std::abs(distance) > k_tukey * fit.noise) continue;
+    squares += distance * distance;
+    ++fit.inliers;
+  }
+  if (fit.inliers == 0) return std::nullopt;
+  fit.rms = std::sqrt(squares / static_cast<double>(fit.inliers));
+  fit.uncertainty = fitter.uncertainty(*solution, fit.rms / frame.scale);
+  fit.uncertainty.position *= frame.scale;
+  fit.uncertainty.radius *= frame.scale;
+  fit.uncertainty.minor_radius *= frame.scale;
+  return fit;
+}
+
+}  // namespace cloud2csg

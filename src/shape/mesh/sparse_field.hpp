@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <vector>
+
+#include "cloud2csg/run_context.hpp"
+#include "shape/mesh/bounded_solid.hpp"
+
+namespace cloud2csg {
+
+/// Cells along each edge of a block.
+constexpr int k_block_cells = 8;
+/// Corners along each edge of a block.
+constexpr int k_layer = k_block_cells + 1;
+constexpr int k_block_corners = k_block_cells * k_block_cells * k_block_cells;
+/// A block's tree is right this many cells beyond the block as well.
+constexpr int k_block_reach = 2;
+
+/// A regular grid. "Grid coordinates" count cells from its origin, so cell (i, j, k) is the unit cube at (i, j, k).
+struct Grid {
+  Eigen::Vector3d origin;
+  double spacing;
+  Eigen::Vector3i blocks;  ///< how many along each axis
+
+  [[nodiscard]] Eigen::Vector3d to_world(const Eigen::Vector3d& p) const { return origin + spacing * p; }
+};
+
+/// 8 x 8 x 8 cells near the surface, by their lower corners.
+struct Block {
+  Eigen::Vector3i first_cell;
+  CsgTree tree;                         ///< same values as the whole tree in and near the block
+  std::bitset<k_block_corners> inside;  ///< signs at the corners: x + 8 y + 64 z
+
+  [[nodiscard]] static int local_index(const Eigen::Vector3i& cell) {
+    return cell.x() + k_block_cells * (cell.y() + k_block_cells * cell.z());
+  }
+};
+
+/// The signs of a solid on a grid; only blocks that the surface may cross are stored, O(resolution^2).
+class SparseField {
+ public:
+  /// Margins around the solid's bounds keep all outermost corners outside. The grid is shifted against the bounds by
+  /// irrational parts of a cell, so that faces of models never lie in grid planes.
+  SparseField(const BoundedSolid& solid, int resolution, const RunContext& run);
+
+  [[nodiscard]] const Grid& grid() const { return grid_; }
+  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  /// Position in blocks() of the block that owns a cell; negative when that block is all inside or all outside.
+  [[nodiscard]] int slot_of(const Eigen::Vector3i& cell) const {
+    return slots_[slot_position((cell.array() / k_block_cells).matrix())];
+  }
+  /// Whether a grid corner is inside the solid.
+  [[nodiscard]] bool inside(const Eigen::Vector3i& corner) const;
+
+ private:
+  class Subdivision;
+  static constexpr int k_all_outside = -1;
+  static constexpr int k_all_inside = -2;
+
+  [[nodiscard]] std::size_t slot_position(const Eigen::Vector3i& block) const {
+    const Eigen::Matrix<std::size_t, 3, 1> at = block.cast<std::size_t>();
+    const Eigen::Matrix<std::size_t, 3, 1> size = grid_.blocks.cast<std::size_t>();
+    return at.x() + size.x() * (at.y() + size.y() * at.z());
+  }
+
+  Grid grid_;
+  std::vector<Block> blocks_;
+  std::vector<int> slots_;  ///< for every block of the grid, whether stored or not
+};
+
+}  // namespace cloud2csg

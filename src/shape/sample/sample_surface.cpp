@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/sample.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/append.hpp"
+#include "shape/sample/surface_sampler.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t k_noise_stream = 0x73796e7468'03;
+
+/// Batches between two looks at whether there are enough points: at first one, then twice as many each time up to
+/// this, as long as nothing is known about how many are needed.
+constexpr std::size_t k_most_blind_batches = 16;
+/// ...and afterwards; bounds the memory.
+constexpr std::size_t k_most_round_batches = 256;
+/// Batches that measure the area for a wanted density; as many without a hit mean that there is no surface.
+constexpr std::size_t k_measuring_batches = 64;
+
+[[noreturn]] void fail_option(std::string name, std::string expected) {
+  throw Error({.file = {}, .where = std::move(name), .expected = std::move(expected), .remedy = {}});
+}
+
+void check_options(const SampleOptions& options) {
+  const auto is_valid = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  if (!is_valid(options.density)) fail_option("density", "expected a finite number that is not negative");
+  if (!is_valid(options.noise)) fail_option("noise", "expected a finite number that is not negative");
+  if (!is_valid(options.normal_noise_deg)) fail_option("normal_noise_deg", "expected a finite angle, not negative");
+  if (options.count == 0 && options.density == 0.0) fail_option("count", "expected at least one point");
+}
+
+/// How many batches to make next. Which batches these are at the end does not depend on it.
+std::size_t next_round(std::size_t batches_done, std::size_t points, std::size_t wanted) {
+  if (points == 0 || wanted == 0) return std::min(batches_done + 1, k_most_blind_batches);
+  const double batches_a_point = static_cast<double>(batches_done) / static_cast<double>(points);
+  const double batches = std::ceil(static_cast<double>(wanted - points) * batches_a_point);
+  return batches < static_cast<double>(k_most_round_batches) ? static_cast<std::size_t>(batches) : k_most_round_batches;
+}
+
+/// As many points as the options want: all of the first batches and a random part of the last.
+PointCloud draw_points(const SurfaceSampler& sampler, const SampleOptions& options, const RunContext& run) {
+  PointCloud cloud;
+  std::size_t wanted = options.density > 0.0 ? 0 : options.count;
+  std::size_t batches_done = 0;
+  for (;;) {
+    if (batches_done >= k_measuring_batches) {
+      if (cloud.size() == 0) refuse_without_surface();
+      if (wanted == 0) {
+        const auto candidates = static_cast<double>(batches_done * SurfaceSampler::k_batch_candidates);
+        const double area = sampler.area() * static_cast<double>(cloud.size()) / candidates;
+        wanted = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(options.density * area)));
+      }
+    }
+    if (wanted > 0 && cloud.size() >= wanted) break;
+    const std::size_t round = next_round(batches_done, cloud.size(), wanted);
+    for (const PointCloud& batch : sampler.batches(batches_done, round, run)) {
+      append(cloud, batch);
+    }
+    batches_done += round;
+    run.report("sample", std::min(cloud.size(), wanted), wanted, "points");
+  }
+  cloud.positions.resize(wanted);
+  cloud.normals.resize(wanted);
+  return cloud;
+}
+
+/// The normal turned by an angle around a random axis across it.
+Vector3d tilt(const Vector3d& normal, double angle, RandomStream& random) {
+  const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const Vector3d first = normal.unitOrthogonal();
+  const Vector3d across = std::cos(direction) * first + std::sin(direction) * normal.cross(first);
+  return (std::cos(angle) * normal + std::sin(angle) * across).normalized();
+}
+
+void add_noise(PointCloud& cloud, const SampleOptions& options) {
+  const double tilt_sigma = options.normal_noise_deg * std::numbers::pi / 180.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    RandomStream random(options.seed, k_noise_stream, i);
+    const Vector3d shift{random.normal(), random.normal(), random.normal()};  // braces: in this order
+    cloud.positions.set(i, cloud.positions[i] + options.noise * shift);
+    if (tilt_sigma > 0.0) cloud.normals.set(i, tilt(cloud.normals[i], tilt_sigma * random.normal(), random));
+  }
+}
+
+}  // namespace
+
+PointCloud sample_surface(const CsgTree& tree, const PrimitiveSet& primitives, const SampleOptions& options,
+                          const RunContext& run) {
+  check_options(options);
+  const SurfaceSampler sampler(tree, primitives, options.seed, run);
+  PointCloud cloud = draw_points(sampler, options, run);
+  if (options.noise > 0.0 || options.normal_noise_deg > 0.0) add_noise(cloud, options);
+  return cloud;
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,209 @@
+#include "cloud2csg/scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/error.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/append.hpp"
+#include "shape/sample/ray_caster.hpp"
+#include "shape/sample/scan_defects.hpp"
+#include "shape/sample/scan_surface.hpp"
+#include "shape/sample/scan_views.hpp"
+#include "shape/sample/surface_sampler.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t k_thinning_stream = 0x7363616e'04;
+/// Rays that one thread traces at a time.
+constexpr std::size_t k_block_rays = 4096;
+
+void check_range(const char* name, double value, double least, double most, const char* expected) {
+  if (value >= least && value <= most) return;
+  throw Error({.file = {}, .where = name, .expected = expected, .remedy = {}});
+}
+
+void check_options(const ScanOptions& options) {
+  constexpr double k_most = std::numeric_limits<double>::max();
+  const auto check_size = [](const char* name, double value) {
+    check_range(name, value, 0.0, k_most, "expected a finite number that is not negative");
+  };
+  const auto check_probability = [](const char* name, double value) {
+    check_range(name, value, 0.0, 1.0, "expected a probability from 0 to 1");
+  };
+  check_range("views", static_cast<double>(options.views), 1, 1e6, "expected 1 to 1000000 views");
+  check_range("distance", options.distance, 1.001, 1e6, "expected 1.001 to 1000000 bounding radii");
+  check_range("field_of_view_deg", options.field_of_view_deg, 0.0, 170.0, "expected an angle from 0 to 170 degrees");
+  check_range("angular_step_deg", options.angular_step_deg, 0.0, 170.0, "expected an angle from 0 to 170 degrees");
+  if (options.angular_step_deg == 0.0) {
+    check_range("count", static_cast<double>(options.count), 1, 1e10, "expected at least one point");
+  }
+  check_size("noise", options.noise);
+  check_size("quantisation", options.quantisation);
+  check_range("grazing_angle_deg", options.grazing_angle_deg, 0.0, 89.999,
+              "expected an angle from 0 to below 90 degrees");
+  check_probability("grazing_loss", options.grazing_loss);
+  check_probability("outliers", options.outliers);
+  check_probability("mixed_pixels", options.mixed_pixels);
+  check_size("rotation_deg", options.rotation_deg);
+  check_size("translation", options.translation);
+}
+
+[[noreturn]] void refuse_invisible() {
+  throw Error(
+      {.file = {}, .where = {}, .expected = "no ray of the scanner returns: there is nothing to see", .remedy = {}});
+}
+
+class Scanner {
+ public:
+  Scanner(const TriangleMesh& mesh, SettleHits settle, const ScanOptions& options)
+      : caster_(mesh), settle_(std::move(settle)), options_(options), target_(target_of(mesh)) {
+    views_ = place_views(target_, options_);
+  }
+
+  /// All returns at this step between rays, in radians.
+  [[nodiscard]] PointCloud scan(double step, const RunContext& run) const {
+    const Raster raster = make_raster(options_, step);
+    const std::size_t blocks = (raster.size() + k_block_rays - 1) / k_block_rays;
+    PointCloud cloud;
+    for (std::size_t view = 0; view < views_.size(); ++view) {
+      run.report("scan", view, views_.size(), "views");
+      std::vector<PointCloud> parts(blocks);
+      for_each_index(blocks, run, [&](std::size_t block) { parts[block] = trace(view, raster, block * k_block_rays); });
+      for (const PointCloud& part : parts) append(cloud, part);
+    }
+    run.report("scan", views_.size(), views_.size(), "views");
+    return cloud;
+  }
+
+ private:
+  static ScanTarget target_of(const TriangleMesh& mesh) {
+    const AlignedBox box = bounds_of(mesh.vertices);
+    return {.middle = box.center(), .radius = 0.5 * box.diagonal().norm()};
+  }
+
+  /// What a block of a view's rays returns.
+  [[nodiscard]] PointCloud trace(std::size_t view, const Raster& raster, std::size_t first) const {
+    const std::size_t count = std::min(k_block_rays, raster.size() - first);
+    std::vector<Ray> rays(count);
+    std::vector<std::optional<RayHit>> hits(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      rays[i] = ray_of(views_[view], raster, first + i);
+      hits[i] = caster_.first_hit(rays[i]);
+    }
+    if (settle_) settle_(rays, hits);
+    PointCloud cloud;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (hits[i]) add_return(cloud, view, rays[i], *hits[i], raster.step, {options_.seed, view, first + i});
+    }
+    return cloud;
+  }
+
+  /// Adds what is measured of a hit, if anything returns, at the place where the registration puts it.
+  void add_return(PointCloud& cloud, std::size_t view, const Ray& ray, const RayHit& hit, double step,
+                  const RayChances& chances) const {
+    if (chances.loss < loss_probability(options_, ray, hit)) return;
+    std::optional<RayHit> side;
+    if (chances.mixing < options_.mixed_pixels) side = caster_.first_hit(beam_side(ray, step, chances));
+    const double range = measured_range(options_, target_, ray, hit, side, step, chances);
+    const Pose& registration = views_[view].misplacement;
+    cloud.positions.push_back(registration.to_world(ray.origin + range * ray.direction));
+    cloud.sensor_positions.push_back(registration.to_world(ray.origin));
+    if (options_.with_normals) cloud.normals.push_back(registration.orientation * hit.normal);
+  }
+
+  RayCaster caster_;
+  SettleHits settle_;
+  const ScanOptions& options_;
+  ScanTarget target_;
+  std::vector<View> views_;
+};
+
+/// As many of the points as wanted, in their order, each as likely to stay as any other (Knuth's algorithm S).
+PointCloud thin_out(const PointCloud& cloud, const ScanOptions& options) {
+  RandomStream random(options.seed, k_thinning_stream);
+  PointCloud kept;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto wanted = static_cast<double>(options.count - kept.size());
+    if (!(random.uniform() * static_cast<double>(cloud.size() - i) < wanted)) continue;
+    kept.positions.push_back(cloud.positions[i]);
+    kept.sensor_positions.push_back(cloud.sensor_positions[i]);
+    if (cloud.has_normals()) kept.normals.push_back(cloud.normals[i]);
+  }
+  return kept;
+}
+
+/// The step between rays at which about this many return, told by a coarse scan.
+double step_for(double wanted, const Scanner& scanner, const ScanOptions& options, const RunContext& run) {
+  constexpr double k_coarse_rays = 50'000;
+  constexpr int k_most_scans = 3;
+  const Raster one_ray = make_raster(options, std::numbers::pi);
+  double step = one_ray.step * std::sqrt(static_cast<double>(options.views) / k_coarse_rays);
+  for (int scans = 0; scans < k_most_scans; ++scans) {
+    const std::size_t returns = scanner.scan(step, run).size();
+    if (returns > 0) return step * std::sqrt(static_cast<double>(returns) / wanted);
+    step *= 0.5;  // what there is to see may be small
+  }
+  refuse_invisible();
+}
+
+/// A scan that gives a few points more than wanted, less these.
+PointCloud scan_count(const Scanner& scanner, const ScanOptions& options, const RunContext& run) {
+  constexpr double k_surplus = 1.03;
+  constexpr double k_finer = 0.97;
+  constexpr int k_most_scans = 100;
+  double step = step_for(k_surplus * static_cast<double>(options.count), scanner, options, run);
+  for (int scans = 0; scans < k_most_scans; ++scans) {
+    const PointCloud cloud = scanner.scan(step, run);
+    if (cloud.size() >= options.count) return thin_out(cloud, options);
+    step *= k_finer;
+  }
+  refuse_invisible();
+}
+
+PointCloud scan_surface(const TriangleMesh& mesh, const SettleHits& settle, const ScanOptions& options,
+                        const RunContext& run) {
+  if (mesh.triangles.empty()) refuse_invisible();
+  const Scanner scanner(mesh, settle, options);
+  if (options.angular_step_deg == 0.0) return scan_count(scanner, options, run);
+  PointCloud cloud = scanner.scan(options.angular_step_deg * std::numbers::pi / 180.0, run);
+  if (cloud.size() == 0) refuse_invisible();
+  return cloud;
+}
+
+}  // namespace
+
+ScanOptions without_defects(ScanOptions options) {
+  options.noise = options.quantisation = 0.0;
+  options.grazing_loss = 0.0;
+  options.outliers = options.mixed_pixels = 0.0;
+  options.rotation_deg = options.translation = 0.0;
+  return options;
+}
+
+PointCloud scan_mesh(const TriangleMesh& mesh, const ScanOptions& options, const RunContext& run) {
+  check_options(options);
+  return scan_surface(mesh, {}, options, run);
+}
+
+PointCloud scan_model(const CsgTree& tree, const PrimitiveSet& primitives, const ScanOptions& options,
+                      const RunContext& run) {
+  constexpr double k_reach_cells = 3.0;
+  check_options(options);
+  const AlignedBox bounds = finite_bounds(tree, primitives);
+  const TriangleMesh mesh = mesh_surface(tree, primitives, bounds, options.meshing, run);
+  if (mesh.triangles.empty()) refuse_without_surface();
+  const double reach = k_reach_cells * bounds.sizes().maxCoeff() / options.meshing.resolution;
+  return scan_surface(mesh, settle_on_solid(tree, primitives, reach), options, run);
+}
+
+}  // namespace cloud2csg

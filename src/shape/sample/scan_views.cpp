@@ -1,0 +1,111 @@
+#include "shape/sample/scan_views.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "cloud2csg/error.hpp"
+#include "core/base/random.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr std::uint64_t k_view_stream = 0x7363616e'01;
+constexpr std::uint64_t k_turn_stream = 0x7363616e'02;
+
+Vector3d normal_vector(RandomStream& random) {
+  return {random.normal(), random.normal(), random.normal()};  // braces: in this order
+}
+
+/// Any orientation is as likely as any other.
+Quaterniond random_turn(RandomStream& random) {
+  const Vector3d imaginary = normal_vector(random);
+  const Quaterniond orientation(random.normal(), imaginary.x(), imaginary.y(), imaginary.z());
+  return orientation.norm() > 0.0 ? orientation.normalized() : Quaterniond::Identity();
+}
+
+/// The i-th of n directions: equal steps in height, the golden angle in longitude.
+Vector3d spiral_direction(std::size_t i, std::size_t n) {
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  const double height = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(n);
+  const double across = std::sqrt(std::max(0.0, 1.0 - height * height));
+  const double longitude = golden_angle * static_cast<double>(i);
+  return {across * std::cos(longitude), across * std::sin(longitude), height};
+}
+
+/// The way from the part to each sensor.
+std::vector<Vector3d> view_directions(const ScanOptions& options) {
+  RandomStream random(options.seed, k_turn_stream);
+  const Quaterniond turn =
+      options.on_table ? Quaterniond(Eigen::AngleAxisd(2.0 * std::numbers::pi * random.uniform(), Vector3d::UnitZ()))
+                       : random_turn(random);
+  const std::size_t steps = options.on_table ? 2 * options.views : options.views;  // the first half is above
+  std::vector<Vector3d> directions;
+  directions.reserve(options.views);
+  for (std::size_t i = 0; i < options.views; ++i) directions.emplace_back(turn * spiral_direction(i, steps));
+  return directions;
+}
+
+/// A small turn around the middle of the part, then a shift.
+Pose misplacement(const ScanTarget& target, const ScanOptions& options, RandomStream& random) {
+  const double angle = options.rotation_deg * std::numbers::pi / 180.0 * random.normal();
+  const Vector3d axis = normal_vector(random).stableNormalized();
+  const Vector3d shift = options.translation * target.diagonal() * normal_vector(random);
+  if (angle == 0.0 && shift.isZero(0.0)) return {};  // not even rounding
+  const Quaterniond turn(Eigen::AngleAxisd(angle, axis));
+  return {.position = target.middle + shift - turn * target.middle, .orientation = turn};
+}
+
+}  // namespace
+
+std::vector<View> place_views(const ScanTarget& target, const ScanOptions& options) {
+  const std::vector<Vector3d> directions = view_directions(options);
+  std::vector<View> views;
+  for (std::size_t i = 0; i < options.views; ++i) {
+    RandomStream random(options.seed, k_view_stream, i);
+    const Vector3d& outward = directions[i];
+    const Vector3d position = target.middle + options.distance * target.radius * outward;
+    View view{.sensor = pose_from_axis(position, -outward),
+              .misplacement = {},
+              .column_shift = random.uniform(),
+              .row_shift = random.uniform()};
+    view.misplacement = misplacement(target, options, random);
+    views.push_back(view);
+  }
+  return views;
+}
+
+Raster make_raster(const ScanOptions& options, double step) {
+  constexpr double k_most_rays_a_side = 1e6;
+  const double half_angle = options.field_of_view_deg > 0.0 ? options.field_of_view_deg * std::numbers::pi / 360.0
+                                                            : std::asin(1.0 / options.distance);
+  const double side = std::floor(2.0 * half_angle / step);
+  if (!(side <= k_most_rays_a_side)) {
+    throw Error({.file = {},
+                 .where = options.angular_step_deg > 0.0 ? "angular_step_deg" : "count",
+                 .expected = fmt::format("expected no more than {:.0f} rays across a view, found {:.3g}",
+                                         k_most_rays_a_side, side),
+                 .remedy = {}});
+  }
+  if (side < 1) return {.step = 2.0 * half_angle, .side = 1};
+  return {.step = step, .side = static_cast<std::size_t>(side)};
+}
+
+Ray ray_of(const View& view, const Raster& raster, std::size_t index) {
+  const double column = static_cast<double>(index % raster.side) + view.column_shift;
+  const std::size_t whole_rows = index / raster.side;
+  const double row = static_cast<double>(whole_rows) + view.row_shift;
+  const double half_angle = 0.5 * static_cast<double>(raster.side) * raster.step;
+  const double azimuth = column * raster.step - half_angle;
+  const double elevation = row * raster.step - half_angle;
+  const Vector3d local(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                       std::cos(azimuth) * std::cos(elevation));
+  return {.origin = view.sensor.position, .direction = (view.sensor.orientation * local).normalized()};
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/picture.hpp"
+#include "core/base/atomic_file.hpp"
+#include "core/base/parallel.hpp"
+#include "shape/mesh/model_extent.hpp"
+#include "view/picture/draw_cloud.hpp"
+#include "view/picture/draw_solid.hpp"
+#include "view/picture/view.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::size_t k_oversampling = 3;
+constexpr int k_longest_side = 4096;
+// In all: samples and what rays meet take half a kilobyte a pixel.
+constexpr double k_most_pixels = 4e6;
+
+std::uint8_t byte_of(float linear) {
+  return static_cast<std::uint8_t>(std::lround(255.0F * std::pow(std::clamp(linear, 0.0F, 1.0F), 1 / 2.2F)));
+}
+
+/// The part of a picture that begins at a column of pixels.
+struct Pane {
+  int begin, width;
+};
+
+/// Averages the samples of each pixel over the background.
+void fill_pane(Image& image, const Pane& pane, const Samples& samples, const PictureOptions& options,
+               const RunContext& run) {
+  const std::size_t columns = k_oversampling * static_cast<std::size_t>(pane.width);
+  for_each_index(static_cast<std::size_t>(image.height), run, [&](std::size_t row) {
+    const Colour behind = background(options, static_cast<int>(row));
+    const Eigen::Vector3f empty = linear_colour(behind);
+    for (std::size_t column = 0; column < static_cast<std::size_t>(pane.width); ++column) {
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      bool is_empty = true;
+      for (std::size_t k = 0; k < k_oversampling * k_oversampling; ++k) {
+        const std::size_t sample_row = k_oversampling * row + k / k_oversampling;
+        const Sample& sample = samples[sample_row * columns + k_oversampling * column + k % k_oversampling];
+        const bool is_seen = std::isfinite(sample.depth);
+        sum += is_seen ? sample.colour : empty;
+        is_empty = is_empty && !is_seen;
+      }
+      sum /= static_cast<float>(k_oversampling * k_oversampling);
+      const std::size_t pixel =
+          row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(pane.begin) + column;
+      // Exactly the background, not what rounding makes of its mean.
+      const std::array<std::uint8_t, 3> colour = is_empty
+                                                     ? std::array{behind.red, behind.green, behind.blue}
+                                                     : std::array{byte_of(sum.x()), byte_of(sum.y()), byte_of(sum.z())};
+      std::ranges::copy(colour, image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
+    }
+  });
+}
+
+/// The box of what is not far off: a few outliers must not make all else small.
+AlignedBox main_box(const PointCloud& cloud) {
+  constexpr double k_left_out = 0.002;
+  AlignedBox box;
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+  std::array<const std::vector<double>*, 3> axes{&cloud.positions.x, &cloud.positions.y, &cloud.positions.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> values = *axes.at(axis);
+    const auto skipped = static_cast<std::ptrdiff_t>(k_left_out * static_cast<double>(values.size()));
+    std::ranges::nth_element(values, values.begin() + skipped);
+    low[static_cast<Eigen::Index>(axis)] = values[static_cast<std::size_t>(skipped)];
+    std::ranges::nth_element(values, values.end() - 1 - skipped);
+    high[static_cast<Eigen::Index>(axis)] = *(values.end() - 1 - skipped);
+  }
+  return {low, high};
+}
+
+}  // namespace
+
+void validate(const PictureOptions& options) {
+  const auto require = [](bool is_right, const char* field, const std::string& expected, double found) {
+    if (is_right) return;
+    throw Error(
+        {.file = {}, .where = field, .expected = fmt::format("expected {}, found {}", expected, found), .remedy = {}});
+  };
+  const std::string pixels = fmt::format("16 to {} pixels", k_longest_side);
+  const auto is_side = [](int side) { return side >= 16 && side <= k_longest_side; };
+  require(options.width == 0 || is_side(options.width), "width", pixels, options.width);
+  require(is_side(options.height), "height", pixels, options.height);
+  const double width = options.width > 0 ? options.width : 2.0 * options.height;
+  require(width * options.height <= k_most_pixels, "height",
+          fmt::format("at most {:.0f} pixels with this width", k_most_pixels / width), options.height);
+  require(std::isfinite(options.azimuth_deg), "azimuth_deg", "a finite number", options.azimuth_deg);
+  require(std::abs(options.elevation_deg) <= 90, "elevation_deg", "-90 to 90 degrees", options.elevation_deg);
+  require(options.resolution >= 4 && options.resolution <= 4096, "resolution", "4 to 4096 cells", options.resolution);
+}
+
+Colour background(const PictureOptions& options, int row) {
+  const double down = static_cast<double>(row) / std::max(1, options.height - 1);
+  const auto between = [down](double top, double bottom) {
+    return static_cast<std::uint8_t>(std::lround(top + down * (bottom - top)));
+  };
+  return {.red = between(253, 229), .green = between(254, 234), .blue = between(255, 241)};
+}
+
+Image draw_picture(const Scene& scene, const PictureOptions& options, const RunContext& run) {
+  validate(options);
+  const bool has_cloud = scene.cloud && scene.cloud->size() > 0;
+  TriangleMesh mesh;
+  if (scene.model.tree) {
+    const CsgTree& tree = *scene.model.tree;
+    mesh = mesh_surface(tree, scene.model.primitives, model_extent(tree, scene.model.primitives),
+                        {.resolution = options.resolution}, run);
+  }
+  AlignedBox box;
+  if (!mesh.triangles.empty()) box.extend(bounds_of(mesh.vertices));
+  if (has_cloud) box.extend(main_box(*scene.cloud));
+  const int panes = (has_cloud ? 1 : 0) + (scene.model.tree ? 1 : 0);
+  if (panes == 0 || box.isEmpty()) {
+    throw Error(
+        {.file = {}, .where = {}, .expected = "expected a cloud or a solid to draw, found neither", .remedy = {}});
+  }
+  Image image{.width = options.width > 0 ? options.width : panes * options.height, .height = options.height};
+  image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  Pane pane{.begin = 0, .width = image.width / panes};
+  const auto view = [&] {
+    return view_of(box, options.azimuth_deg, options.elevation_deg,
+                   k_oversampling * static_cast<std::size_t>(pane.width),
+                   k_oversampling * static_cast<std::size_t>(image.height));
+  };
+  if (has_cloud) {
+    fill_pane(image, pane, draw_cloud(*scene.cloud, scene.colours, view()), options, run);
+    pane = {.begin = pane.width, .width = image.width - pane.width};
+  }
+  if (scene.model.tree) fill_pane(image, pane, draw_solid(scene.model, mesh, view(), run), options, run);
+  return image;
+}
+
+void write_picture(const std::filesystem::path& file, const Scene& scene, const PictureOptions& options,
+                   const RunContext& run) {
+  write_text_file(file, to_png(draw_picture(scene, options, run)));
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,122 @@
+#include "view/picture/draw_solid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "paper/objective/point_fit.hpp"
+#include "shape/sample/ray_caster.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// What a ray meets.
+struct Hit {
+  double depth = std::numeric_limits<double>::infinity();
+  Vector3d normal = Vector3d::Zero();
+  PrimitiveIndex owner = k_no_owner;
+
+  [[nodiscard]] bool is_hit() const { return std::isfinite(depth); }
+};
+
+std::vector<Hit> cast_rays(const TriangleMesh& mesh, const View& view, const RunContext& run) {
+  std::vector<Hit> hits(view.columns * view.rows);
+  if (mesh.triangles.empty()) return hits;
+  const RayCaster caster(mesh);
+  for_each_index(view.rows, run, [&](std::size_t row) {
+    for (std::size_t column = 0; column < view.columns; ++column) {
+      const auto hit = caster.first_hit({.origin = view.origin(column, row), .direction = view.forward});
+      if (hit) hits[row * view.columns + column] = {.depth = hit->range, .normal = hit->normal};
+    }
+  });
+  return hits;
+}
+
+/// Whose surface is hit, and its normal there: a mesh's own are of triangles, which would show.
+void find_owners(std::vector<Hit>& hits, const Model& model, const View& view, const RunContext& run) {
+  PointCloud places;
+  std::vector<std::size_t> sample_of;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i].is_hit()) continue;
+    places.positions.push_back(view.origin(i % view.columns, i / view.columns) + hits[i].depth * view.forward);
+    sample_of.push_back(i);
+  }
+  if (places.positions.empty()) return;
+  const double near = 2 * view.step;
+  const PointFit fit = measure_points(*model.tree, model.primitives, places, near, {.with_owners = true}, run);
+  std::vector<std::vector<std::size_t>> of_primitive(model.primitives.size());
+  for (std::size_t k = 0; k < fit.owners.size(); ++k) {
+    // Where a solid without bounds was cut there is no primitive.
+    if (fit.owners[k] == k_no_owner || std::abs(fit.signed_distances[k]) > 10 * near) continue;
+    of_primitive[fit.owners[k]].push_back(k);
+  }
+  for_each_index(of_primitive.size(), run, [&](std::size_t p) {
+    Points points;
+    points.reserve(of_primitive[p].size());
+    for (const std::size_t k : of_primitive[p]) points.push_back(places.positions[k]);
+    const Points normals = gradient(model.primitives[p], points);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      Hit& hit = hits[sample_of[of_primitive[p][j]]];
+      hit.owner = static_cast<PrimitiveIndex>(p);
+      const Vector3d normal = normals[j].stableNormalized();
+      if (normal.allFinite()) hit.normal = normal.dot(view.forward) > 0 ? Vector3d(-normal) : normal;
+    }
+  });
+}
+
+/// Whether a line belongs between two samples beside each other: an outline, a step in depth that the slope does not
+/// explain, an edge, or where one primitive's surface ends and another's begins.
+bool is_line(const Hit& a, const Hit& b, double step) {
+  if (a.is_hit() != b.is_hit()) return true;
+  if (!a.is_hit()) return false;
+  constexpr double k_steepest = 12;
+  constexpr double k_sharp = 0.85;  // cosine of 32 degrees
+  return a.owner != b.owner || std::abs(a.depth - b.depth) > k_steepest * step || a.normal.dot(b.normal) < k_sharp;
+}
+
+Vector3f shade(const Hit& hit, const View& view) {
+  const Vector3f own = linear_colour(hit.owner == k_no_owner ? k_no_primitive_colour : primitive_colour(hit.owner));
+  constexpr float k_white = 0.12F;  // softens colours that are made to be told apart
+  return brightness(hit.normal, view) * ((1 - k_white) * own + Vector3f::Constant(k_white));
+}
+
+}  // namespace
+
+Vector3f linear_colour(const Colour& colour) {
+  const auto linear = [](std::uint8_t value) { return std::pow(static_cast<float>(value) / 255.0F, 2.2F); };
+  return {linear(colour.red), linear(colour.green), linear(colour.blue)};
+}
+
+float brightness(const Vector3d& normal, const View& view) {
+  const Vector3d light = (-view.forward - 0.55 * view.right + 0.75 * view.up).normalized();
+  const double lamp = std::max(0.0, normal.dot(light));
+  const double sky = 0.5 + 0.5 * normal.dot(view.up);
+  return static_cast<float>(0.28 + 0.62 * lamp + 0.16 * sky);
+}
+
+Samples draw_solid(const Model& model, const TriangleMesh& mesh, const View& view, const RunContext& run) {
+  std::vector<Hit> hits = cast_rays(mesh, view, run);
+  find_owners(hits, model, view, run);
+  Samples samples(hits.size());
+  const Vector3f line(0.02F, 0.025F, 0.04F);
+  for_each_index(view.rows, run, [&](std::size_t row) {
+    for (std::size_t column = 0; column < view.columns; ++column) {
+      const std::size_t i = row * view.columns + column;
+      const bool is_line_here = (column > 0 && is_line(hits[i - 1], hits[i], view.step)) ||
+                                (row > 0 && is_line(hits[i - view.columns], hits[i], view.step)) ||
+                                (column + 1 < view.columns && is_line(hits[i], hits[i + 1], view.step)) ||
+                                (row + 1 < view.rows && is_line(hits[i], hits[i + view.columns], view.step));
+      if (!hits[i].is_hit()) continue;
+      samples[i] = {.depth = static_cast<float>(hits[i].depth), .colour = is_line_here ? line : shade(hits[i], view)};
+    }
+  });
+  return samples;
+}
+
+}  // namespace cloud2csg

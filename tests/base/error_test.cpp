@@ -1,0 +1,30 @@
+#include "cloud2csg/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace cloud2csg {
+namespace {
+
+TEST(Error, MessageJoinsAllParts) {
+  const Error error({.file = "a.ply", .where = "line 3", .expected = "expected a number", .remedy = "fix it"});
+  EXPECT_STREQ(error.what(), "a.ply: line 3: expected a number; fix it");
+}
+
+TEST(Error, EmptyPartsLeaveNoSeparators) {
+  EXPECT_STREQ(Error({.file = {}, .where = {}, .expected = "no", .remedy = {}}).what(), "no");
+  EXPECT_STREQ(Error({.file = "f", .where = {}, .expected = "no", .remedy = {}}).what(), "f: no");
+  EXPECT_STREQ(Error({.file = {}, .where = "radius", .expected = "no", .remedy = "yes"}).what(), "radius: no; yes");
+}
+
+TEST(Error, KeepsItsParts) {
+  const Error error({.file = "f", .where = "w", .expected = "e", .remedy = "r"});
+  EXPECT_EQ(error.parts().file, "f");
+  EXPECT_EQ(error.parts().where, "w");
+  EXPECT_EQ(error.parts().expected, "e");
+  EXPECT_EQ(error.parts().remedy, "r");
+}
+
+}  // namespace
+}  // namespace cloud2csg

@@ -1,0 +1,327 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "cloud2csg/advanced/solids.hpp"
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/sample.hpp"
+#include "solids/known_surfaces.hpp"
+#include "support/known_solids.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// A part that is known, and a cloud of it.
+struct Part {
+  PrimitiveSet solids;
+  CsgTree tree;
+  PointCloud cloud;
+  std::vector<DetectedSurface> surfaces;
+};
+
+Part part_of(PrimitiveSet solids, const std::string& formula, double noise = 0.002) {
+  Part part{.solids = std::move(solids), .tree = {}, .cloud = {}, .surfaces = {}};
+  part.tree = parse_tree(formula, part.solids);
+  part.cloud = sample_surface(part.tree, part.solids, {.count = 6000, .noise = noise, .seed = 3});
+  part.surfaces = test::known_surfaces(part.solids, part.cloud, std::max(4 * noise, 1e-3));
+  return part;
+}
+
+/// Few places, so that the tests stay quick.
+SolidOptions quick() {
+  SolidOptions options;
+  options.places.volume_places = 6000;
+  options.places.surface_points = 2000;
+  return options;
+}
+
+/// Of the chosen solids with the part, on a lattice.
+double iou_with(const Part& part, const SolidChoice& choice) {
+  PrimitiveSet all = part.solids;
+  std::vector<PrimitiveIndex> new_index;
+  for (const Primitive& solid : choice.solids) {
+    new_index.push_back(static_cast<PrimitiveIndex>(all.size()));
+    all.push_back(solid);
+  }
+  return test::membership_iou(part.tree, renumber(choice.tree, new_index), all, 50);
+}
+
+void expect_recovered(const Part& part, std::size_t most_leaves) {
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, quick());
+  EXPECT_LE(leaf_count(choice.tree), most_leaves) << to_text(choice.tree, choice.solids);
+  EXPECT_GE(iou_with(part, choice), 0.99) << to_text(choice.tree, choice.solids);
+  for (const Primitive& solid : choice.solids) EXPECT_NO_THROW(validate(solid));
+}
+
+Primitive turned(Primitive solid, const Eigen::Vector3d& axis, double degrees) {
+  solid.pose.orientation = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized());
+  return solid;
+}
+
+Part plate_with_holes() {
+  return part_of(
+      {test::placed("plate", Box{{4, 3, 0.5}}, {0, 0, 0}), test::placed("a", Cylinder{0.4, 2}, {-1.2, 0.5, 0}),
+       test::placed("b", Cylinder{0.4, 2}, {1.2, 0.5, 0}), test::placed("c", Cylinder{0.6, 2}, {0, -0.6, 0})},
+      "plate - a - b - c");
+}
+
+TEST(ChooseSolids, FindsAPlateWithHoles) {
+  expect_recovered(plate_with_holes(), 4);
+}
+
+/// So many holes along each side.
+Part plate_with_rows_of_holes(int count) {
+  const double length = count;
+  PrimitiveSet solids{test::placed("plate", Box{{length, length, 0.6}}, {0.5 * length, 0.5 * length, 0})};
+  std::string formula = "plate";
+  for (int x = 0; x < count; ++x) {
+    for (int y = 0; y < count; ++y) {
+      solids.push_back(
+          test::placed(fmt::format("hole_{}_{}", x, y).c_str(), Cylinder{0.3, 1.2}, {x + 0.5, y + 0.5, 0}));
+      formula += " - " + solids.back().id;
+    }
+  }
+  Part part{.solids = std::move(solids), .tree = {}, .cloud = {}, .surfaces = {}};
+  part.tree = parse_tree(formula, part.solids);
+  const auto points = static_cast<std::size_t>(300 * count * count);
+  part.cloud = sample_surface(part.tree, part.solids, {.count = points, .noise = 0.002, .seed = 3});
+  part.surfaces = test::known_surfaces(part.solids, part.cloud, 0.008, 30);
+  return part;
+}
+
+TEST(ChooseSolids, FindsHundredsOfHoles) {
+  const Part part = plate_with_rows_of_holes(16);
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces);
+  EXPECT_EQ(leaf_count(choice.tree), 257U);
+  EXPECT_LT(choice.disagreement, 0.03);
+  EXPECT_TRUE(choice.warnings.empty());
+}
+
+TEST(ChooseSolids, WarnsWhereItsGuardEndsTheChoice) {
+  const Part part = plate_with_rows_of_holes(3);
+  SolidOptions options = quick();
+  options.most_rules = 5;
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, options);
+  ASSERT_EQ(choice.warnings.size(), 1U);
+  EXPECT_NE(choice.warnings.front().find("more than 5 parts"), std::string::npos) << choice.warnings.front();
+}
+
+TEST(ChooseSolids, FindsABracketOfTwoBoxes) {
+  expect_recovered(part_of({test::placed("foot", Box{{3, 2, 0.4}}, {0, 0, 0.2}),
+                            test::placed("back", Box{{0.4, 2, 2}}, {-1.3, 0, 1})},
+                           "foot | back"),
+                   2);
+}
+
+TEST(ChooseSolids, FindsHalfASphereOnACylinder) {
+  expect_recovered(
+      part_of({test::placed("post", Cylinder{0.6, 2}, {0, 0, 1}), test::placed("ball", Sphere{1}, {0, 0, 2}),
+               test::placed("upper", Box{{4, 4, 2}}, {0, 0, 3})},
+              "post | (ball & upper)"),
+      3);
+}
+
+TEST(ChooseSolids, FindsNestedPockets) {
+  expect_recovered(
+      part_of(
+          {test::placed("block", Box{{4, 4, 2}}, {0, 0, 0}), test::placed("wide", Box{{3, 3, 1}}, {0, 0, 1}),
+           test::placed("deep", Box{{1.5, 1.5, 1}}, {0, 0, 0.3}), test::placed("pin", Cylinder{0.4, 1.2}, {0, 0, 0.2})},
+          "block - wide - deep | pin"),
+      4);
+}
+
+TEST(ChooseSolids, FindsAHexagonalPrism) {
+  Polytope prism{.planes = {{{0, 0, 1}, 0.5}, {{0, 0, -1}, 0.5}}};
+  for (int side = 0; side < 6; ++side) {
+    const double angle = side * std::numbers::pi / 3;
+    prism.planes.push_back({{std::cos(angle), std::sin(angle), 0}, 1.0});
+  }
+  expect_recovered(part_of({test::placed("prism", prism, {0, 0, 0}), test::placed("hole", Cylinder{0.5, 3}, {0, 0, 0})},
+                           "prism - hole"),
+                   2);
+}
+
+TEST(ChooseSolids, FindsATurnedPart) {
+  const Eigen::Vector3d axis(1, 2, 0.5);
+  expect_recovered(part_of({turned(test::placed("block", Box{{3, 2, 1}}, {0, 0, 0}), axis, 33),
+                            turned(test::placed("hole", Cylinder{0.5, 3}, {0, 0, 0}), axis, 33)},
+                           "block - hole"),
+                   2);
+}
+
+TEST(ChooseSolids, FindsAConeAndATorus) {
+  expect_recovered(part_of({test::placed("cone", Cone{1.0, 0.4, 1.5}, {0, 0, 0}),
+                            test::placed("ring", Torus{1.5, 0.3}, {0, 0, -0.9})},
+                           "cone | ring"),
+                   2);
+}
+
+/// Nothing is seen of where the bend goes over into the straight pipes.
+TEST(ChooseSolids, FindsABentPipe) {
+  const Part pipe =
+      part_of({test::placed("bend", Torus{3, 1}, {0, 0, 0}), test::placed("quarter", Box{{6, 6, 4}}, {3, 3, 0}),
+               turned(test::placed("down", Cylinder{1, 2.5}, {3, -1.25, 0}), {1, 0, 0}, 90),
+               turned(test::placed("left", Cylinder{1, 2.5}, {-1.25, 3, 0}), {0, 1, 0}, 90)},
+              "(bend & quarter) | down | left");
+  expect_recovered(pipe, 4);
+}
+
+TEST(ChooseSolids, DoesNotDependOnScaleOrPlace) {
+  const Part part = plate_with_holes();
+  Part large = part;
+  const Eigen::Vector3d shift(1000, -2000, 500);
+  for (std::size_t i = 0; i < large.cloud.size(); ++i)
+    large.cloud.positions.set(i, 100 * part.cloud.positions[i] + shift);
+  for (DetectedSurface& detected : large.surfaces) {
+    detected.surface.position = 100 * detected.surface.position + shift;
+    detected.surface.radius *= 100;
+    detected.rms *= 100;
+  }
+  const SolidChoice small_choice = choose_solids(part.cloud, part.surfaces, quick());
+  const SolidChoice large_choice = choose_solids(large.cloud, large.surfaces, quick());
+  EXPECT_EQ(to_text(small_choice.tree, small_choice.solids), to_text(large_choice.tree, large_choice.solids));
+  EXPECT_NEAR(small_choice.disagreement, large_choice.disagreement, 1e-3);
+}
+
+TEST(ChooseSolids, DoesNotDependOnThreads) {
+  const Part part = plate_with_holes();
+  const SolidChoice one = choose_solids(part.cloud, part.surfaces, quick(), {.threads = 1});
+  const SolidChoice two = choose_solids(part.cloud, part.surfaces, quick(), {.threads = 2});
+  EXPECT_EQ(one.tree, two.tree);
+  EXPECT_EQ(one.disagreement, two.disagreement);
+  EXPECT_EQ(one.places.weights, two.places.weights);
+}
+
+TEST(ChooseSolids, HolesOvershootTheFacesThatTheyBreakThrough) {
+  const Part part = plate_with_holes();
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, quick());
+  std::size_t holes = 0;
+  for (const Primitive& solid : choice.solids) {
+    const auto* cylinder = std::get_if<Cylinder>(&solid.shape);
+    if (cylinder == nullptr) continue;
+    ++holes;
+    EXPECT_GT(cylinder->height, 0.55);
+    EXPECT_LT(cylinder->height, 3.0);
+  }
+  EXPECT_EQ(holes, 3U);
+}
+
+TEST(ChooseSolids, RefusesWhatItCannotUse) {
+  const Part part = plate_with_holes();
+  EXPECT_THROW((void)choose_solids(part.cloud, {}, quick()), Error);
+  EXPECT_THROW((void)choose_solids({.positions = part.cloud.positions, .normals = {}}, part.surfaces, quick()), Error);
+  SolidOptions options = quick();
+  options.leaf_cost = 0;
+  try {
+    (void)choose_solids(part.cloud, part.surfaces, options);
+    FAIL() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.parts().where, "leaf_cost");
+  }
+}
+
+TEST(ChooseSolids, IsCancelledBeforeTheSearch) {
+  const Part part = plate_with_holes();
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW((void)choose_solids(part.cloud, part.surfaces, quick(), {.stop = stop.get_token()}), Cancelled);
+}
+
+/// What lies on the known solids is theirs, and no surface.
+SolidChoice choose_beside(const Part& part, const PrimitiveSet& known) {
+  const std::vector<SurfacePoints> own = deal_points(part.cloud, known, {.distance = 0.01, .cosine = 0.8});
+  std::vector<KnownSolid> solids;
+  std::vector<std::uint8_t> is_taken(part.cloud.size(), 0);
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    solids.push_back({.solid = known[k], .own = own[k]});
+    for (const std::uint32_t i : own[k].points) is_taken[i] = 1;
+  }
+  std::vector<DetectedSurface> rest = part.surfaces;
+  for (DetectedSurface& surface : rest) {
+    std::erase_if(surface.points, [&](std::uint32_t i) { return is_taken[i] != 0; });
+  }
+  std::erase_if(rest, [](const DetectedSurface& surface) { return surface.points.size() < 12; });
+  return choose_solids(part.cloud, rest, solids, quick(), {});
+}
+
+TEST(ChooseSolids, KeepsWhatIsKnownAndFindsTheRest) {
+  const Part part = plate_with_holes();
+  const PrimitiveSet known{part.solids[0], part.solids[3]};
+  const SolidChoice choice = choose_beside(part, known);
+  ASSERT_EQ(choice.solids.size(), 4U) << to_text(choice.tree, choice.solids);
+  EXPECT_EQ(choice.solids[0].id, "plate");
+  EXPECT_EQ(choice.solids[1].id, "c");
+  EXPECT_EQ(choice.solids[1].pose.position, known[1].pose.position);
+  EXPECT_EQ(std::get<Cylinder>(choice.solids[1].shape).height, 2);
+  EXPECT_EQ(leaf_count(choice.tree), 4U);
+  EXPECT_EQ(primitives_of(choice.tree).size(), 4U);
+  EXPECT_GE(iou_with(part, choice), 0.99);
+}
+
+TEST(ChooseSolids, NeedsNoSurfaceWhereAllIsKnown) {
+  const Part part = plate_with_holes();
+  const SolidChoice choice = choose_beside(part, part.solids);
+  EXPECT_EQ(choice.solids.size(), 4U);
+  EXPECT_EQ(leaf_count(choice.tree), 4U);
+  EXPECT_LT(choice.disagreement, 0.03);
+}
+
+TEST(ChooseSolids, GivesNewSolidsIdsOfTheirOwn) {
+  const Part part = plate_with_holes();
+  Primitive known = part.solids[1];
+  known.id = "cylinder_0";
+  const SolidChoice choice = choose_beside(part, {known});
+  std::set<std::string> ids;
+  for (const Primitive& solid : choice.solids) EXPECT_TRUE(ids.insert(solid.id).second) << solid.id;
+  EXPECT_EQ(leaf_count(choice.tree), 4U);
+}
+
+TEST(ChooseSolids, DoesWithoutWhatIsNotThere) {
+  const Part part = plate_with_holes();
+  const PrimitiveSet known{test::placed("ghost", Sphere{0.3}, {5, 5, 5}),
+                           test::placed("wrong", Box{{2, 2, 2}}, {1, 1, 1})};
+  const SolidChoice choice = choose_beside(part, known);
+  const std::vector<PrimitiveIndex> used = primitives_of(choice.tree);
+  EXPECT_EQ(std::ranges::count_if(used, [](PrimitiveIndex p) { return p < 2; }), 0);
+  EXPECT_GE(iou_with(part, choice), 0.98);
+}
+
+TEST(ChooseSolids, TakesKnownFreeForms) {
+  Primitive wavy = test::placed("wavy", Box{{2, 2, 1}}, {0, 0, 0});
+  wavy.displacement = Displacement{.frequency = 2.5};
+  const Part part = part_of({wavy, test::placed("hole", Cylinder{0.4, 4}, {0, 0, 0})}, "wavy - hole");
+  const SolidChoice choice = choose_beside(part, {part.solids[0]});
+  EXPECT_EQ(leaf_count(choice.tree), 2U) << to_text(choice.tree, choice.solids);
+  EXPECT_GE(iou_with(part, choice), 0.99);
+}
+
+TEST(ChooseSolids, RefusesGivenValuesThatAreNone) {
+  const Part part = plate_with_holes();
+  SolidOptions options = quick();
+  options.regularity.radii = {1, -1};
+  EXPECT_THROW((void)choose_solids(part.cloud, part.surfaces, options), Error);
+  options = quick();
+  options.regularity.axes = {Eigen::Vector3d::Zero()};
+  EXPECT_THROW((void)choose_solids(part.cloud, part.surfaces, options), Error);
+}
+
+TEST(ChooseSolids, TakesGivenRadiiWithoutSnapping) {
+  const Part part = plate_with_holes();
+  SolidOptions options = quick();
+  options.regularity = {.snap = false, .radii = {0.405, 0.602}, .given_tolerance = 0.02};
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, options);
+  std::set<double> radii;
+  for (const Primitive& solid : choice.solids) {
+    if (const auto* hole = std::get_if<Cylinder>(&solid.shape)) radii.insert(hole->radius);
+  }
+  EXPECT_EQ(radii, (std::set<double>{0.405, 0.602}));
+  for (const Snap& snap : choice.snaps) EXPECT_EQ(snap.kind, RegularityKind::given_radius);
+}
+
+}  // namespace
+}  // namespace cloud2csg

@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cloud2csg/advanced/solids.hpp"
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/sample.hpp"
+#include "support/known_solids.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// A block with a thin wall on it and a hole through it.
+const PrimitiveSet k_solids{test::placed("block", Box{{4, 3, 1}}, {0, 0, 0}),
+                            test::placed("wall", Box{{4, 0.15, 2}}, {0, 1, 1}),
+                            test::placed("hole", Cylinder{0.5, 3}, {0, -0.5, 0})};
+
+CsgTree tree() {
+  return parse_tree("(block | wall) - hole", k_solids);
+}
+
+LabelledPlaces places_of(const CsgTree& of, double noise) {
+  const PointCloud cloud = sample_surface(of, k_solids, {.count = 10'000, .noise = noise, .seed = 7});
+  return label_places(cloud, {.noise = noise, .volume_places = 8000, .surface_points = 2000});
+}
+
+double total_weight(const LabelledPlaces& places) {
+  double sum = 0;
+  for (const double weight : places.weights) sum += std::abs(weight);
+  return sum;
+}
+
+TEST(LabelPlaces, AgreesWithTheSolid) {
+  for (const double noise : {0.0, 0.005, 0.01}) {
+    const LabelledPlaces places = places_of(tree(), noise);
+    EXPECT_EQ(places.positions.size(), places.weights.size());
+    EXPECT_LT(disagreement(tree(), k_solids, places), 0.01) << noise;
+  }
+}
+
+TEST(LabelPlaces, KnowsThinWallsAndHoles) {
+  const LabelledPlaces places = places_of(tree(), 0.005);
+  EXPECT_GT(disagreement(parse_tree("block - hole", k_solids), k_solids, places), 0.1);
+  EXPECT_GT(disagreement(parse_tree("block | wall", k_solids), k_solids, places), 0.05);
+}
+
+TEST(LabelPlaces, TellsTheWorstPlace) {
+  const LabelledPlaces places = places_of(tree(), 0.005);
+  // On the axis of the hole, and in the wall.
+  const Eigen::Vector3d unbored = worst_place(parse_tree("block | wall", k_solids), k_solids, places);
+  EXPECT_LT((unbored - Eigen::Vector3d(0, -0.5, unbored.z())).norm(), 0.5);
+  EXPECT_LT(std::abs(unbored.z()), 0.5);
+  const Eigen::Vector3d wanting = worst_place(parse_tree("block - hole", k_solids), k_solids, places);
+  EXPECT_LT(std::abs(wanting.y() - 1), 0.075);
+  EXPECT_GT(wanting.z(), 0.5);
+}
+
+TEST(LabelPlaces, WeighsTheVolumeOfTheSolidAsOne) {
+  const LabelledPlaces places = places_of(CsgTree::leaf(0), 0.0);
+  // Nothing in the solid: its volume, and half of what is beside its surface, is wrong.
+  EXPECT_NEAR(disagreement(CsgTree::empty(), k_solids, places), 1.5, 0.05);
+  EXPECT_GT(total_weight(places), 2.0);
+}
+
+TEST(LabelPlaces, RefusesACloudWithoutAnInside) {
+  PointCloud cloud = sample_surface(tree(), k_solids, {.count = 2000, .seed = 1});
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.normals.set(i, -cloud.normals[i]);
+  EXPECT_THROW((void)label_places(cloud), Error);
+  EXPECT_THROW((void)label_places({}), Error);
+  EXPECT_THROW((void)label_places(cloud, {.margin = -1}), Error);
+}
+
+}  // namespace
+}  // namespace cloud2csg
