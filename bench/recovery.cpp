@@ -62,10 +62,10 @@ Recovery recover(const Model& model, const ExtractOptions& setting) {
     options.parallel = Parallel::none;
     const Extraction result = extract_csg(cloud, model.primitives, options);
     const Shape3d truth{.model = model};
-    const Shape3d found{.model = Model{.primitives = model.primitives, .tree = result.tree}};
+    const Shape3d found{.model = result.model};
     const double iou =
         compare(truth, found, {.resolution = 96, .surface_samples = 1000}).intersection_over_union.value_or(0);
-    const double ratio = static_cast<double>(result.tree.size()) / static_cast<double>(model.tree->size());
+    const double ratio = static_cast<double>(result.model.tree->size()) / static_cast<double>(model.tree->size());
     recovery.right += iou >= 0.999 ? 1 : 0;
     recovery.worst_iou = std::min(recovery.worst_iou, iou);
     recovery.worst_ratio = std::max(recovery.worst_ratio, ratio);

@@ -15,7 +15,7 @@ function(run_step what)
   endif()
   message(WARNING "${output}\nThe page of reports could not be built (${what}; is the network there?), so this build "
                   "cannot write .html. Delete ${OUTPUT} and build again to try anew.")
-  file(WRITE ${OUTPUT} "#include \"report/page_template.hpp\"\n"
+  file(WRITE ${OUTPUT} "#include \"view/report/page_template.hpp\"\n"
                        "std::string_view cloud2csg::page_template() {\n  return {};\n}\n")
   set(failed ON PARENT_SCOPE)
 endfunction()

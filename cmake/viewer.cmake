@@ -42,7 +42,7 @@ if(CLOUD2CSG_HAS_VIEWER)
     VERBATIM)
 else()
   file(CONFIGURE OUTPUT ${CLOUD2CSG_PAGE_TEMPLATE} @ONLY CONTENT [[
-#include "report/page_template.hpp"
+#include "view/report/page_template.hpp"
 std::string_view cloud2csg::page_template() {
   return {};
 }

@@ -71,8 +71,8 @@ std::string surface_table(const std::vector<DetectedSurface>& surfaces) {
 }
 
 /// By point, the colour of the primitive that it lies on.
-std::vector<Colour> colours_of(const FoundPrimitives& found) {
-  std::vector<Colour> colours(found.prepared.cloud.size(), k_no_primitive_colour);
+std::vector<Colour> colours_of(const Extraction& found) {
+  std::vector<Colour> colours(found.cloud.size(), k_no_primitive_colour);
   for (std::size_t k = 0; k < found.points.size(); ++k) {
     for (const std::uint32_t i : found.points[k].points) colours[i] = primitive_colour(k);
   }
@@ -99,37 +99,37 @@ void DetectCommand::run(std::stop_token stop) const {
   const Input input = read_cloud_or_mesh(cloud, raw.input(options), session.run());
   ReconstructOptions from_raw = raw.options(options, input);
   from_raw.known = known;
-  const FoundPrimitives found = naming(primitives.empty() ? cloud : cloud + " with " + primitives,
-                                       [&] { return find_primitives(input.cloud, from_raw, session.run()); });
+  const Extraction found = naming(primitives.empty() ? cloud : cloud + " with " + primitives,
+                                  [&] { return find_primitives(input.cloud, from_raw, session.run()); });
 
-  const std::string table = surface_table(found.detection.surfaces);
-  const Model model{.primitives = found.choice.solids,
+  const std::string table = surface_table(found.surfaces);
+  const Model model{.primitives = found.model.primitives,
                     .tree = {},
                     .description = fmt::format("found by cloud2csg {} in {}, whose points lie on:\n{}",
                                                CLOUD2CSG_VERSION, cloud, table)};
   OutputSet written;
-  add_pictures(written, outputs, {.cloud = found.prepared.cloud, .colours = colours_of(found)}, drawing, session.run());
+  add_pictures(written, outputs, {.cloud = found.cloud, .colours = colours_of(found)}, drawing, session.run());
   for (const std::string& file : outputs) {
     if (is_picture(file)) continue;
     written.add(file, [&](const std::filesystem::path& path) {
       if (lower_ending(file) == ".json") {
         write_model(path, model);
       } else {
-        write_point_cloud(path, found.prepared.cloud, {.colours = colours_of(found)});
+        write_point_cloud(path, found.cloud, {.colours = colours_of(found)});
       }
     });
   }
   written.commit();
   fmt::print("{}", table);
   for (const std::string& warning : input.warnings) session.display().note("warning: " + warning);
-  for (const std::string& warning : found.warnings) session.display().note("warning: " + warning);
-  const LargestChange largest = largest_change(found.choice.snaps);
+  for (const std::string& warning : found.statistics.warnings) session.display().note("warning: " + warning);
+  const FindingStatistics& finding = *found.statistics.finding;
+  const LargestChange largest = largest_change(finding.snaps);
   session.display().note(fmt::format(
       "{} surfaces, {} of {} points on none; {} values snapped, by at most {:.2g} and {:.2g} deg; {} solids; "
       "noise {:.3g}, tolerance {:.3g}",
-      found.detection.surfaces.size(), found.detection.unexplained, found.prepared.cloud.size(),
-      found.choice.snaps.size(), largest.shift, largest.turn_deg, found.choice.solids.size(),
-      found.prepared.scale.noise, found.detection.distance_tolerance));
+      found.surfaces.size(), finding.unexplained_points, found.cloud.size(), finding.snaps.size(), largest.shift,
+      largest.turn_deg, found.model.primitives.size(), finding.noise, finding.tolerance));
 }
 
 void add_options(CLI::App& app, DetectCommand& command) {

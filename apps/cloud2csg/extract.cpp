@@ -30,13 +30,6 @@ namespace {
 
 constexpr std::array<std::string_view, 1> k_statistics_endings{".json"};
 
-/// The cloud that the tree speaks of, its solids, and the tree.
-struct Extracted {
-  PointCloud points;
-  PrimitiveSet solids;
-  Extraction result;
-};
-
 struct ExtractCommand {
   std::string cloud;
   std::string primitives;  // empty: to be found in the cloud
@@ -54,16 +47,15 @@ struct ExtractCommand {
 
   void run(const std::stop_token& stop) const;
   /// `given` is empty when all primitives are to be found.
-  [[nodiscard]] Extracted extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
-  [[nodiscard]] Extracted extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
+  [[nodiscard]] Extraction extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
+  [[nodiscard]] Extraction extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
   [[nodiscard]] RefineOptions refine_options() const;
   /// What is going to be written, after a look at whether it can be.
   [[nodiscard]] std::vector<std::string> check_files() const;
-  [[nodiscard]] PointCloud unexplained_part(const Extracted& extracted, int threads) const;
-  [[nodiscard]] AddedModels write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run,
-                                  OutputSet& written) const;
-  void draw(const Extracted& extracted, const RunContext& run, OutputSet& written) const;
-  void report(Extracted extracted, std::vector<ReportDownload> downloads, const RunContext& run,
+  [[nodiscard]] PointCloud unexplained_part(const Extraction& result, int threads) const;
+  [[nodiscard]] AddedModels write(const Extraction& result, const RunContext& run, OutputSet& written) const;
+  void draw(const Extraction& result, const RunContext& run, OutputSet& written) const;
+  void report(Extraction result, std::vector<ReportDownload> downloads, const RunContext& run,
               OutputSet& written) const;
 };
 
@@ -78,13 +70,12 @@ void check_normals(const PointCloud& cloud, const std::string& file) {
 }
 
 /// The points that the tree contradicts.
-PointCloud ExtractCommand::unexplained_part(const Extracted& extracted, int threads) const {
-  const Extraction& result = extracted.result;
+PointCloud ExtractCommand::unexplained_part(const Extraction& result, int threads) const {
   const SegmentationTolerances tolerances =
       segmentation_tolerances(arguments.options().segmentation, result.statistics.noise);
   const std::vector<std::uint32_t> indices =
-      unexplained_points(result.tree, extracted.solids, extracted.points, tolerances, {.threads = threads});
-  return select_points(extracted.points, indices);
+      unexplained_points(result.tree(), result.model.primitives, result.cloud, tolerances, {.threads = threads});
+  return select_points(result.cloud, indices);
 }
 
 std::string headline(const ExtractStatistics& statistics, const std::string& cloud) {
@@ -96,10 +87,10 @@ std::string headline(const ExtractStatistics& statistics, const std::string& clo
       statistics.fit.rms_distance, statistics.fit.rms_angle_deg);
 }
 
-AddedModels ExtractCommand::write(const Extraction& result, const PrimitiveSet& solids, const RunContext& run,
-                                  OutputSet& written) const {
+AddedModels ExtractCommand::write(const Extraction& result, const RunContext& run, OutputSet& written) const {
   const std::string comment = headline(result.statistics, cloud);
-  const Model model{.primitives = solids, .tree = result.tree, .description = comment};
+  Model model = result.model;
+  model.description = comment;
   ExportOptions options = exporting;
   options.openscad.comment = options.script.comment = comment;
   // Not to be stopped: what has been found is written also after an interrupt.
@@ -107,21 +98,20 @@ AddedModels ExtractCommand::write(const Extraction& result, const PrimitiveSet& 
                 [&] { return add_models(written, outputs, model, options, without_stop(run)); });
 }
 
-void ExtractCommand::draw(const Extracted& extracted, const RunContext& run, OutputSet& written) const {
+void ExtractCommand::draw(const Extraction& result, const RunContext& run, OutputSet& written) const {
   if (std::none_of(outputs.begin(), outputs.end(), is_picture)) return;
-  const Scene scene{.model = {.primitives = extracted.solids, .tree = extracted.result.tree},
-                    .cloud = extracted.points};
+  const Scene scene{.model = result.model, .cloud = result.cloud};
   naming(cloud, [&] { add_pictures(written, outputs, scene, drawing, without_stop(run)); });
 }
 
-void ExtractCommand::report(Extracted extracted, std::vector<ReportDownload> downloads, const RunContext& run,
+void ExtractCommand::report(Extraction result, std::vector<ReportDownload> downloads, const RunContext& run,
                             OutputSet& written) const {
   if (std::none_of(outputs.begin(), outputs.end(), is_report)) return;
-  const ExtractStatistics& outcome = extracted.result.statistics;
+  const ExtractStatistics& outcome = result.statistics;
   Report report{.title = std::filesystem::path(cloud).filename().string(),
                 .source = headline(outcome, cloud),
-                .model = {.primitives = std::move(extracted.solids), .tree = extracted.result.tree},
-                .cloud = std::move(extracted.points),
+                .model = std::move(result.model),
+                .cloud = std::move(result.cloud),
                 .statistics = outcome,
                 .parameters = parameters,
                 .downloads = std::move(downloads)};
@@ -134,17 +124,15 @@ RefineOptions ExtractCommand::refine_options() const {
   return {.angle_tolerance_deg = arguments.options().segmentation.angle_tolerance_deg};
 }
 
-Extracted ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const {
-  if (!refine) {
-    Extraction result = extract_csg(points, solids, arguments.options(), run);
-    return {.points = std::move(points), .solids = solids, .result = std::move(result)};
-  }
-  RefinedExtraction refined = extract_refined_csg(points, solids, arguments.options(), refine_options(), run);
-  return {
-      .points = std::move(points), .solids = std::move(refined.primitives), .result = std::move(refined.extraction)};
+Extraction ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const {
+  const ExtractOptions options = arguments.options();
+  Extraction result = refine ? extract_refined_csg(points, solids, options, refine_options(), run)
+                             : extract_csg(points, solids, options, run);
+  result.cloud = std::move(points);
+  return result;
 }
 
-Extracted ExtractCommand::extract(Input input, const PrimitiveSet& given, const RunContext& run) const {
+Extraction ExtractCommand::extract(Input input, const PrimitiveSet& given, const RunContext& run) const {
   const std::string files = primitives.empty() ? cloud : cloud + " with " + primitives;
   if (!primitives.empty() && !detect_rest) {
     check_normals(input.cloud, cloud);
@@ -153,10 +141,7 @@ Extracted ExtractCommand::extract(Input input, const PrimitiveSet& given, const 
   ReconstructOptions from_raw = raw.options(arguments.options(), input);
   from_raw.known = given;
   if (refine) from_raw.refine = refine_options();
-  Reconstruction found = naming(files, [&] { return reconstruct(input.cloud, from_raw, run); });
-  return {.points = std::move(found.cloud),
-          .solids = std::move(found.solids),
-          .result = {.tree = std::move(found.tree), .statistics = std::move(found.statistics)}};
+  return naming(files, [&] { return reconstruct(input.cloud, from_raw, run); });
 }
 
 std::vector<std::string> ExtractCommand::check_files() const {
@@ -185,16 +170,15 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   Input input = read_cloud_or_mesh(cloud, raw.input(arguments.options()), session.run());
   const std::vector<std::string> doubts = std::move(input.warnings);
   const double read_seconds = total.seconds();
-  Extracted extracted = extract(std::move(input), given, session.run());
-  Extraction& result = extracted.result;
+  Extraction result = extract(std::move(input), given, session.run());
   result.statistics.warnings.insert(result.statistics.warnings.begin(), doubts.begin(), doubts.end());
 
   const Stopwatch writing;
   OutputSet written;
-  AddedModels models = write(result, extracted.solids, session.run(), written);
+  AddedModels models = write(result, session.run(), written);
   if (unexplained) {
     written.add(*unexplained, [&](const std::filesystem::path& path) {
-      write_point_cloud(path, unexplained_part(extracted, session.run().threads));
+      write_point_cloud(path, unexplained_part(result, session.run().threads));
     });
   }
   StageSeconds& seconds = result.statistics.seconds;
@@ -207,8 +191,8 @@ void ExtractCommand::run(const std::stop_token& stop) const {
                 [&](const std::filesystem::path& path) { write_text_file(path, to_json(result.statistics)); });
   }
   const ExtractStatistics summary = result.statistics;
-  draw(extracted, session.run(), written);
-  report(std::move(extracted), std::move(models.texts), session.run(), written);
+  draw(result, session.run(), written);
+  report(std::move(result), std::move(models.texts), session.run(), written);
   written.commit();
 
   for (const std::string& warning : summary.warnings) session.display().note("warning: " + warning);

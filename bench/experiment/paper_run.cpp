@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "bench/experiment/paper.hpp"
-#include "bench/experiment/reference_extraction.hpp"
 #include "bench/experiment/report_files.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
+#include "paper/paper_method.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -21,7 +21,7 @@ ExtractOptions extract_options(const PaperOptions& options, const PaperMode& mod
   return extract;
 }
 
-PaperRun measured(const RunName& name, const Extraction& extraction, const PrimitiveSet& primitives) {
+PaperRun measured(const RunName& name, const Extraction& extraction) {
   const ExtractStatistics& statistics = extraction.statistics;
   PaperRun run{.name = name,
                .finished = now_utc(),
@@ -29,7 +29,7 @@ PaperRun measured(const RunName& name, const Extraction& extraction, const Primi
                .clique_histogram = statistics.clique_histogram,
                .seconds = statistics.seconds,
                .tree = statistics.tree,
-               .formula = to_text(extraction.tree, primitives),
+               .formula = to_text(extraction.tree(), extraction.model.primitives),
                .fit = statistics.fit,
                .generations = statistics.merge.generations,
                .evaluations = statistics.merge.evaluations,
@@ -59,14 +59,14 @@ class CloudRuns {
   }
 
   [[nodiscard]] PaperRun make(const RunName& name) const {
-    return measured(name, extraction(paper_mode(name.mode), name.seed), model_.primitives);
+    return measured(name, extraction(paper_mode(name.mode), name.seed));
   }
 
  private:
   [[nodiscard]] Extraction extraction(const PaperMode& mode, std::uint64_t seed) const {
     const ExtractOptions extract = extract_options(options_, mode, seed);
     Extraction result = options_.evaluator == "reference"
-                            ? reference_extraction(cloud_, model_.primitives, extract, run_)
+                            ? extract_as_in_paper(cloud_, model_.primitives, extract, run_)
                             : extract_csg(cloud_, model_.primitives, extract, run_);
     // The best tree so far is no result of the mode.
     if (!result.statistics.complete) throw Cancelled();

@@ -94,11 +94,11 @@ ScalingRun run_scaling_case(const ScalingCase& scaling_case, std::uint64_t seed,
   run.throw_if_stopped();
   take_statistics(result, extraction.statistics);
   result.true_tree = statistics_of(*model.tree);
-  result.fingerprint = fmt::format("{:016x}", structural_hash(extraction.tree));
+  result.fingerprint = fmt::format("{:016x}", structural_hash(extraction.tree()));
   // Beyond the noise, so that a place tells which side of the surface it is on.
   constexpr double k_offset_in_noise = 4;
   constexpr double k_least_offset = 1e-3;  // solids are about one unit wide
-  const Disagreement wrong = disagreement(extraction.tree, *model.tree, model.primitives,
+  const Disagreement wrong = disagreement(extraction.tree(), *model.tree, model.primitives,
                                           std::max(k_offset_in_noise * options.noise, k_least_offset), seed, inner);
   result.wrong_share = wrong.share;
   result.wrong_primitives = wrong.primitives;

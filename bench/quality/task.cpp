@@ -38,12 +38,12 @@ Outcome extract_and_judge(const Task& task, const Setting& setting) {
     const StageSeconds& wall = result.statistics.seconds;
     // Without the fit of the result, which is measured after it.
     outcome.milliseconds = 1e3 * (thread_seconds() - start) * wall.extraction / wall.total;
-    outcome.failure = fault_of(result.tree, task.primitives.size());
+    outcome.failure = fault_of(result.tree(), task.primitives.size());
     if (!outcome.failure.empty()) return outcome;
-    outcome.iou = task.judge->intersection_over_union(renumber(result.tree, task.judge_index));
+    outcome.iou = task.judge->intersection_over_union(renumber(result.tree(), task.judge_index));
     outcome.is_proved = result.statistics.cells && result.statistics.cells->is_minimal;
-    outcome.is_deeper = levels(result.tree) > levels(*task.truth.tree);
-    outcome.size_ratio = static_cast<double>(result.tree.size()) / static_cast<double>(task.truth.tree->size());
+    outcome.is_deeper = levels(result.tree()) > levels(*task.truth.tree);
+    outcome.size_ratio = static_cast<double>(result.tree().size()) / static_cast<double>(task.truth.tree->size());
   } catch (const std::exception& error) {
     outcome.failure = error.what();
   }
@@ -57,9 +57,7 @@ void keep(const std::filesystem::path& stem, const Task& task, const Setting& se
   options.seed = task.seed;
   const auto file = [&stem](const char* ending) { return std::filesystem::path(stem.string() + ending); };
   write_model(file(".truth.json"), task.truth);
-  write_model(file(".result.json"), {.primitives = task.primitives,
-                                     .tree = extract_csg(task.cloud, task.primitives, options).tree,
-                                     .description = {}});
+  write_model(file(".result.json"), extract_csg(task.cloud, task.primitives, options).model);
   write_point_cloud(file(".ply"), task.cloud);
 }
 

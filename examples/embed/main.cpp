@@ -13,9 +13,9 @@ int main(int argc, char** argv) {
   }
   try {
     const c2c::Input input = c2c::read_cloud_or_mesh(argv[1]);
-    const c2c::Reconstruction found = c2c::reconstruct(input.cloud);
-    c2c::export_model(argv[2], {.primitives = found.solids, .tree = found.tree});
-    std::cout << found.solids.size() << " solids in a tree of " << found.tree.size() << " nodes\n";
+    const c2c::Extraction found = c2c::reconstruct(input.cloud);
+    c2c::export_model(argv[2], found.model);
+    std::cout << found.model.primitives.size() << " solids in a tree of " << found.model.tree->size() << " nodes\n";
   } catch (const c2c::Error& error) {
     std::cerr << "embed: " << error.what() << '\n';
     return 1;

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -155,5 +156,13 @@ class CsgTree {
 
 /// Graphviz: one box a node, labelled with the operation or the primitive's id.
 [[nodiscard]] std::string to_graphviz(const CsgTree& tree, const PrimitiveSet& primitives);
+
+/// Primitives and, where known, a tree over them: one solid.
+struct Model {
+  PrimitiveSet primitives = {};
+  std::optional<CsgTree> tree = {};
+  /// Free text about where the model comes from; kept when a file is read and written again.
+  std::string description = {};
+};
 
 }  // namespace cloud2csg

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/cells.hpp"
+#include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/advanced/evolve.hpp"
 #include "cloud2csg/advanced/objective.hpp"
 #include "cloud2csg/advanced/refine.hpp"
@@ -82,6 +83,8 @@ struct StageSeconds {
   double write = 0;
   double extraction = 0;  ///< from cloud and primitives in memory to the simplified tree, or, refined, to the last one
   double total = 0;
+
+  StageSeconds& operator+=(const StageSeconds& other);
 };
 
 struct PartitionStatistics {
@@ -194,9 +197,15 @@ struct ExtractStatistics {
   std::vector<std::string> warnings;
 };
 
+/// What was found in a cloud, whichever way.
 struct Extraction {
-  CsgTree tree;  ///< over the primitives that were given
-  ExtractStatistics statistics;
+  Model model;  ///< primitives, and always a tree over them
+  ExtractStatistics statistics = {};
+  [[nodiscard]] const CsgTree& tree() const { return *model.tree; }
+  // Where the primitives were found in the cloud:
+  PointCloud cloud = {};                       ///< the points that were used: cleaned, with normals
+  std::vector<DetectedSurface> surfaces = {};  ///< that these lie on, but for what lies on known primitives
+  std::vector<SurfacePoints> points = {};      ///< of these, the ones on each of the primitives, as these were found
 };
 
 /// Section 4 of the paper from cloud to tree, with a merge that is checked against the cloud and cannot fail.
@@ -207,19 +216,13 @@ struct Extraction {
 [[nodiscard]] Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const ExtractOptions& options = {}, const RunContext& run = {});
 
-struct RefinedExtraction {
-  PrimitiveSet primitives;  ///< that the tree is over: refined, or as given
-  Extraction extraction;
-};
-
 /// extract_csg(), refine_primitives() on its tree, and extract_csg() again over what comes out; of the trees over both
 /// sets of primitives, the one with the highest E, measured with the refined noise. The statistics are those of the
 /// extraction that was taken, with the seconds of all. Stopped early, or past its time limit: the best so far.
 /// @throws Error as extract_csg() and validate(RefineOptions); Cancelled.
-[[nodiscard]] RefinedExtraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                                    const ExtractOptions& options = {},
-                                                    const RefineOptions& refine_options = {},
-                                                    const RunContext& run = {});
+[[nodiscard]] Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
+                                             const ExtractOptions& options = {},
+                                             const RefineOptions& refine_options = {}, const RunContext& run = {});
 
 /// The points that a tree does not explain: farther from its surface than the tolerance, or with a normal that is not
 /// within the angle of the surface's outward one. Ascending. O(points x primitives near each)

@@ -9,14 +9,6 @@
 
 namespace cloud2csg {
 
-/// What a model file holds: primitives and, where known, the tree over them.
-struct Model {
-  PrimitiveSet primitives;
-  std::optional<CsgTree> tree = {};
-  /// Free text about where the model comes from; kept when a file is read and written again.
-  std::string description = {};
-};
-
 /// A model file, or, by its ending .scad or .csg, what parse_openscad() takes.
 /// @throws Error naming the file and the path of the field (e.g. "/primitives/3/radius"): not JSON, not the schema
 /// (unknown fields are refused), duplicate or dangling id, a parameter that validate() refuses.

@@ -29,37 +29,21 @@ struct ReconstructOptions {
   std::optional<RefineOptions> refine = {};
 };
 
-struct FoundPrimitives {
-  PreparedCloud prepared;        ///< the cloud that everything else speaks of
-  Detection detection;           ///< the surfaces that it lies on, beyond what lies on known primitives
-  std::size_t added_points = 0;  ///< on what was not seen, a side or walls: the last ones of the cloud
-  SolidChoice choice;            ///< those known, a few solids that surfaces bound, with evidence, and a tree over them
-  std::vector<SurfacePoints> points;  ///< of the prepared cloud, that lie on each of these solids
-  double detect_seconds = 0, choose_seconds = 0;
-  std::vector<std::string> warnings;  ///< sentences for the user: what is doubtful, and where
-};
-
-/// Cleans and orients the cloud, detects its surfaces and chooses solids that these bound: prepare_cloud(),
+/// Cleans and orients the cloud, detects its surfaces and chooses solids that these bound, with the tree that they were
+/// chosen with: prepare_cloud(),
 /// detect_surfaces(), choose_solids(). Points that lie on known primitives are not offered to the detection; known
 /// primitives that the points do not bear out are in no tree, and a warning names them. The same seed gives the same
 /// for any number of threads.
 /// @throws Error when the cloud has too few points, no surface was found in it, it has no inside, or a known primitive
 /// is invalid or has the id of another, or the time limit of the extraction is over before surfaces were found; then
 /// on, there are solids to give at any time, with a warning. Cancelled.
-[[nodiscard]] FoundPrimitives find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},
-                                              const RunContext& run = {});
-
-struct Reconstruction {
-  PointCloud cloud;     ///< the points that were used, with normals
-  PrimitiveSet solids;  ///< those known, then as chosen, with evidence
-  CsgTree tree;         ///< over them
-  ExtractStatistics statistics;
-};
+[[nodiscard]] Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},
+                                         const RunContext& run = {});
 
 /// find_primitives(), then extract_csg() over them. The tree is that of the extraction, or the one that the solids were
 /// chosen with, whichever costs less in disagreement with the cloud and leaves; or else the refined one.
 /// @throws as find_primitives() and extract_csg()
-[[nodiscard]] Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {},
-                                         const RunContext& run = {});
+[[nodiscard]] Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {},
+                                     const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -26,7 +26,6 @@ from cloud2csg._native import (
     Cone,
     Cylinder,
     DetectedSurface,
-    Detection,
     DetectOptions,
     Error,
     ExportOptions,
@@ -80,7 +79,7 @@ from cloud2csg.tree import Complement, Difference, Empty, Full, Intersection, Le
 __all__ = [
     "Box", "BrepOptions", "BrepReport", "CellSolveOptions", "CleanOptions", "CloudWriteOptions",
     "CompareOptions", "Comparison", "Complement", "Cone", "Cylinder", "DetectOptions", "DetectedSurface",
-    "Detection", "Difference", "Empty", "Error", "ExportOptions", "ExportReport", "Expression",
+    "Difference", "Empty", "Error", "ExportOptions", "ExportReport", "Expression",
     "ExtractOptions", "FailedNode", "Full", "GaOptions", "HalfSpace", "InputOptions", "Intersection",
     "LabelOptions", "Leaf", "LocalSearchOptions", "MeshingOptions", "MinimalFormulaOptions", "Model", "Node",
     "ObjectiveOptions", "OpenScadOptions", "PictureOptions", "PlaceOptions", "PointCloud", "Polytope", "PrepareOptions", "Primitive",

@@ -13,6 +13,7 @@
 #include "cloud2csg/reconstruct.hpp"
 #include "field_arrays.hpp"
 #include "raw_options.hpp"
+#include "result.hpp"
 
 namespace cloud2csg::python {
 
@@ -26,41 +27,13 @@ ReconstructOptions raw_options(const ReconstructOptions& options, const Cloud& c
 
 namespace {
 
-/// What detect() found. The cloud and the model are shared with Python.
-struct Found {
-  std::shared_ptr<Cloud> cloud;
-  std::shared_ptr<Model> model;
-  std::vector<std::shared_ptr<DetectedSurface>> surfaces;
-  std::size_t unexplained;
-  double distance_tolerance, noise, spacing, diagonal;
-  bool normals_estimated;
-  std::vector<std::string> warnings;
-};
-
-Found detect(const py::object& cloud, const std::optional<ReconstructOptions>& options,
-             std::optional<std::uint64_t> seed, int threads, const py::object& progress) {
-  const py::object owner = to_cloud(cloud);
-  const auto& given = owner.cast<const Cloud&>();
-  const ReconstructOptions raw = raw_options(options.value_or(ReconstructOptions{}), given, seed);
-  FoundPrimitives found = run_work({.threads = threads, .progress = progress},
-                                   [&](const RunContext& run) { return find_primitives(given.points(), raw, run); });
-  Found result{.cloud = std::make_shared<Cloud>(std::move(found.prepared.cloud), given.is_exact()),
-               .model = std::make_shared<Model>(
-                   Model{.primitives = std::move(found.choice.solids), .tree = std::move(found.choice.tree)}),
-               .surfaces = {},
-               .unexplained = found.detection.unexplained,
-               .distance_tolerance = found.detection.distance_tolerance,
-               .noise = found.prepared.scale.noise,
-               .spacing = found.prepared.scale.spacing,
-               .diagonal = found.prepared.scale.diagonal,
-               .normals_estimated = found.prepared.normals_estimated,
-               .warnings = given.warnings()};
-  result.surfaces.reserve(found.detection.surfaces.size());
-  for (DetectedSurface& surface : found.detection.surfaces) {
-    result.surfaces.push_back(std::make_shared<DetectedSurface>(std::move(surface)));
-  }
-  result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
-  return result;
+Result detect(const py::object& cloud, const std::optional<ReconstructOptions>& options,
+              std::optional<std::uint64_t> seed, int threads, const py::object& progress) {
+  const auto given = to_cloud(cloud).cast<std::shared_ptr<Cloud>>();
+  const ReconstructOptions raw = raw_options(options.value_or(ReconstructOptions{}), *given, seed);
+  return result_of(run_work({.threads = threads, .progress = progress},
+                            [&](const RunContext& run) { return find_primitives(given->points(), raw, run); }),
+                   given);
 }
 
 using SurfaceClass = py::class_<DetectedSurface, std::shared_ptr<DetectedSurface>>;
@@ -91,7 +64,7 @@ void bind_surface(py::module_& module) {
       .def_readonly("rms", &DetectedSurface::rms, "Of the distances of its points, in the cloud's units.")
       .def_property_readonly(
           "points", [](const py::object& self) { return view(self.cast<const DetectedSurface&>().points, self); },
-          "Indices into Detection.cloud of the points that lie on it, ascending: shape (k,), uint32, read-only, no "
+          "Indices into Result.cloud of the points that lie on it, ascending: shape (k,), uint32, read-only, no "
           "copy.")
       .def(
           "distance",
@@ -110,27 +83,9 @@ void bind_surface(py::module_& module) {
 
 void bind_detect(py::module_& module) {
   bind_surface(module);
-  py::class_<Found>(module, "Detection", "What detect() found in a cloud.")
-      .def_readonly("cloud", &Found::cloud, "The PointCloud that all else speaks of: cleaned, with outward normals.")
-      .def_readonly("surfaces", &Found::surfaces, "list of DetectedSurface.")
-      .def_readonly("model", &Found::model, "A few solids that these bound, and a tree over them: Model.")
-      .def_readonly("unexplained", &Found::unexplained, "How many points lie on no surface.")
-      .def_readonly("distance_tolerance", &Found::distance_tolerance,
-                    "How far points may be from their surface, in the cloud's units.")
-      .def_readonly("noise", &Found::noise, "Standard deviation of the points from the surface, in the cloud's units.")
-      .def_readonly("spacing", &Found::spacing, "Square root of the surface a point stands for, in the cloud's units.")
-      .def_readonly("diagonal", &Found::diagonal, "Of the cloud's bounds, in its units.")
-      .def_readonly("normals_estimated", &Found::normals_estimated,
-                    "Whether the normals given were of no use, or there were none.")
-      .def_readonly("warnings", &Found::warnings, "Sentences: what is doubtful, and where.")
-      .def("__repr__", [](const Found& self) {
-        return fmt::format("<cloud2csg.Detection: {} surfaces, {} solids, {} of {} points unexplained>",
-                           self.surfaces.size(), self.model->primitives.size(), self.unexplained,
-                           self.cloud->points().size());
-      });
   module.def("detect", &detect, py::arg("cloud"), py::arg("options") = py::none(), py::kw_only(),
              py::arg("seed") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
-             "The surfaces that a raw cloud lies on, and solids that these bound: Detection.\n\n"
+             "The surfaces that a raw cloud lies on, and solids that these bound, with a tree over them: Result.\n\n"
              "cloud: PointCloud, or positions of shape (n, 3). options: ReconstructOptions. seed: instead of all seeds "
              "in the options. threads: 0 = all cores; the result does not depend on them. progress: callable(stage, "
              "done, total).\n\n"

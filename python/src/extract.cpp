@@ -17,16 +17,10 @@
 #include "model.hpp"
 #include "raw_options.hpp"
 #include "reports.hpp"
+#include "result.hpp"
 
 namespace cloud2csg::python {
 namespace {
-
-/// What extract() found. Cloud and model are shared with Python.
-struct Result {
-  std::shared_ptr<Cloud> cloud;
-  std::shared_ptr<Model> model;
-  ExtractStatistics statistics;
-};
 
 struct Request {
   ReconstructOptions options;
@@ -55,30 +49,11 @@ Request make_request(const AnyOptions& options, const Cloud& cloud, std::optiona
 }
 
 /// Over primitives that are known.
-Result extract_over(std::shared_ptr<Cloud> cloud, const PrimitiveSet& primitives, const Request& request,
-                    const RunContext& run) {
-  RefinedExtraction found{.primitives = primitives, .extraction = {}};
+Extraction extract_over(const Cloud& cloud, const PrimitiveSet& primitives, const Request& request,
+                        const RunContext& run) {
   const ExtractOptions& options = request.options.extraction;
-  if (request.refine) {
-    found = extract_refined_csg(cloud->points(), primitives, options, *request.refine, run);
-  } else {
-    found.extraction = extract_csg(cloud->points(), primitives, options, run);
-  }
-  return {.cloud = std::move(cloud),
-          .model = std::make_shared<Model>(
-              Model{.primitives = std::move(found.primitives), .tree = std::move(found.extraction.tree)}),
-          .statistics = std::move(found.extraction.statistics)};
-}
-
-/// The whole way from a raw cloud.
-Result extract_raw(const Cloud& cloud, const Request& request, const RunContext& run) {
-  ReconstructOptions options = request.options;
-  if (request.refine) options.refine = request.refine;
-  Reconstruction found = reconstruct(cloud.points(), options, run);
-  auto used = std::make_shared<Cloud>(std::move(found.cloud), cloud.is_exact());
-  return {.cloud = std::move(used),
-          .model = std::make_shared<Model>(Model{.primitives = std::move(found.solids), .tree = std::move(found.tree)}),
-          .statistics = std::move(found.statistics)};
+  if (!request.refine) return extract_csg(cloud.points(), primitives, options, run);
+  return extract_refined_csg(cloud.points(), primitives, options, *request.refine, run);
 }
 
 Result extract(const py::object& cloud, const py::object& primitives, const AnyOptions& options,
@@ -86,16 +61,15 @@ Result extract(const py::object& cloud, const py::object& primitives, const AnyO
   const auto given = to_cloud(cloud).cast<std::shared_ptr<Cloud>>();
   const Request request = make_request(options, *given, seed, refine);
   const RunArguments arguments{.threads = threads, .progress = progress};
-  Result result = [&] {
-    if (primitives.is_none()) {
-      return run_work(arguments, [&](const RunContext& run) { return extract_raw(*given, request, run); });
-    }
-    const PrimitiveSet known = to_primitives(primitives);
-    return run_work(arguments, [&](const RunContext& run) { return extract_over(given, known, request, run); });
-  }();
-  std::vector<std::string>& warnings = result.statistics.warnings;
-  warnings.insert(warnings.begin(), given->warnings().begin(), given->warnings().end());
-  return result;
+  if (primitives.is_none()) {
+    ReconstructOptions raw = request.options;
+    if (request.refine) raw.refine = request.refine;
+    return result_of(run_work(arguments, [&](const RunContext& run) { return reconstruct(given->points(), raw, run); }),
+                     given);
+  }
+  const PrimitiveSet known = to_primitives(primitives);
+  return result_of(
+      run_work(arguments, [&](const RunContext& run) { return extract_over(*given, known, request, run); }), given);
 }
 
 py::object statistics_of(const Result& result) {
@@ -160,9 +134,11 @@ void bind_result_outputs(py::class_<Result>& result) {
 }  // namespace
 
 void bind_extract(py::module_& module) {
-  py::class_<Result> result(module, "Result", "What extract() found.");
+  py::class_<Result> result(module, "Result", "What extract() or detect() found.");
   result.def_readonly("model", &Result::model, "The solids and the tree over them: Model.")
       .def_readonly("cloud", &Result::cloud, "The points that were used, with normals: PointCloud.")
+      .def_readonly("surfaces", &Result::surfaces,
+                    "list of DetectedSurface: those that the points lie on, where primitives were found in the cloud.")
       .def_property_readonly("statistics", &statistics_of,
                              "dict: what the command line writes with --stats; times in seconds.")
       .def_property_readonly(

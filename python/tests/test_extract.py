@@ -92,10 +92,11 @@ def test_detect(plate):
     bore = next(surface for surface in cylinders if surface.concave)
     assert bore.radius == pytest.approx(0.5, abs=0.01) and abs(bore.axis[2]) == pytest.approx(1, abs=1e-3)
     assert np.sqrt(np.mean(bore.distance(found.cloud.positions[bore.points]) ** 2)) == pytest.approx(bore.rms, rel=0.01)
-    assert found.noise == pytest.approx(0.005, rel=0.5) and not found.normals_estimated
+    finding = found.statistics["finding"]
+    assert finding["noise"] == pytest.approx(0.005, rel=0.5) and not finding["normals_estimated"]
     assert np.shares_memory(bore.points, bore.points) and bore.points.dtype == np.uint32
     assert found.model.tree is not None and len(found.model.primitives) >= 3
-    assert found.unexplained < 0.05 * len(found.cloud) and found.warnings == []
+    assert finding["unexplained_points"] < 0.05 * len(found.cloud) and found.warnings == []
 
 
 def test_exact_points_are_told(tmp_path, plate):

@@ -1,6 +1,7 @@
 #include "pipeline/cell_extraction.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "cloud2csg/advanced/cells.hpp"
 #include "core/base/stopwatch.hpp"
@@ -11,40 +12,49 @@ double CellExtraction::trust() const {
   // Where most points are near several surfaces at once, the cells do not tell much.
   constexpr double k_least_share = 0.6;
   const auto assigned = static_cast<double>(complex.order.size() - complex.unassigned);
-  if (is_constant(tree) || statistics.speaking_points < k_least_share * assigned) return 0;
+  if (!tree || is_constant(*tree) || statistics.speaking_points < k_least_share * assigned) return 0;
   return 1 - statistics.contradicted_share();
 }
 
-std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                               const NoiseScale& scale, const ExtractOptions& options,
-                                               const RunContext& run, const RunContext& search_run,
-                                               StageSeconds& seconds) {
+bool CellExtraction::is_unbounded(const CsgTree& some) const {
+  const std::vector<PrimitiveIndex> used = primitives_of(some);
+  const PrimitiveIndex last = std::max(supported.original.back(), used.empty() ? 0 : used.back());
+  return std::ranges::any_of(complex.unbounded, [&](CellIndex cell) {
+    std::vector<bool> is_inside(1 + last);
+    for (const PrimitiveIndex p : complex.cells[cell]) is_inside[supported.original[p]] = true;
+    return contains(some, is_inside);
+  });
+}
+
+CellExtraction extract_by_cells(const PointCloud& cloud, const PrimitiveSet& primitives, const NoiseScale& scale,
+                                const ExtractOptions& options, const ExtractionRun& run) {
   Stopwatch watch;
-  SupportedPrimitives supported = take_all(primitives);
-  CellExtraction result{};
-  CellComplex complex;
-  do {
-    complex = find_cells(cloud, supported.primitives,
-                         {.tolerances = scale.tolerances,
-                          .noise = scale.noise,
-                          .precision = options.precision,
-                          .samples = options.cell_samples},
-                         run);
-  } while (drop_unsupported(complex.points_of_primitive, supported, result.warnings));
-  seconds.segment += watch.lap();
+  const RunContext search_run = run.search();
+  CellExtraction result{.supported = take_all(primitives)};
+  SupportedPrimitives& supported = result.supported;
+  for (std::size_t before = 0; before != supported.size();) {
+    before = supported.size();
+    result.complex = find_cells(cloud, supported.primitives,
+                                {.tolerances = scale.tolerances,
+                                 .noise = scale.noise,
+                                 .precision = options.precision,
+                                 .samples = options.cell_samples},
+                                run.pass());
+    supported = without_unsupported(std::move(supported), result.complex.points_of_primitive);
+  }
+  result.seconds.segment = watch.lap();
   search_run.report("search", 0, 1);
   LabelOptions labelling = options.cell_labels;
   if (cloud.has_sensor_positions()) labelling.absence = std::min(labelling.absence, labelling.absence_in_scans);
-  const CellLabels labels = label_cells(complex, labelling);
-  const std::optional<CellSolution> solution = solve_cells(complex, labels, options.cell_solve, search_run);
-  seconds.search += watch.lap();
+  const CellLabels labels = label_cells(result.complex, labelling);
+  const std::optional<CellSolution> solution = solve_cells(result.complex, labels, options.cell_solve, search_run);
+  result.seconds.search = watch.lap();
   search_run.report("search", 1, 1);
-  if (!solution) return std::nullopt;
+  if (!solution) return result;
   result.tree = renumber(solution->tree, supported.original);
   result.is_complete = solution->is_complete;
-  result.supported = std::move(supported);
-  result.statistics = {.cells = complex.cells.size(),
-                       .patches = complex.patches.size(),
+  result.statistics = {.cells = result.complex.cells.size(),
+                       .patches = result.complex.patches.size(),
                        .open_cells = solution->open_cells.size(),
                        .speaking_points = labels.points,
                        .contradicted_points = solution->cost,
@@ -54,7 +64,6 @@ std::optional<CellExtraction> extract_by_cells(const PointCloud& cloud, const Pr
                        .is_minimal = solution->is_minimal()};
   result.open_cells = solution->open_cells;
   result.steps = solution->steps;
-  result.complex = std::move(complex);
   return result;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cloud2csg/reconstruct.hpp"
+#include "pipeline/find_primitives.hpp"
 
 namespace cloud2csg {
 

@@ -6,43 +6,11 @@
 #include "cloud2csg/extract.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/base/without_stop.hpp"
-#include "pipeline/fit.hpp"
+#include "paper/objective/fit.hpp"
 #include "pipeline/time_limit.hpp"
 
 namespace cloud2csg {
 namespace {
-
-void add_seconds(StageSeconds& to, const StageSeconds& seconds) {
-  to.segment += seconds.segment;
-  to.overlap += seconds.overlap;
-  to.partition += seconds.partition;
-  to.classes += seconds.classes;
-  to.search += seconds.search;
-  to.merge += seconds.merge;
-  to.simplify += seconds.simplify;
-  to.extraction += seconds.extraction;
-  to.total += seconds.total;
-}
-
-/// E and the rest of a tree over primitives, all measured alike.
-class Comparison {
- public:
-  Comparison(const PointCloud& cloud, const ExtractOptions& options, double noise, const RunContext& run)
-      : cloud_(cloud),
-        objective_(resolve(options.objective, cloud.size(), noise)),
-        scale_{.noise = noise, .tolerances = segmentation_tolerances(options.segmentation, noise)},
-        run_(without_stop(run)) {}
-
-  [[nodiscard]] FitStatistics operator()(const CsgTree& tree, const PrimitiveSet& primitives) const {
-    return measure_fit(tree, primitives, cloud_, objective_, scale_, run_);
-  }
-
- private:
-  const PointCloud& cloud_;
-  Objective objective_;
-  NoiseScale scale_;
-  RunContext run_;
-};
 
 RefineStatistics statistics_of(const Refinement& refinement) {
   return {.is_taken = false,
@@ -88,57 +56,58 @@ std::optional<Extraction> extracted_again(const PointCloud& cloud, const Primiti
 
 }  // namespace
 
-RefinedExtraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                      const ExtractOptions& options, const RefineOptions& refine_options,
-                                      const RunContext& run) {
+Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+                               const RefineOptions& refine_options, const RunContext& run) {
   validate(refine_options);
   const Stopwatch watch;
   const auto seconds_left = [&]() -> std::optional<double> {
     if (!options.time_limit_seconds) return std::nullopt;
     return std::max(0.0, *options.time_limit_seconds - watch.seconds());
   };
-  RefinedExtraction result{.primitives = primitives, .extraction = extract_csg(cloud, primitives, options, run)};
-  Extraction& first = result.extraction;
-  if (!first.statistics.complete || is_constant(first.tree)) return result;
+  Extraction result = extract_csg(cloud, primitives, options, run);
+  const CsgTree tree = result.tree();
+  if (!result.statistics.complete || is_constant(tree)) return result;
 
   Stopwatch refining;
-  const std::optional<Refinement> refinement =
-      refined(cloud, primitives, first.tree, refine_options, seconds_left(), run);
+  const std::optional<Refinement> refinement = refined(cloud, primitives, tree, refine_options, seconds_left(), run);
   const double refine_seconds = refining.lap();
   if (!refinement) {
-    note_incomplete(first.statistics);
+    note_incomplete(result.statistics);
     return result;
   }
-  StageSeconds seconds = first.statistics.seconds;
+  StageSeconds seconds = result.statistics.seconds;
   RefineStatistics statistics = statistics_of(*refinement);
   std::optional<Extraction> again;
   if (refinement->is_better) again = extracted_again(cloud, refinement->primitives, options, seconds_left(), run);
-  if (again) add_seconds(seconds, again->statistics.seconds);
+  if (again) seconds += again->statistics.seconds;
   const bool is_complete = !refinement->is_better || (again && again->statistics.complete);
 
   if (refinement->is_better) {
-    const Comparison fit_of(cloud, options, again ? again->statistics.noise : refinement->noise, run);
-    const FitStatistics given = fit_of(first.tree, primitives);
-    const FitStatistics moved = fit_of(first.tree, refinement->primitives);
+    const double noise = again ? again->statistics.noise : refinement->noise;
+    const auto fit_of = [&](const CsgTree& some, const PrimitiveSet& over) {
+      return measure_fit(some, over, cloud, noise, options, without_stop(run));
+    };
+    const FitStatistics given = fit_of(tree, primitives);
+    const FitStatistics moved = fit_of(tree, refinement->primitives);
     const double anew =
-        again ? fit_of(again->tree, refinement->primitives).objective : -std::numeric_limits<double>::infinity();
+        again ? fit_of(again->tree(), refinement->primitives).objective : -std::numeric_limits<double>::infinity();
     if (std::max(moved.objective, anew) > given.objective) {
       statistics.is_taken = true;
-      result.primitives = refinement->primitives;
       if (anew >= moved.objective) {
-        first = std::move(*again);
+        result = std::move(*again);
       } else {
-        first.statistics.fit = moved;
-        first.statistics.noise = refinement->noise;
+        result.model.primitives = refinement->primitives;
+        result.statistics.fit = moved;
+        result.statistics.noise = refinement->noise;
       }
     }
   }
   seconds.refine = refine_seconds;
   seconds.extraction += refine_seconds;
   seconds.total += refine_seconds;
-  first.statistics.seconds = seconds;
-  if (!is_complete) note_incomplete(first.statistics);
-  first.statistics.refine = std::move(statistics);
+  result.statistics.seconds = seconds;
+  if (!is_complete) note_incomplete(result.statistics);
+  result.statistics.refine = std::move(statistics);
   return result;
 }
 

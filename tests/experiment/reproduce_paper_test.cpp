@@ -130,5 +130,20 @@ TEST_F(ReproducePaper, MissingModelIsNamed) {
   EXPECT_FALSE(std::filesystem::exists(results_file()));
 }
 
+TEST_F(ReproducePaper, TakesThePapersMethodItself) {
+  PaperOptions options = small_experiment();
+  options.low_points = 60;
+  options.high_points = 120;
+  options.evaluator = "reference";
+  const PaperResults results = reproduce(options);
+  EXPECT_EQ(results.runs.size(), 12U);
+  EXPECT_EQ(mode_disagreements(results), std::vector<std::string>{});
+  for (const PaperRun& run : results.runs) {
+    EXPECT_EQ(run.seconds.classes, 0);
+    EXPECT_GT(run.evaluations, 0U);
+    EXPECT_GT(run.generations, 9U);
+  }
+}
+
 }  // namespace
 }  // namespace cloud2csg::test

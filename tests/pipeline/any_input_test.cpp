@@ -33,9 +33,9 @@ ExtractOptions random_options(RandomStream& random) {
 }
 
 void expect_valid(const Extraction& result, std::size_t primitives) {
-  RC_ASSERT(test::is_well_formed(result.tree));
-  RC_ASSERT(simplify(result.tree) == result.tree);
-  for (const PrimitiveIndex p : primitives_of(result.tree)) RC_ASSERT(p < primitives);
+  RC_ASSERT(test::is_well_formed(result.tree()));
+  RC_ASSERT(simplify(result.tree()) == result.tree());
+  for (const PrimitiveIndex p : primitives_of(result.tree())) RC_ASSERT(p < primitives);
   const bool is_searched = !result.statistics.partitions.empty();
   RC_ASSERT(is_searched || result.statistics.cells);
   RC_ASSERT(result.statistics.merge.ways.size() == (is_searched ? result.statistics.components : 0));
@@ -54,7 +54,7 @@ RC_GTEST_PROP(AnyInput, GivesAValidTreeOrSaysThatNoPointIsNear, (std::uint64_t s
     const Extraction result = extract_csg(scene.cloud, scene.primitives, options);
     expect_valid(result, primitives);
     options.parallel = Parallel::partitions;
-    RC_ASSERT(extract_csg(scene.cloud, scene.primitives, options, {.threads = 3}).tree == result.tree);
+    RC_ASSERT(extract_csg(scene.cloud, scene.primitives, options, {.threads = 3}).tree() == result.tree());
   } catch (const Error& error) {
     RC_ASSERT(error.parts().expected == "no point of the cloud is near any primitive");
   }

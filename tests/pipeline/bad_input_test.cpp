@@ -147,7 +147,7 @@ TEST(BadInput, ManyPointsOnNoPrimitiveAreWarnedAbout) {
   const PointCloud cloud =
       sample_surface(unite(CsgTree::leaf(0), CsgTree::leaf(1)), primitives, {.count = 2000, .noise = 0.002});
   const Extraction result = extract_csg(cloud, {primitives[0]});
-  EXPECT_EQ(result.tree, CsgTree::leaf(0));
+  EXPECT_EQ(result.tree(), CsgTree::leaf(0));
   ASSERT_EQ(result.statistics.warnings.size(), 1U);
   EXPECT_NE(result.statistics.warnings[0].find("more than a tenth of the points"), std::string::npos);
   EXPECT_GT(result.statistics.unassigned_points, 400U);
@@ -161,7 +161,7 @@ TEST(BadInput, PointsOffTheResultAreWarnedAbout) {
     const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 6, .noise = 0.01, .seed = seed});
     const Extraction result = extract_csg(cloud, model.primitives);
     const ExtractStatistics& statistics = result.statistics;
-    if (is_constant(result.tree) || 10 * statistics.unassigned_points > statistics.points) continue;
+    if (is_constant(result.tree()) || 10 * statistics.unassigned_points > statistics.points) continue;
     const double tolerance = segmentation_tolerances({}, statistics.noise).distance;
     const bool is_off = statistics.fit.p95_distance > tolerance;
     const bool has_warning = std::ranges::any_of(statistics.warnings, [](const std::string& warning) {

@@ -32,10 +32,10 @@ void expect_sane(const CellStatistics& cells, std::size_t primitives, std::size_
 }
 
 void expect_truth(const Extraction& result, const Model& model, std::size_t points) {
-  EXPECT_GE(test::membership_iou(result.tree, *model.tree, model.primitives), 0.999)
-      << to_text(result.tree, model.primitives);
-  EXPECT_LE(result.tree.size(), simplify(*model.tree).size()) << to_text(result.tree, model.primitives);
-  EXPECT_LE(levels(result.tree), levels(*model.tree)) << to_text(result.tree, model.primitives);
+  EXPECT_GE(test::membership_iou(result.tree(), *model.tree, model.primitives), 0.999)
+      << to_text(result.tree(), model.primitives);
+  EXPECT_LE(result.tree().size(), simplify(*model.tree).size()) << to_text(result.tree(), model.primitives);
+  EXPECT_LE(levels(result.tree()), levels(*model.tree)) << to_text(result.tree(), model.primitives);
   EXPECT_TRUE(result.statistics.complete);
   EXPECT_TRUE(result.statistics.warnings.empty());
   EXPECT_TRUE(result.statistics.partitions.empty());
@@ -59,7 +59,7 @@ TEST_P(PaperByCells, IsRightAndAsSmallAsTheTruth) {
   EXPECT_EQ(result.statistics.strategy, Strategy::cells);
   // What is tried first is the same.
   const Extraction automatic = extract_csg(cloud, model.primitives);
-  EXPECT_EQ(automatic.tree, result.tree);
+  EXPECT_EQ(automatic.tree(), result.tree());
   EXPECT_EQ(automatic.statistics.fit.objective, result.statistics.fit.objective);
   EXPECT_TRUE(automatic.statistics.cells.has_value());
 }
@@ -85,7 +85,7 @@ TEST_P(FamilyByCells, IsTheSameOnAnyNumberOfThreads) {
   const Extraction expected = extract(1);
   for (const int threads : {2, 3}) {
     const Extraction result = extract(threads);
-    EXPECT_EQ(result.tree, expected.tree) << threads;
+    EXPECT_EQ(result.tree(), expected.tree()) << threads;
     EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
     EXPECT_EQ(result.statistics.cells->contradicted_points, expected.statistics.cells->contradicted_points);
     EXPECT_EQ(result.statistics.cells->speaking_points, expected.statistics.cells->speaking_points);
@@ -106,8 +106,8 @@ TEST(ByCells, LeavesOutWhatIsNotThere) {
   }
   model.primitives.push_back(test::placed("nowhere", Sphere{0.1}, {50, 50, 50}));
   const Extraction result = extract_csg(cloud, model.primitives);
-  EXPECT_GE(test::membership_iou(result.tree, *model.tree, model.primitives), 0.999);
-  EXPECT_EQ(leaf_count(result.tree), leaves) << to_text(result.tree, model.primitives);
+  EXPECT_GE(test::membership_iou(result.tree(), *model.tree, model.primitives), 0.999);
+  EXPECT_EQ(leaf_count(result.tree()), leaves) << to_text(result.tree(), model.primitives);
   ASSERT_EQ(result.statistics.warnings.size(), 1U);
   EXPECT_NE(result.statistics.warnings[0].find("'nowhere'"), std::string::npos);
 }
@@ -155,7 +155,7 @@ TEST_P(MissingPrimitive, LeadsToTheSearchAndTheTreeThatIsNoWorse) {
   EXPECT_EQ(cells.statistics.fit.objective >= search.statistics.fit.objective, GetParam().cells_are_taken);
   const Extraction& better = GetParam().cells_are_taken ? cells : search;
   EXPECT_FALSE(automatic.statistics.partitions.empty());
-  EXPECT_EQ(automatic.tree, better.tree);
+  EXPECT_EQ(automatic.tree(), better.tree());
   EXPECT_EQ(automatic.statistics.fit.objective, better.statistics.fit.objective);
   EXPECT_EQ(automatic.statistics.warnings, better.statistics.warnings);
   EXPECT_EQ(automatic.statistics.cells.has_value(), GetParam().cells_are_taken);
@@ -165,13 +165,13 @@ TEST_P(MissingPrimitive, IsBorneWhereOneSaysSo) {
   const Extraction trusting = extract({.cell_trust = 0.01});
   EXPECT_TRUE(trusting.statistics.cells.has_value());
   EXPECT_TRUE(trusting.statistics.partitions.empty());
-  EXPECT_EQ(trusting.tree, extract({.strategy = Strategy::cells}).tree);
+  EXPECT_EQ(trusting.tree(), extract({.strategy = Strategy::cells}).tree());
 }
 
 TEST_P(MissingPrimitive, GivesTheSameOnSeveralThreads) {
   const Extraction expected = extract_csg(cloud_, primitives_, {}, {.threads = 1});
   const Extraction result = extract_csg(cloud_, primitives_, {}, {.threads = 3});
-  EXPECT_EQ(result.tree, expected.tree);
+  EXPECT_EQ(result.tree(), expected.tree());
   EXPECT_EQ(result.statistics.cells.has_value(), expected.statistics.cells.has_value());
 }
 
@@ -187,7 +187,7 @@ TEST(MissingFirstOperand, LeavesABoundedTree) {
   const PointCloud cloud = sample_surface(truth, all, {.count = 20'000, .noise = 0.01, .seed = 1});
   const PrimitiveSet given(all.begin() + 1, all.end());
   const auto is_unbounded = [&](const ExtractOptions& options) {
-    return contains(extract_csg(cloud, given, options).tree, std::vector<bool>(given.size(), false));
+    return contains(extract_csg(cloud, given, options).tree(), std::vector<bool>(given.size(), false));
   };
   EXPECT_TRUE(is_unbounded({.cell_trust = test::k_never_by_cells})) << "else this test tests nothing";
   EXPECT_FALSE(is_unbounded({}));
@@ -211,7 +211,7 @@ TEST(NoisyCloud, IsClimbedOnByAllPoints) {
     climbed += automatic.statistics.fit.objective > best_start + 1 ? 1 : 0;
     const bool is_claimed = automatic.statistics.cells && automatic.statistics.cells->is_minimal;
     EXPECT_FALSE(is_claimed &&
-                 automatic.tree != extract_csg(cloud, model.primitives, {.strategy = Strategy::cells}).tree);
+                 automatic.tree() != extract_csg(cloud, model.primitives, {.strategy = Strategy::cells}).tree());
   }
   EXPECT_GT(climbed, 0U);
 }

@@ -25,14 +25,14 @@ constexpr double k_scatter = 0.003;
 struct Ending {
   std::string refusal = {};
   std::vector<std::string> warnings = {};
-  Reconstruction result = {};
+  Extraction result = {};
 
   [[nodiscard]] bool is_doubted() const { return !refusal.empty() || !warnings.empty(); }
 };
 
 Ending ending_of(const PointCloud& cloud, std::optional<double> seconds = {}) {
   try {
-    Reconstruction result = reconstruct(cloud, {.extraction = {.time_limit_seconds = seconds}});
+    Extraction result = reconstruct(cloud, {.extraction = {.time_limit_seconds = seconds}});
     return {.warnings = result.statistics.warnings, .result = std::move(result)};
   } catch (const Error& error) {
     return {.refusal = error.what()};
@@ -62,10 +62,10 @@ Model box_and(const Primitive& other) {
           .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
 }
 
-double iou(const Reconstruction& result, const Model& truth) {
+double iou(const Extraction& result, const Model& truth) {
   const Points places = test::lattice(test::bounds_of_all(truth.primitives), 50);
   const std::vector<double> in_truth = implicit_value(*truth.tree, truth.primitives, places);
-  const std::vector<double> in_result = implicit_value(result.tree, result.solids, places);
+  const std::vector<double> in_result = implicit_value(result.tree(), result.model.primitives, places);
   std::size_t both = 0;
   std::size_t either = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -95,7 +95,7 @@ TEST(DoubtfulClouds, TwoObjectsAreBothFound) {
   const Ending ending = ending_of(points_of(truth, 12'000));
   ASSERT_EQ(ending.refusal, "");
   EXPECT_GT(iou(ending.result, truth), 0.98);
-  EXPECT_EQ(leaf_count(ending.result.tree), 2U);
+  EXPECT_EQ(leaf_count(ending.result.tree()), 2U);
 }
 
 TEST(DoubtfulClouds, HalfOfThePointsMayBeOutliers) {
@@ -116,7 +116,7 @@ TEST(DoubtfulClouds, CoordinatesMayBeGeoreferenced) {
   const Ending ending = ending_of(points_of(truth, 12'000));
   ASSERT_EQ(ending.refusal, "");
   EXPECT_GT(iou(ending.result, truth), 0.98);
-  EXPECT_EQ(leaf_count(ending.result.tree), 2U);
+  EXPECT_EQ(leaf_count(ending.result.tree()), 2U);
 }
 
 TEST(DoubtfulClouds, AHundredPointsGiveABoxOrARefusal) {

@@ -40,9 +40,9 @@ ExtractOptions endless(Strategy strategy) {
 
 void expect_the_best_so_far(const Extraction& result, const PrimitiveSet& primitives) {
   EXPECT_FALSE(result.statistics.complete);
-  EXPECT_TRUE(test::is_well_formed(result.tree));
-  ASSERT_FALSE(primitives_of(result.tree).empty());
-  EXPECT_LT(primitives_of(result.tree).back(), primitives.size());
+  EXPECT_TRUE(test::is_well_formed(result.tree()));
+  ASSERT_FALSE(primitives_of(result.tree()).empty());
+  EXPECT_LT(primitives_of(result.tree()).back(), primitives.size());
   ASSERT_FALSE(result.statistics.warnings.empty());
   EXPECT_NE(result.statistics.warnings.back().find("stopped early"), std::string::npos);
 }
@@ -97,7 +97,7 @@ TEST_P(TimeLimitOfASearch, LeavesTheTreeOfTheCells) {
     const Extraction expected = extract_csg(input.cloud, input.model.primitives, {.strategy = strategy});
     const Extraction result =
         extract_csg(input.cloud, input.model.primitives, {.strategy = strategy, .time_limit_seconds = 1e-9});
-    EXPECT_EQ(result.tree, expected.tree);
+    EXPECT_EQ(result.tree(), expected.tree());
     EXPECT_TRUE(result.statistics.complete);
     EXPECT_TRUE(result.statistics.warnings.empty());
   }
@@ -119,7 +119,7 @@ TEST(TimeLimitThatIsLong, ChangesNothing) {
     const Extraction expected = extract_csg(input.cloud, input.model.primitives, options);
     options.time_limit_seconds = 3600;
     const Extraction result = extract_csg(input.cloud, input.model.primitives, options);
-    EXPECT_EQ(result.tree, expected.tree);
+    EXPECT_EQ(result.tree(), expected.tree());
     EXPECT_TRUE(result.statistics.complete);
   }
 }

@@ -78,9 +78,9 @@ Known plate_with_features(int columns, int rows) {
 
 /// The tree is right, as small as the truth, and nothing is to be said about it.
 void expect_truth(const Extraction& result, const Known& known) {
-  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 60), 0.9999)
-      << to_text(result.tree, known.primitives);
-  EXPECT_EQ(result.tree.size(), simplify(known.truth).size()) << to_text(result.tree, known.primitives);
+  EXPECT_GE(test::membership_iou(result.tree(), known.truth, known.primitives, 60), 0.9999)
+      << to_text(result.tree(), known.primitives);
+  EXPECT_EQ(result.tree().size(), simplify(known.truth).size()) << to_text(result.tree(), known.primitives);
   EXPECT_LT(result.statistics.merge.worst_shortfall, 0.05);
   EXPECT_TRUE(result.statistics.complete);
   EXPECT_TRUE(result.statistics.warnings.empty());
@@ -110,7 +110,7 @@ TEST(Hub, IsTheSameOnAnyNumberOfThreads) {
   for (const ExtractOptions& options : test::with_and_without_cells()) {
     const Extraction expected = extract_csg(known.cloud, known.primitives, options, {.threads = 1});
     for (const int threads : {2, 0}) {
-      EXPECT_EQ(extract_csg(known.cloud, known.primitives, options, {.threads = threads}).tree, expected.tree)
+      EXPECT_EQ(extract_csg(known.cloud, known.primitives, options, {.threads = threads}).tree(), expected.tree())
           << threads;
     }
   }
@@ -152,7 +152,7 @@ TEST_F(Lattice, IsTheSameForAnyThreadsAndModes) {
     for (const Parallel parallel : {Parallel::none, Parallel::population, Parallel::partitions, Parallel::both}) {
       options.parallel = parallel;
       const Extraction result = extract(options, {.threads = 2});
-      EXPECT_EQ(result.tree, expected.tree) << to_string(parallel);
+      EXPECT_EQ(result.tree(), expected.tree()) << to_string(parallel);
       EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
       EXPECT_EQ(result.statistics.merge.worst_shortfall, expected.statistics.merge.worst_shortfall);
     }
@@ -161,14 +161,14 @@ TEST_F(Lattice, IsTheSameForAnyThreadsAndModes) {
 
 TEST_F(Lattice, OfPartitionsJudgedByAllTheirPointsGivesATreeThatFits) {
   const Extraction result = extract({.cell_trust = test::k_never_by_cells, .without_strangers = false});
-  EXPECT_GE(test::membership_iou(result.tree, known().truth, known().primitives), 0.95);
+  EXPECT_GE(test::membership_iou(result.tree(), known().truth, known().primitives), 0.95);
   EXPECT_TRUE(result.statistics.complete);
 }
 
 TEST_F(Lattice, EndsAtTheTimeLimitWithATree) {
   const Extraction result = extract({.cell_trust = test::k_never_by_cells, .time_limit_seconds = 1e-6});
   EXPECT_FALSE(result.statistics.complete);
-  EXPECT_FALSE(primitives_of(result.tree).empty());
+  EXPECT_FALSE(primitives_of(result.tree()).empty());
 }
 
 /// Blocks apart from each other, each with a bore that reaches into the next one, which fills it: what is removed here
@@ -197,9 +197,9 @@ TEST(FilledBores, AreCutOnlyWhereTheyShow) {
   const Known known = row_of_bores_that_are_filled(15);
   for (const ExtractOptions& options : test::with_and_without_cells()) {
     const Extraction result = extract_csg(known.cloud, known.primitives, options);
-    EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives, 80), 0.9999)
-        << to_text(result.tree, known.primitives);
-    EXPECT_EQ(result.tree.size(), known.truth.size());
+    EXPECT_GE(test::membership_iou(result.tree(), known.truth, known.primitives, 80), 0.9999)
+        << to_text(result.tree(), known.primitives);
+    EXPECT_EQ(result.tree().size(), known.truth.size());
     if (!result.statistics.cells) {
       EXPECT_EQ(result.statistics.merge.ways, std::vector{MergeWay::dominance});
     }
@@ -229,8 +229,8 @@ Known row_of_intersections(int count) {
 TEST(BlockedComponent, IsRightByCells) {
   const Known known = row_of_intersections(30);
   const Extraction result = extract_csg(known.cloud, known.primitives);
-  EXPECT_EQ(test::membership_iou(result.tree, known.truth, known.primitives, 60), 1.0);
-  EXPECT_LE(result.tree.size(), known.truth.size());
+  EXPECT_EQ(test::membership_iou(result.tree(), known.truth, known.primitives, 60), 1.0);
+  EXPECT_LE(result.tree().size(), known.truth.size());
 }
 
 TEST(BlockedComponent, StillGivesATreeInTime) {
@@ -240,9 +240,9 @@ TEST(BlockedComponent, StillGivesATreeInTime) {
   options.time_limit_seconds = 5;
   options.search.generation_limit = 3;
   const Extraction result = extract_csg(known.cloud, known.primitives, options, {.threads = 2});
-  EXPECT_FALSE(primitives_of(result.tree).empty());
+  EXPECT_FALSE(primitives_of(result.tree()).empty());
   EXPECT_GT(result.statistics.merge.blocked, 0U);
-  EXPECT_GE(test::membership_iou(result.tree, known.truth, known.primitives), 0.9);
+  EXPECT_GE(test::membership_iou(result.tree(), known.truth, known.primitives), 0.9);
   ASSERT_EQ(result.statistics.merge.ways.size(), 1U);
 }
 
@@ -251,7 +251,7 @@ TEST(BlockedComponent, EndsAtATimeLimitThatIsShort) {
   const ExtractOptions options{.cell_trust = test::k_never_by_cells, .time_limit_seconds = 1e-6};
   const Extraction result = extract_csg(known.cloud, known.primitives, options);
   EXPECT_FALSE(result.statistics.complete);
-  EXPECT_FALSE(primitives_of(result.tree).empty());
+  EXPECT_FALSE(primitives_of(result.tree()).empty());
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ TEST_P(Chain, IsRightHoweverItIsMerged) {
   const PointCloud cloud = cloud_of(GetParam(), primitives);
   for (const ExtractOptions& options : test::all_strategies()) {
     const Extraction result = extract_csg(cloud, primitives, options);
-    EXPECT_GE(test::membership_iou(result.tree, truth, primitives), 0.999)
-        << to_string(options.strategy) << ": " << to_text(result.tree, primitives);
+    EXPECT_GE(test::membership_iou(result.tree(), truth, primitives), 0.999)
+        << to_string(options.strategy) << ": " << to_text(result.tree(), primitives);
     if (result.statistics.cells) {
       EXPECT_TRUE(result.statistics.merge.ways.empty());
       continue;
@@ -64,7 +64,7 @@ TEST(MergeWays, AnIntersectionOnTheWayIsNotTheEnd) {
   const Extraction result = extract_csg(cloud_of("((a & b) | c) | d", primitives), primitives,
                                         {.strategy = Strategy::partition, .without_strangers = false});
   EXPECT_NE(result.statistics.merge.ways, std::vector{MergeWay::paper});
-  EXPECT_GE(test::membership_iou(result.tree, truth, primitives), 0.999);
+  EXPECT_GE(test::membership_iou(result.tree(), truth, primitives), 0.999);
   EXPECT_GT(result.statistics.merge.blocked + result.statistics.merge.failed_checks, 0U);
   EXPECT_LT(result.statistics.merge.worst_shortfall, 0.05);
 }

@@ -51,7 +51,7 @@ TEST_P(Modes, GiveTheSameTreeForAnyThreads) {
       options.parallel = parallel;
       for (const int threads : {1, 2, 3, 8}) {
         const Extraction result = extract(options, threads);
-        EXPECT_EQ(result.tree, expected.tree) << to_string(strategy) << to_string(parallel) << threads;
+        EXPECT_EQ(result.tree(), expected.tree()) << to_string(strategy) << to_string(parallel) << threads;
         EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
         EXPECT_EQ(result.statistics.merge.evaluations, expected.statistics.merge.evaluations);
         EXPECT_EQ(result.statistics.threads, threads);
@@ -65,7 +65,7 @@ TEST_P(Modes, TheSameSeedRepeatsItself) {
     const ExtractOptions options = short_options(Strategy::automatic, seed);
     const Extraction first = extract(options, 0);
     const Extraction second = extract(options, 0);
-    EXPECT_EQ(first.tree, second.tree);
+    EXPECT_EQ(first.tree(), second.tree());
     for (std::size_t k = 0; k < first.statistics.partitions.size(); ++k) {
       EXPECT_EQ(first.statistics.partitions[k].score, second.statistics.partitions[k].score);
       EXPECT_EQ(first.statistics.partitions[k].evaluations, second.statistics.partitions[k].evaluations);
@@ -81,7 +81,7 @@ TEST_P(Modes, ThePapersOptionsGiveATreeToo) {
   EXPECT_DOUBLE_EQ(options.objective.gamma, 18 / std::numbers::pi);
   EXPECT_EQ(options.search.idle_generations, paper_ga_options().idle_generations);
   const Extraction result = extract(options, 2);
-  EXPECT_FALSE(primitives_of(result.tree).empty());
+  EXPECT_FALSE(primitives_of(result.tree()).empty());
 }
 
 TEST(Names, AreThoseOfTheCommandLine) {

@@ -13,7 +13,7 @@
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/scan.hpp"
-#include "pipeline/fit.hpp"
+#include "paper/objective/fit.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
 
@@ -35,10 +35,10 @@ PointCloud raw_cloud(const Model& model, double noise, std::size_t count = 20'00
 }
 
 /// Intersection over union by membership on a lattice.
-double iou(const Reconstruction& result, const Model& truth) {
+double iou(const Extraction& result, const Model& truth) {
   const Points places = test::lattice(test::bounds_of_all(truth.primitives), 50);
   const std::vector<double> in_truth = implicit_value(*truth.tree, truth.primitives, places);
-  const std::vector<double> in_result = implicit_value(result.tree, result.solids, places);
+  const std::vector<double> in_result = implicit_value(result.tree(), result.model.primitives, places);
   std::size_t both = 0;
   std::size_t either = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -51,9 +51,9 @@ double iou(const Reconstruction& result, const Model& truth) {
 TEST(Reconstruct, FindsThePlateWithItsHolesAndBoss) {
   const Model truth = plate();
   for (const double noise : {0.0, 0.008}) {
-    const Reconstruction result = reconstruct(raw_cloud(truth, noise));
+    const Extraction result = reconstruct(raw_cloud(truth, noise));
     EXPECT_GT(iou(result, truth), 0.99);
-    EXPECT_EQ(leaf_count(result.tree), 4U);
+    EXPECT_EQ(leaf_count(result.tree()), 4U);
     ASSERT_TRUE(result.statistics.finding);
     EXPECT_EQ(std::ranges::count(result.statistics.finding->surfaces, SurfaceType::plane), 7);
     EXPECT_EQ(std::ranges::count(result.statistics.finding->surfaces, SurfaceType::cylinder), 3);
@@ -78,7 +78,7 @@ TEST(Reconstruct, ItsStatisticsListWhatWasMadeRegular) {
   EXPECT_EQ(shift, json["largest_shift"].get<double>());
 }
 
-bool has_warning(const Reconstruction& result, const std::string& part) {
+bool has_warning(const Extraction& result, const std::string& part) {
   return std::ranges::any_of(result.statistics.warnings,
                              [&part](const std::string& warning) { return warning.find(part) != std::string::npos; });
 }
@@ -94,11 +94,11 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
     open.positions.push_back(whole.positions[i]);
     open.normals.push_back(whole.normals[i]);
   }
-  const Reconstruction result = reconstruct(open, {.close_unseen = false});
+  const Extraction result = reconstruct(open, {.close_unseen = false});
   EXPECT_GT(iou(result, truth), 0.9);
   EXPECT_TRUE(has_warning(result, "no points near"));
   EXPECT_FALSE(has_warning(result, "closed by a plane"));
-  const Reconstruction closed = reconstruct(open);
+  const Extraction closed = reconstruct(open);
   EXPECT_GT(iou(closed, truth), 0.99);
   EXPECT_TRUE(has_warning(closed, "closed by a plane"));
   EXPECT_FALSE(has_warning(closed, "no points near"));
@@ -108,7 +108,7 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
 TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
   const Model truth = plate();
   const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.on_table = true, .count = 60'000});
-  const Reconstruction result = reconstruct(scan);
+  const Extraction result = reconstruct(scan);
   EXPECT_GT(iou(result, truth), 0.97);
   EXPECT_TRUE(has_warning(result, "closed by a plane"));
   EXPECT_GT(result.statistics.finding->added_points, 5000U);
@@ -120,8 +120,8 @@ TEST(Reconstruct, TakesTheWallsOfADeepBoreToGoOn) {
                                    test::placed("bore", Cylinder{.radius = 0.6, .height = 14}, {0, 0, 0})},
                     .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))};
   const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.count = 60'000});
-  const Reconstruction result = reconstruct(scan);
-  EXPECT_EQ(leaf_count(result.tree), 2U);
+  const Extraction result = reconstruct(scan);
+  EXPECT_EQ(leaf_count(result.tree()), 2U);
   EXPECT_GT(iou(result, truth), 0.97);
   EXPECT_TRUE(has_warning(result, "no sensor saw far into 1 of the holes"));
   EXPECT_GT(result.statistics.finding->added_points, 500U);
@@ -137,7 +137,7 @@ TEST(Reconstruct, TakesHolesOfTwoEarsForNoBore) {
       .tree = {}};
   truth.primitives[3].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
   truth.tree = parse_tree("(base | ear | other) - pin", truth.primitives);
-  const Reconstruction result = reconstruct(scan_model(*truth.tree, truth.primitives, {.count = 60'000}));
+  const Extraction result = reconstruct(scan_model(*truth.tree, truth.primitives, {.count = 60'000}));
   EXPECT_GT(iou(result, truth), 0.98);
   EXPECT_FALSE(has_warning(result, "no sensor saw"));
   EXPECT_EQ(result.statistics.finding->added_points, 0U);
@@ -153,8 +153,8 @@ TEST(Reconstruct, NamesWhatItLeavesOut) {
     cloud.positions.push_back(ball.positions[i]);
     cloud.normals.push_back(ball.normals[i]);
   }
-  const Reconstruction result = reconstruct(cloud);
-  EXPECT_EQ(leaf_count(result.tree), 1U);
+  const Extraction result = reconstruct(cloud);
+  EXPECT_EQ(leaf_count(result.tree()), 1U);
   EXPECT_TRUE(has_warning(result, "1 are not on the result, the largest a sphere of"));
   EXPECT_FALSE(has_warning(reconstruct(raw_cloud(plate(), 0.008)), "not on the result"));
 }
@@ -173,19 +173,19 @@ TEST(Reconstruct, NeedsNoNormals) {
   const Model truth = plate();
   PointCloud cloud = raw_cloud(truth, 0.005, 30'000);
   cloud.normals = {};
-  const Reconstruction result = reconstruct(cloud);
+  const Extraction result = reconstruct(cloud);
   EXPECT_TRUE(result.statistics.finding->normals_estimated);
   EXPECT_GT(iou(result, truth), 0.97);
 }
 
 TEST(Reconstruct, DoesNotDependOnThreads) {
   const PointCloud cloud = raw_cloud(plate(), 0.01);
-  const Reconstruction one = reconstruct(cloud, {}, {.threads = 1});
-  const Reconstruction two = reconstruct(cloud, {}, {.threads = 2});
-  EXPECT_TRUE(one.tree == two.tree);
-  ASSERT_EQ(one.solids.size(), two.solids.size());
-  for (std::size_t k = 0; k < one.solids.size(); ++k) {
-    EXPECT_EQ(one.solids[k].pose.position, two.solids[k].pose.position);
+  const Extraction one = reconstruct(cloud, {}, {.threads = 1});
+  const Extraction two = reconstruct(cloud, {}, {.threads = 2});
+  EXPECT_TRUE(one.tree() == two.tree());
+  ASSERT_EQ(one.model.primitives.size(), two.model.primitives.size());
+  for (std::size_t k = 0; k < one.model.primitives.size(); ++k) {
+    EXPECT_EQ(one.model.primitives[k].pose.position, two.model.primitives[k].pose.position);
   }
 }
 
@@ -197,7 +197,7 @@ TEST(Reconstruct, DoesNotDependOnUnits) {
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       other.positions.set(i, scale * (cloud.positions[i] + Eigen::Vector3d(500, -200, 900)));
     }
-    EXPECT_EQ(leaf_count(reconstruct(other).tree), 4U) << scale;
+    EXPECT_EQ(leaf_count(reconstruct(other).tree()), 4U) << scale;
   }
 }
 
@@ -220,12 +220,10 @@ TEST(Reconstruct, MeasuresTheFitOfTheTreeThatItGives) {
   Model wavy{.primitives = {test::placed("ball", Sphere{.radius = 4}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
   wavy.primitives[0].displacement = Displacement{.frequency = 0.6};
   for (const bool is_wavy : {false, true}) {
-    const Reconstruction result = reconstruct(is_wavy ? raw_cloud(wavy, 0.0, 3000) : raw_cloud(plate(), 0.005));
+    const Extraction result = reconstruct(is_wavy ? raw_cloud(wavy, 0.0, 3000) : raw_cloud(plate(), 0.005));
     EXPECT_EQ(result.statistics.cells.has_value(), !is_wavy);
     const double noise = result.statistics.noise;
-    const FitStatistics fit =
-        measure_fit(result.tree, result.solids, result.cloud, resolve(ObjectiveOptions{}, result.cloud.size(), noise),
-                    {.noise = noise, .tolerances = segmentation_tolerances({}, noise)}, {});
+    const FitStatistics fit = measure_fit(result.tree(), result.model.primitives, result.cloud, noise, {}, {});
     EXPECT_NEAR(result.statistics.fit.rms_distance, fit.rms_distance, 1e-9);
     EXPECT_NEAR(result.statistics.fit.objective / fit.objective, 1, 1e-9);
   }
@@ -252,7 +250,7 @@ TEST(Reconstruct, HoldsItsTimeLimitInEveryStage) {
   const PointCloud cloud = raw_cloud(plate(), 0.01, 5000);
   const std::vector<std::string> stages = stages_of(cloud);
   EXPECT_GE(stages.size(), 4U);
-  const CsgTree expected = reconstruct(cloud).tree;
+  const CsgTree expected = reconstruct(cloud).tree();
   constexpr double k_limit = 0.3;
   for (const std::string& slow : stages) {
     bool is_over = false;
@@ -262,10 +260,10 @@ TEST(Reconstruct, HoldsItsTimeLimitInEveryStage) {
       std::this_thread::sleep_for(std::chrono::duration<double>(1.1 * k_limit));
     };
     try {
-      const Reconstruction result =
+      const Extraction result =
           reconstruct(cloud, {.extraction = {.time_limit_seconds = k_limit}}, {.on_progress = dawdle});
       // The tree of the cells comes with the pass over the points, which is always completed.
-      EXPECT_TRUE(!result.statistics.complete || result.tree == expected) << slow;
+      EXPECT_TRUE(!result.statistics.complete || result.tree() == expected) << slow;
     } catch (const Error& error) {
       EXPECT_EQ(error.parts().where, "--time-limit") << slow;
     }
@@ -278,10 +276,11 @@ TEST(FindPrimitives, HoldsTheTimeLimitOfTheExtraction) {
 
 TEST(FindPrimitives, WarnsOfAToleranceInWhichPartsAreLost) {
   const auto says_so = [](double tolerance) {
-    const FoundPrimitives found =
+    const Extraction found =
         find_primitives(raw_cloud(plate(), 0.0, 5000), {.detection = {.distance_tolerance = tolerance}});
-    return std::ranges::any_of(
-        found.warnings, [](const std::string& warning) { return warning.find("parts are lost") < warning.size(); });
+    return std::ranges::any_of(found.statistics.warnings, [](const std::string& warning) {
+      return warning.find("parts are lost") < warning.size();
+    });
   };
   EXPECT_FALSE(says_so(0.02));
   EXPECT_TRUE(says_so(0.4));
@@ -292,29 +291,29 @@ TEST(FindPrimitives, HasATreeWhenItIsStoppedWhileSolidsAreChosen) {
   const auto stop_at_solids = [&stop](const Progress& progress) {
     if (progress.stage == "solids" && progress.done > 0) stop.request_stop();
   };
-  const FoundPrimitives found = find_primitives(raw_cloud(test::paper_model("m0"), 0.005), {},
-                                                {.stop = stop.get_token(), .on_progress = stop_at_solids});
+  const Extraction found = find_primitives(raw_cloud(test::paper_model("m0"), 0.005), {},
+                                           {.stop = stop.get_token(), .on_progress = stop_at_solids});
   EXPECT_TRUE(stop.stop_requested());
-  EXPECT_FALSE(found.choice.solids.empty());
-  EXPECT_FALSE(is_constant(found.choice.tree));
+  EXPECT_FALSE(found.model.primitives.empty());
+  EXPECT_FALSE(is_constant(found.tree()));
 }
 
 TEST(FindPrimitives, GivesSolidsWhoseTreeIsNearTheCloud) {
-  const FoundPrimitives found = find_primitives(raw_cloud(plate(), 0.005));
-  EXPECT_FALSE(found.choice.solids.empty());
-  EXPECT_LT(found.choice.disagreement, 0.03);
-  for (const Primitive& solid : found.choice.solids) EXPECT_NO_THROW(validate(solid));
+  const Extraction found = find_primitives(raw_cloud(plate(), 0.005));
+  EXPECT_FALSE(found.model.primitives.empty());
+  EXPECT_LT(found.statistics.finding->disagreement, 0.03);
+  for (const Primitive& solid : found.model.primitives) EXPECT_NO_THROW(validate(solid));
 }
 
 /// M1's box has a sine on it, which is no surface that is looked for.
 TEST(ReconstructBesideKnown, GetsAModelWithAFreeFormRight) {
   const Model truth = test::paper_model("m1");
   const PointCloud cloud = raw_cloud(truth, 0.005, 50'000);
-  const Reconstruction result = reconstruct(cloud, {.known = {truth.primitives[0]}});
+  const Extraction result = reconstruct(cloud, {.known = {truth.primitives[0]}});
   EXPECT_GT(iou(result, truth), 0.998);
-  EXPECT_EQ(leaf_count(result.tree), 4U) << to_text(result.tree, result.solids);
-  EXPECT_EQ(result.solids[0].id, "Box_0");
-  EXPECT_EQ(result.solids[0].displacement->frequency, truth.primitives[0].displacement->frequency);
+  EXPECT_EQ(leaf_count(result.tree()), 4U) << to_text(result.tree(), result.model.primitives);
+  EXPECT_EQ(result.model.primitives[0].id, "Box_0");
+  EXPECT_EQ(result.model.primitives[0].displacement->frequency, truth.primitives[0].displacement->frequency);
   EXPECT_EQ(result.statistics.finding->known, 1U);
   EXPECT_GT(result.statistics.finding->known_points, 10'000U);
   EXPECT_LT(iou(reconstruct(cloud), truth), 0.97) << "what is known makes the difference";
@@ -328,16 +327,16 @@ TEST(ReconstructBesideKnown, KeepsWhatIsKnownToTheLastBit) {
   const PointCloud cloud = raw_cloud(truth, 0.008);
   for (const PrimitiveSet& known : {PrimitiveSet{truth.primitives[0]}, PrimitiveSet{truth.primitives[2]},
                                     PrimitiveSet{truth.primitives[1], truth.primitives[3]}, truth.primitives}) {
-    const Reconstruction result = reconstruct(cloud, {.known = known});
+    const Extraction result = reconstruct(cloud, {.known = known});
     EXPECT_GT(iou(result, truth), 0.99) << known[0].id;
-    EXPECT_EQ(leaf_count(result.tree), 4U) << to_text(result.tree, result.solids);
-    const std::vector<PrimitiveIndex> used = primitives_of(result.tree);
+    EXPECT_EQ(leaf_count(result.tree()), 4U) << to_text(result.tree(), result.model.primitives);
+    const std::vector<PrimitiveIndex> used = primitives_of(result.tree());
     for (PrimitiveIndex p = 0; p < known.size(); ++p) {
-      EXPECT_EQ(result.solids[p].id, known[p].id);
-      EXPECT_EQ(result.solids[p].pose.position, known[p].pose.position);
+      EXPECT_EQ(result.model.primitives[p].id, known[p].id);
+      EXPECT_EQ(result.model.primitives[p].pose.position, known[p].pose.position);
       EXPECT_NE(std::ranges::find(used, p), used.end()) << known[p].id;
-      EXPECT_GT(result.solids[p].evidence.value().points, 100U);
-      EXPECT_NEAR(result.solids[p].evidence.value().rms, 0.008, 0.003);
+      EXPECT_GT(result.model.primitives[p].evidence.value().points, 100U);
+      EXPECT_NEAR(result.model.primitives[p].evidence.value().rms, 0.008, 0.003);
     }
   }
 }
@@ -345,13 +344,13 @@ TEST(ReconstructBesideKnown, KeepsWhatIsKnownToTheLastBit) {
 TEST(ReconstructBesideKnown, WarnsOfWhatThePointsDoNotBearOut) {
   const Model truth = plate();
   const PrimitiveSet known{truth.primitives[0], test::placed("ghost", Sphere{0.4}, {0, 1, 1.5})};
-  const Reconstruction result = reconstruct(raw_cloud(truth, 0.005), {.known = known});
+  const Extraction result = reconstruct(raw_cloud(truth, 0.005), {.known = known});
   EXPECT_TRUE(has_warning(result, "'ghost'"));
   EXPECT_FALSE(has_warning(result, "'plate'"));
   EXPECT_GT(iou(result, truth), 0.99);
-  EXPECT_EQ(result.solids[1].id, "ghost") << "it stays in the list";
-  const FoundPrimitives found = find_primitives(raw_cloud(truth, 0.005), {.known = known});
-  EXPECT_TRUE(std::ranges::any_of(found.warnings, [](const std::string& warning) {
+  EXPECT_EQ(result.model.primitives[1].id, "ghost") << "it stays in the list";
+  const Extraction found = find_primitives(raw_cloud(truth, 0.005), {.known = known});
+  EXPECT_TRUE(std::ranges::any_of(found.statistics.warnings, [](const std::string& warning) {
     return warning.find("known primitive 'ghost': 0 of") != std::string::npos;
   }));
 }
@@ -364,26 +363,26 @@ TEST(ReconstructBesideKnown, RefusesKnownPrimitivesThatAreNone) {
 }
 
 TEST(FindPrimitives, SaysHowManyPointsLieOnEachSolid) {
-  const FoundPrimitives found = find_primitives(raw_cloud(plate(), 0.005));
-  ASSERT_EQ(found.points.size(), found.choice.solids.size());
+  const Extraction found = find_primitives(raw_cloud(plate(), 0.005));
+  ASSERT_EQ(found.points.size(), found.model.primitives.size());
   std::size_t sum = 0;
   for (std::size_t k = 0; k < found.points.size(); ++k) {
-    const Evidence evidence = found.choice.solids[k].evidence.value();
+    const Evidence evidence = found.model.primitives[k].evidence.value();
     EXPECT_EQ(evidence.points, found.points[k].points.size());
     EXPECT_EQ(evidence.rms, found.points[k].rms);
     EXPECT_NEAR(evidence.rms, 0.005, 0.002);
     sum += evidence.points;
   }
-  EXPECT_GT(static_cast<double>(sum), 0.97 * static_cast<double>(found.prepared.cloud.size()));
+  EXPECT_GT(static_cast<double>(sum), 0.97 * static_cast<double>(found.cloud.size()));
 }
 
 TEST(FindPrimitives, TakesGivenRadiiAndAxes) {
   SolidOptions solids;
   solids.regularity.radii = {0.4, 0.35, 0.6};
   solids.regularity.axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
-  const FoundPrimitives found = find_primitives(raw_cloud(plate(), 0.008), {.solids = solids});
+  const Extraction found = find_primitives(raw_cloud(plate(), 0.008), {.solids = solids});
   std::vector<double> radii;
-  for (const Primitive& solid : found.choice.solids) {
+  for (const Primitive& solid : found.model.primitives) {
     if (const auto* cylinder = std::get_if<Cylinder>(&solid.shape)) radii.push_back(cylinder->radius);
     const Eigen::Vector3d axis = solid.pose.orientation * Eigen::Vector3d::UnitZ();
     EXPECT_NEAR(axis.cwiseAbs().maxCoeff(), 1, 1e-12) << solid.id;

@@ -25,9 +25,9 @@ class RecoversThePapersModels : public ::testing::TestWithParam<ModelAndSeed> {
     for (ExtractOptions options : test::with_and_without_cells()) {
       options.seed = seed;
       const Extraction result = extract_csg(cloud, model.primitives, options);
-      EXPECT_GE(test::membership_iou(result.tree, *model.tree, model.primitives), 0.999)
-          << to_text(result.tree, model.primitives);
-      EXPECT_LE(4 * result.tree.size(), 5 * model.tree->size()) << to_text(result.tree, model.primitives);
+      EXPECT_GE(test::membership_iou(result.tree(), *model.tree, model.primitives), 0.999)
+          << to_text(result.tree(), model.primitives);
+      EXPECT_LE(4 * result.tree().size(), 5 * model.tree->size()) << to_text(result.tree(), model.primitives);
       EXPECT_TRUE(result.statistics.complete);
     }
   }
@@ -78,8 +78,8 @@ TEST(ExtractCsg, UnitesComponentsThatDoNotTouch) {
   const PointCloud cloud = sample_surface(truth, primitives, {.count = 6000, .noise = 0.003, .seed = 1});
   for (const ExtractOptions& options : test::all_strategies()) {
     const Extraction result = extract_csg(cloud, primitives, options);
-    EXPECT_EQ(test::membership_iou(result.tree, truth, primitives, 60), 1.0) << to_text(result.tree, primitives);
-    EXPECT_EQ(result.tree.size(), truth.size());
+    EXPECT_EQ(test::membership_iou(result.tree(), truth, primitives, 60), 1.0) << to_text(result.tree(), primitives);
+    EXPECT_EQ(result.tree().size(), truth.size());
     EXPECT_EQ(result.statistics.components, options.strategy == Strategy::baseline ? 1U : 3U);
     EXPECT_EQ(result.statistics.clique_histogram, (std::vector<std::size_t>{1, 2}));
   }
@@ -89,7 +89,7 @@ TEST(ExtractCsg, SolvesASinglePrimitive) {
   const PrimitiveSet primitives{test::placed("ball", Sphere{1}, {0, 0, 0})};
   const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 500, .noise = 0.01});
   for (const ExtractOptions& options : test::all_strategies()) {
-    EXPECT_EQ(extract_csg(cloud, primitives, options).tree, CsgTree::leaf(0));
+    EXPECT_EQ(extract_csg(cloud, primitives, options).tree(), CsgTree::leaf(0));
   }
 }
 
@@ -100,7 +100,7 @@ TEST(ExtractCsg, TakesASinglePoint) {
   cloud.normals.push_back({1, 0, 0});
   for (const ExtractOptions& options : test::with_and_without_cells()) {
     const Extraction result = extract_csg(cloud, primitives, options);
-    EXPECT_EQ(result.tree, CsgTree::leaf(0));
+    EXPECT_EQ(result.tree(), CsgTree::leaf(0));
     EXPECT_DOUBLE_EQ(result.statistics.fit.objective, 2.0);
   }
 }
@@ -112,7 +112,7 @@ TEST(ExtractCsg, CutsWithHalfSpaces) {
   const PointCloud cloud = sample_surface(truth, primitives, {.count = 5000, .noise = 0.004, .seed = 4});
   for (const ExtractOptions& options : test::all_strategies()) {
     const Extraction result = extract_csg(cloud, primitives, options);
-    EXPECT_EQ(test::membership_iou(result.tree, truth, primitives), 1.0) << to_text(result.tree, primitives);
+    EXPECT_EQ(test::membership_iou(result.tree(), truth, primitives), 1.0) << to_text(result.tree(), primitives);
   }
 }
 
@@ -144,7 +144,7 @@ TEST(ExtractCsg, GivesTheSameTreeAtEveryScale) {
       const Extraction expected = extract_csg(cloud, model.primitives, options);
       for (const double factor : {0.01, 1000.0}) {
         const Extraction result = extract_csg(scaled(cloud, factor), scaled(model.primitives, factor), options);
-        EXPECT_EQ(result.tree, expected.tree) << name << ' ' << factor;
+        EXPECT_EQ(result.tree(), expected.tree()) << name << ' ' << factor;
         EXPECT_NEAR(result.statistics.noise, factor * expected.statistics.noise, 1e-6 * factor);
       }
     }
@@ -162,7 +162,7 @@ TEST(ExtractCsg, NamesOnlyTheFirstOfManyPrimitivesThatNoPointSupports) {
   }
   for (const ExtractOptions& options : test::with_and_without_cells()) {
     const Extraction result = extract_csg(cloud, primitives, options);
-    EXPECT_EQ(result.tree, CsgTree::leaf(0));
+    EXPECT_EQ(result.tree(), CsgTree::leaf(0));
     const std::vector<std::string>& warnings = result.statistics.warnings;
     ASSERT_EQ(warnings.size(), 11U);
     EXPECT_NE(warnings.front().find("'far0'"), std::string::npos);
@@ -177,7 +177,7 @@ TEST(ExtractCsg, DropsPrimitivesThatNoPointSupports) {
   const PointCloud cloud = sample_surface(truth, primitives, {.count = 3000, .noise = 0.002, .seed = 1});
   for (const ExtractOptions& options : test::all_strategies()) {
     const Extraction result = extract_csg(cloud, primitives, options);
-    EXPECT_EQ(result.tree, truth);
+    EXPECT_EQ(result.tree(), truth);
     EXPECT_EQ(result.statistics.primitives, 4U);
     ASSERT_EQ(result.statistics.warnings.size(), 2U);
     EXPECT_NE(result.statistics.warnings[0].find("'nowhere'"), std::string::npos);

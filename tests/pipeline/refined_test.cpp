@@ -24,25 +24,25 @@ TEST(ExtractRefined, ExplainsThePointsBetter) {
   const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 8000, .noise = 0.005, .seed = 1});
   const PrimitiveSet given = wrong_sizes(model.primitives);
   const Extraction plain = extract_csg(cloud, given);
-  const RefinedExtraction refined = extract_refined_csg(cloud, given);
-  ASSERT_TRUE(refined.extraction.statistics.refine);
-  EXPECT_TRUE(refined.extraction.statistics.refine->is_taken);
-  EXPECT_LT(refined.extraction.statistics.fit.rms_distance, 0.8 * plain.statistics.fit.rms_distance);
-  EXPECT_EQ(refined.primitives.size(), given.size());
-  EXPECT_GT(refined.extraction.statistics.seconds.refine, 0);
-  EXPECT_GE(refined.extraction.statistics.seconds.extraction, refined.extraction.statistics.seconds.refine);
-  EXPECT_GT(test::membership_iou(refined.extraction.tree, *model.tree, model.primitives), 0.99);
+  const Extraction refined = extract_refined_csg(cloud, given);
+  ASSERT_TRUE(refined.statistics.refine);
+  EXPECT_TRUE(refined.statistics.refine->is_taken);
+  EXPECT_LT(refined.statistics.fit.rms_distance, 0.8 * plain.statistics.fit.rms_distance);
+  EXPECT_EQ(refined.model.primitives.size(), given.size());
+  EXPECT_GT(refined.statistics.seconds.refine, 0);
+  EXPECT_GE(refined.statistics.seconds.extraction, refined.statistics.seconds.refine);
+  EXPECT_GT(test::membership_iou(refined.tree(), *model.tree, model.primitives), 0.99);
 }
 
 TEST(ExtractRefined, IsTheSameForAnyThreads) {
   const Model model = test::paper_model("m2");
   const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 3000, .noise = 0.005, .seed = 2});
   const PrimitiveSet given = wrong_sizes(model.primitives);
-  const RefinedExtraction one = extract_refined_csg(cloud, given, {}, {}, {.threads = 1});
-  const RefinedExtraction two = extract_refined_csg(cloud, given, {}, {}, {.threads = 2});
-  EXPECT_EQ(one.extraction.tree, two.extraction.tree);
+  const Extraction one = extract_refined_csg(cloud, given, {}, {}, {.threads = 1});
+  const Extraction two = extract_refined_csg(cloud, given, {}, {}, {.threads = 2});
+  EXPECT_EQ(one.tree(), two.tree());
   for (std::size_t p = 0; p < given.size(); ++p) {
-    EXPECT_EQ(one.primitives[p].pose.position, two.primitives[p].pose.position);
+    EXPECT_EQ(one.model.primitives[p].pose.position, two.model.primitives[p].pose.position);
   }
 }
 
@@ -58,10 +58,10 @@ TEST(ExtractRefined, SaysThatItsTimeWasOver) {
   const Model model = test::paper_model("m2");
   const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 2000, .noise = 0.005, .seed = 2});
   const PrimitiveSet given = wrong_sizes(model.primitives);
-  const RefinedExtraction result = extract_refined_csg(cloud, given, {.time_limit_seconds = 1e-9});
-  EXPECT_FALSE(result.extraction.statistics.complete);
-  EXPECT_EQ(result.extraction.statistics.warnings.back(), "stopped early: this is the best tree so far");
-  EXPECT_EQ(result.primitives[0].pose.position, given[0].pose.position);
+  const Extraction result = extract_refined_csg(cloud, given, {.time_limit_seconds = 1e-9});
+  EXPECT_FALSE(result.statistics.complete);
+  EXPECT_EQ(result.statistics.warnings.back(), "stopped early: this is the best tree so far");
+  EXPECT_EQ(result.model.primitives[0].pose.position, given[0].pose.position);
 }
 
 /// A stop while refining leaves the tree that was there.
@@ -73,10 +73,10 @@ TEST(ExtractRefined, StoppedWhileRefiningGivesTheFirstTree) {
   const RunContext run{.stop = stop.get_token(), .on_progress = [&stop](const Progress& progress) {
                          if (progress.stage == "refine") stop.request_stop();
                        }};
-  const RefinedExtraction result = extract_refined_csg(cloud, given, {}, {}, run);
-  EXPECT_FALSE(result.extraction.statistics.complete);
-  EXPECT_EQ(result.primitives[0].pose.position, given[0].pose.position);
-  EXPECT_EQ(result.extraction.tree, extract_csg(cloud, given).tree);
+  const Extraction result = extract_refined_csg(cloud, given, {}, {}, run);
+  EXPECT_FALSE(result.statistics.complete);
+  EXPECT_EQ(result.model.primitives[0].pose.position, given[0].pose.position);
+  EXPECT_EQ(result.tree(), extract_csg(cloud, given).tree());
 }
 
 }  // namespace

@@ -62,8 +62,8 @@ TEST(StatisticsJson, TellsTheStepsToTheTree) {
   const Extraction by_cells = extraction_of("m0");
   const nlohmann::json cells = nlohmann::json::parse(to_json(by_cells.statistics));
   EXPECT_EQ(names(cells), (std::vector<std::string>{"decomposition", "simplification"}));
-  EXPECT_EQ(cells["steps"].back()["size"], by_cells.tree.size());
-  EXPECT_EQ(cells["cells"]["least_leaves"], leaf_count(by_cells.tree));
+  EXPECT_EQ(cells["steps"].back()["size"], by_cells.tree().size());
+  EXPECT_EQ(cells["cells"]["least_leaves"], leaf_count(by_cells.tree()));
   const Extraction by_partitions = extraction_of("m0", {.strategy = Strategy::partition});
   const nlohmann::json partitions = nlohmann::json::parse(to_json(by_partitions.statistics));
   EXPECT_EQ(names(partitions), (std::vector<std::string>{"merged partitions", "simplification"}));
@@ -71,10 +71,10 @@ TEST(StatisticsJson, TellsTheStepsToTheTree) {
 
 TEST(Statistics, MeasureTheTree) {
   const Extraction result = extraction_of("m0");
-  EXPECT_EQ(result.statistics.tree.size, result.tree.size());
-  EXPECT_EQ(result.statistics.tree.leaves, leaf_count(result.tree));
-  EXPECT_EQ(result.statistics.tree.depth, depth(result.tree));
-  EXPECT_GE(result.statistics.before_simplification.size, result.tree.size());
+  EXPECT_EQ(result.statistics.tree.size, result.tree().size());
+  EXPECT_EQ(result.statistics.tree.leaves, leaf_count(result.tree()));
+  EXPECT_EQ(result.statistics.tree.depth, depth(result.tree()));
+  EXPECT_GE(result.statistics.before_simplification.size, result.tree().size());
 }
 
 TEST(Statistics, FitIsThatOfTheNoise) {
@@ -97,7 +97,7 @@ TEST(Statistics, ObjectiveIsThatOfTheReference) {
   const Extraction result = extract_csg(cloud, model.primitives);
   std::vector<std::uint32_t> all(cloud.size());
   std::iota(all.begin(), all.end(), 0U);
-  const double reference = reference_objective(result.tree, model.primitives, cloud, all,
+  const double reference = reference_objective(result.tree(), model.primitives, cloud, all,
                                                resolve({}, cloud.size(), result.statistics.noise));
   EXPECT_NEAR(result.statistics.fit.objective, reference, 1e-9 * std::abs(reference));
 }

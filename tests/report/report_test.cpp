@@ -9,7 +9,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/sample.hpp"
-#include "pipeline/fit.hpp"
+#include "paper/objective/fit.hpp"
 #include "report/decoded.hpp"
 #include "view/report/deviation.hpp"
 #include "view/report/gather.hpp"

@@ -34,14 +34,14 @@ TEST(LabelPlaces, AgreesWithTheSolid) {
   for (const double noise : {0.0, 0.005, 0.01}) {
     const LabelledPlaces places = places_of(tree(), noise);
     EXPECT_EQ(places.positions.size(), places.weights.size());
-    EXPECT_LT(disagreement(tree(), k_solids, places), 0.01) << noise;
+    EXPECT_LT(wrong_place_share(tree(), k_solids, places), 0.01) << noise;
   }
 }
 
 TEST(LabelPlaces, KnowsThinWallsAndHoles) {
   const LabelledPlaces places = places_of(tree(), 0.005);
-  EXPECT_GT(disagreement(parse_tree("block - hole", k_solids), k_solids, places), 0.1);
-  EXPECT_GT(disagreement(parse_tree("block | wall", k_solids), k_solids, places), 0.05);
+  EXPECT_GT(wrong_place_share(parse_tree("block - hole", k_solids), k_solids, places), 0.1);
+  EXPECT_GT(wrong_place_share(parse_tree("block | wall", k_solids), k_solids, places), 0.05);
 }
 
 TEST(LabelPlaces, TellsTheWorstPlace) {
@@ -58,7 +58,7 @@ TEST(LabelPlaces, TellsTheWorstPlace) {
 TEST(LabelPlaces, WeighsTheVolumeOfTheSolidAsOne) {
   const LabelledPlaces places = places_of(CsgTree::leaf(0), 0.0);
   // Nothing in the solid: its volume, and half of what is beside its surface, is wrong.
-  EXPECT_NEAR(disagreement(CsgTree::empty(), k_solids, places), 1.5, 0.05);
+  EXPECT_NEAR(wrong_place_share(CsgTree::empty(), k_solids, places), 1.5, 0.05);
   EXPECT_GT(total_weight(places), 2.0);
 }
 

@@ -20,7 +20,7 @@ for (let i = 0; i < bytes.length; i += k_line) {
 }
 writeFileSync(
   output,
-  `#include "report/page_template.hpp"
+  `#include "view/report/page_template.hpp"
 
 namespace {
 constexpr char k_page[] =

@@ -42,7 +42,7 @@ struct PlaceOptions {
                                           const RunContext& run = {});
 
 /// The weight of the places that a tree labels otherwise; 0 when it is right everywhere. O(places x size).
-[[nodiscard]] double disagreement(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places);
+[[nodiscard]] double wrong_place_share(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places);
 
 /// Of the places that a tree labels otherwise, the one deepest inside or farthest outside of its solid. O(places x
 /// size). Precondition: there is one.

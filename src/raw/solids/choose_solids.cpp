@@ -120,7 +120,7 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   WrittenSolids written = write_solids(space, list);
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);
-  choice.disagreement = disagreement(choice.tree, choice.solids, choice.places);
+  choice.disagreement = wrong_place_share(choice.tree, choice.solids, choice.places);
   choice.snaps = std::move(regular.snaps);
   choice.warnings = std::move(regular.warnings);
   if (list.size() >= options.most_rules) {

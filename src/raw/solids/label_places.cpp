@@ -212,7 +212,7 @@ LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options
   return places;
 }
 
-double disagreement(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places) {
+double wrong_place_share(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places) {
   const std::vector<double> values = implicit_value(tree, solids, places.positions);
   double sum = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {

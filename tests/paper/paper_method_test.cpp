@@ -1,31 +1,35 @@
-#include "bench/experiment/reference_extraction.hpp"
+#include "paper/paper_method.hpp"
 
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"
-#include "experiment/experiment_fixture.hpp"
 #include "paper/evolve/genetic_algorithm.hpp"
 
 namespace cloud2csg::test {
 namespace {
 
-class ReferenceExtraction : public ExperimentTest {
+class PaperMethod : public ::testing::Test {
  protected:
-  ReferenceExtraction()
-      : model_(read_model(shipped_models() / "m1.json")),
+  PaperMethod()
+      : model_(read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / "m1.json")),
         cloud_(sample_surface(*model_.tree, model_.primitives, {.count = 300, .noise = 0.01})) {}
 
   /// As text, so that a difference can be read.
   [[nodiscard]] std::string tree_by_points(const ExtractOptions& options, int threads = 1) const {
-    return text_of(reference_extraction(cloud_, model_.primitives, options, {.threads = threads}));
+    return text_of(extract_as_in_paper(cloud_, model_.primitives, options, {.threads = threads}));
   }
   [[nodiscard]] std::string text_of(const Extraction& extraction) const {
-    return to_text(extraction.tree, model_.primitives);
+    return to_text(extraction.tree(), model_.primitives);
   }
 
   Model model_;
   PointCloud cloud_;
 };
 
-TEST_F(ReferenceExtraction, FindsTheTreeThatClassesFind) {
+TEST_F(PaperMethod, FindsTheTreeThatClassesFind) {
   for (const Strategy strategy : {Strategy::baseline, Strategy::partition}) {
     std::size_t compared = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -43,7 +47,7 @@ TEST_F(ReferenceExtraction, FindsTheTreeThatClassesFind) {
   }
 }
 
-TEST_F(ReferenceExtraction, IsTheSameForAnyThreads) {
+TEST_F(PaperMethod, IsTheSameForAnyThreads) {
   ExtractOptions options = paper_options();
   options.parallel = Parallel::none;
   const std::string once = tree_by_points(options);
@@ -53,22 +57,7 @@ TEST_F(ReferenceExtraction, IsTheSameForAnyThreads) {
   }
 }
 
-TEST_F(ReferenceExtraction, GoesIntoTheExperiment) {
-  PaperOptions options = small_experiment();
-  options.low_points = 60;
-  options.high_points = 120;
-  options.evaluator = "reference";
-  const PaperResults results = reproduce(options);
-  EXPECT_EQ(results.runs.size(), 12U);
-  EXPECT_EQ(mode_disagreements(results), std::vector<std::string>{});
-  for (const PaperRun& run : results.runs) {
-    EXPECT_EQ(run.seconds.classes, 0);
-    EXPECT_GT(run.evaluations, 0U);
-    EXPECT_GT(run.generations, 9U);
-  }
-}
-
-TEST_F(ReferenceExtraction, GeneticAlgorithmCountsEvaluationsOfAnyObjective) {
+TEST_F(PaperMethod, GeneticAlgorithmCountsEvaluationsOfAnyObjective) {
   // The smallest tree is the best.
   const TreeObjective objective{.primitives = 3, .geometry = [](const CsgTree&) { return 7.0; }, .alpha = 2};
   const Evolution found = run_genetic_algorithm(objective, {}, paper_ga_options(), 0, {});

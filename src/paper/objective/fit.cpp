@@ -1,4 +1,4 @@
-#include "pipeline/fit.hpp"
+#include "paper/objective/fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,13 +40,14 @@ std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const Primiti
 }
 
 FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                          const Objective& objective, const NoiseScale& scale, const RunContext& run,
+                          double noise, const ExtractOptions& options, const RunContext& run,
                           std::span<const std::uint32_t> order) {
-  PointFit points = measure_points(tree, primitives, cloud, scale.noise, {.order = order}, run);
+  const Objective objective = resolve(options.objective, cloud.size(), noise);
+  PointFit points = measure_points(tree, primitives, cloud, noise, {.order = order}, run);
   FitStatistics fit;
   fit.objective = -objective.alpha * static_cast<double>(tree.size());
   for (double& distance : points.signed_distances) distance = std::abs(distance);
-  const Explanation explanation(scale.tolerances);
+  const Explanation explanation(segmentation_tolerances(options.segmentation, noise));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!explanation.holds(points.signed_distances[i], points.angles[i])) ++fit.unexplained_points;
     fit.objective += point_score(points.signed_distances[i], points.angles[i], objective);

@@ -1,4 +1,4 @@
-#include "pipeline/fit.hpp"
+#include "paper/objective/fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@ namespace {
 
 constexpr double k_noise = 0.01;
 constexpr double k_most_degrees = 30;
-const NoiseScale k_scale{.noise = k_noise,
-                         .tolerances = segmentation_tolerances(
-                             {.distance_tolerance = k_noise, .angle_tolerance_deg = k_most_degrees}, k_noise)};
-constexpr Objective k_objective{.alpha = 5, .beta = 1 / k_noise, .gamma = 18 / std::numbers::pi};
+const ExtractOptions k_options{
+    .segmentation = {.distance_tolerance = k_noise, .angle_tolerance_deg = k_most_degrees},
+    .objective = {.alpha = 5, .beta = 1 / k_noise, .gamma = 18 / std::numbers::pi}};
+const Objective k_objective = resolve(k_options.objective, 0, k_noise);
 
 double root_mean_square(const std::vector<double>& values) {
   double sum = 0;
@@ -53,10 +53,11 @@ FitStatistics plain_fit(const CsgTree& tree, const PrimitiveSet& primitives, con
 
 void expect_plain_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud) {
   const FitStatistics expected = plain_fit(tree, primitives, cloud);
+  const SegmentationTolerances tolerances = segmentation_tolerances(k_options.segmentation, k_noise);
   for (const int threads : {1, 3}) {
-    const FitStatistics fit = measure_fit(tree, primitives, cloud, k_objective, k_scale, {.threads = threads});
+    const FitStatistics fit = measure_fit(tree, primitives, cloud, k_noise, k_options, {.threads = threads});
     EXPECT_EQ(fit.unexplained_points,
-              unexplained_points(tree, primitives, cloud, k_scale.tolerances, {.threads = threads}).size());
+              unexplained_points(tree, primitives, cloud, tolerances, {.threads = threads}).size());
     EXPECT_EQ(fit.unexplained_points, expected.unexplained_points);
     EXPECT_NEAR(fit.objective, expected.objective, 1e-9 * static_cast<double>(cloud.size()));
     EXPECT_NEAR(fit.rms_distance, expected.rms_distance, 1e-12 * expected.rms_distance);
