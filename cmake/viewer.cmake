@@ -29,14 +29,15 @@ endif()
 
 if(CLOUD2CSG_HAS_VIEWER)
   file(GLOB viewer_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/viewer/*.json ${PROJECT_SOURCE_DIR}/viewer/*.html
-       ${PROJECT_SOURCE_DIR}/viewer/*.ts ${PROJECT_SOURCE_DIR}/viewer/src/*)
+       ${PROJECT_SOURCE_DIR}/viewer/*.ts)
+  file(GLOB_RECURSE page_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/viewer/src/*)
   add_custom_command(
     OUTPUT ${CLOUD2CSG_PAGE_TEMPLATE}
     COMMAND
       ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR}/viewer -DFOLDER=${viewer_folder}
       -DOUTPUT=${CLOUD2CSG_PAGE_TEMPLATE} -DNODE=${CLOUD2CSG_NODE} -DNPM=${CLOUD2CSG_NPM}
       -DREQUIRED=${CLOUD2CSG_VIEWER} -P ${PROJECT_SOURCE_DIR}/cmake/build_viewer.cmake
-    DEPENDS ${viewer_sources} ${PROJECT_SOURCE_DIR}/cmake/build_viewer.cmake
+    DEPENDS ${viewer_sources} ${page_sources} ${PROJECT_SOURCE_DIR}/cmake/build_viewer.cmake
             ${PROJECT_SOURCE_DIR}/viewer/scripts/embed.mjs
     COMMENT "Building the page of reports"
     VERBATIM)

@@ -1,4 +1,8 @@
-import "./style.css";
+import "./style/base.css";
+import "./style/views.css";
+import "./style/panels.css";
+import "./style/figures.css";
+import "./style/run.css";
 import { deviationPane } from "./deviation_pane";
 import { h } from "./dom";
 import { count, figures, plural } from "./format";

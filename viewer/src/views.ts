@@ -2,20 +2,15 @@
 
 import {
   BackSide,
-  DataTexture,
   DoubleSide,
-  FloatType,
   FrontSide,
   GLSL3,
   Group,
   LineSegments,
   Mesh as ThreeMesh,
-  NearestFilter,
   NotEqualStencilFunc,
   PerspectiveCamera,
   Points as ThreePoints,
-  RGBAFormat,
-  Raycaster,
   ReplaceStencilOp,
   Scene,
   ShaderMaterial,
@@ -26,22 +21,13 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { type Rgb, distanceColour, primitiveColour } from "./colours";
+import { primitiveColour } from "./colours";
 import { edgeGeometry, pointGeometry, surfaceGeometry } from "./geometry";
+import { type Hit, type Pane, type Rectangle, hitCloud, hitSolid } from "./hits";
 import type { Report } from "./payload";
 import { edgeFragment, edgeVertex, pointFragment, pointVertex, surfaceFragment, surfaceVertex } from "./shaders";
 import { type ColourMode, type State, type Store, focusOf, isDark } from "./state";
-
-export type Pane = "cloud" | "solid";
-
-/** What is under the pointer. */
-export interface Hit {
-  pane: Pane;
-  primitive: number | null;
-  /** Signed, of a point of the cloud. */
-  distance: number | null;
-  place: Vector3;
-}
+import { colourTexture, distanceTexture, k_themes } from "./view_colours";
 
 const k_palette_width = 1024;
 const k_inside = 1; // in the stencil: seen from inside
@@ -56,39 +42,6 @@ const k_directions: Record<Direction, [number, number, number]> = {
   right: [1, 0, 0],
   top: [0, -0.0005, 1],
 };
-
-interface Rectangle {
-  left: number;
-  bottom: number;
-  width: number;
-  height: number;
-}
-
-function colourTexture(colours: [number, number, number, number][], width: number): DataTexture {
-  const height = Math.ceil(colours.length / width);
-  const data = new Float32Array(4 * width * height);
-  colours.forEach((colour, i) => data.set(colour, 4 * i));
-  const texture = new DataTexture(data, width, height, RGBAFormat, FloatType);
-  texture.needsUpdate = true;
-  return texture;
-}
-
-function distanceTexture(dark: boolean): DataTexture {
-  const steps = 256;
-  const colours = Array.from(
-    { length: steps },
-    (_, i) => [...distanceColour((2 * i) / (steps - 1) - 1, dark), 1] as [number, number, number, number],
-  );
-  const texture = colourTexture(colours, steps);
-  texture.minFilter = NearestFilter;
-  texture.magFilter = NearestFilter;
-  return texture;
-}
-
-const k_themes = {
-  light: { background: [0.957, 0.965, 0.976], plain: [0.66, 0.7, 0.75], points: [0.3, 0.36, 0.44], edge: [0.16, 0.2, 0.27], cut: [0.93, 0.66, 0.4] },
-  dark: { background: [0.075, 0.09, 0.115], plain: [0.56, 0.6, 0.66], points: [0.72, 0.77, 0.84], edge: [0.03, 0.04, 0.06], cut: [0.78, 0.5, 0.27] },
-} satisfies Record<string, Record<string, Rgb>>;
 
 export class Views {
   readonly canvas: HTMLCanvasElement;
@@ -427,58 +380,13 @@ export class Views {
         (2 * (x - picture.left)) / picture.width - 1,
         (2 * (fromBelow - picture.bottom)) / picture.height - 1,
       );
-      return pane === "cloud" ? this.hitCloud(pointer, picture) : this.hitSolid(pointer);
-    }
-    return null;
-  }
-
-  private isCut(x: number, y: number, z: number): boolean {
-    const plane = this.shared.section.value;
-    return this.shared.sectionOn.value && x * plane.x + y * plane.y + z * plane.z > plane.w;
-  }
-
-  /** The front-most point within some pixels. */
-  private hitCloud(pointer: Vector2, picture: Rectangle): Hit | null {
-    const points = this.report.points;
-    if (!points) return null;
-    const reach = 7;
-    this.camera.updateMatrixWorld();
-    const m = this.camera.projectionMatrix.clone().multiply(this.camera.matrixWorldInverse).elements;
-    const { positions: p } = points;
-    const [limitX, limitY] = [(2 * reach) / picture.width, (2 * reach) / picture.height];
-    let best = -1;
-    let depth = Infinity;
-    for (let i = 0; i < points.count; ++i) {
-      const [x, y, z] = [p[3 * i], p[3 * i + 1], p[3 * i + 2]];
-      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
-      if (w <= 0 || w >= depth) continue;
-      if (Math.abs((m[0] * x + m[4] * y + m[8] * z + m[12]) / w - pointer.x) > limitX) continue;
-      if (Math.abs((m[1] * x + m[5] * y + m[9] * z + m[13]) / w - pointer.y) > limitY) continue;
-      if (this.isCut(x, y, z)) continue;
-      best = i;
-      depth = w;
-    }
-    if (best < 0) return null;
-    return {
-      pane: "cloud",
-      primitive: points.owners[best] < 0 ? null : points.owners[best],
-      distance: points.distances[best],
-      place: new Vector3(p[3 * best], p[3 * best + 1], p[3 * best + 2]),
-    };
-  }
-
-  private hitSolid(pointer: Vector2): Hit | null {
-    const shown = this.shownMesh === null ? null : this.nodeMeshes.get(this.shownMesh);
-    if (!shown) return null;
-    const caster = new Raycaster();
-    this.camera.updateMatrixWorld();
-    caster.setFromCamera(pointer, this.camera);
-    for (const found of caster.intersectObject(shown.surface)) {
-      if (this.isCut(found.point.x, found.point.y, found.point.z) || !found.face) continue;
-      const owner = (found.object as ThreeMesh).geometry.getAttribute("owner").getX(found.face.a);
-      return { pane: "solid", primitive: owner < 0 ? null : owner, distance: null, place: found.point };
+      const plane = this.shared.section.value;
+      const isCut = (px: number, py: number, pz: number) =>
+        this.shared.sectionOn.value && px * plane.x + py * plane.y + pz * plane.z > plane.w;
+      if (pane === "cloud") return hitCloud(this.report, this.camera, pointer, picture, isCut);
+      const shown = this.shownMesh === null ? null : this.nodeMeshes.get(this.shownMesh);
+      return shown ? hitSolid(shown.surface, this.camera, pointer, isCut) : null;
     }
     return null;
   }
 }
-
