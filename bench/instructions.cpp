@@ -82,7 +82,7 @@ void count_simplification() {
 void count_extraction(const char* name, const Scene& scene) {
   ExtractOptions options;
   options.parallel = Parallel::none;
-  count(name, [&] { return extract_csg(scene.cloud, scene.model.primitives, options).tree.size(); });
+  count(name, [&] { return extract_csg(scene.cloud, scene.model.primitives, options).tree().size(); });
 }
 
 void count_all() {

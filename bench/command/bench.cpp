@@ -3,7 +3,7 @@
 #include <system_error>
 
 #include "bench/experiment/paper.hpp"
-#include "bench_command.hpp"
+#include "bench/command/bench_command.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg::app {

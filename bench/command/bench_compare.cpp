@@ -6,7 +6,7 @@
 #include <span>
 
 #include "bench/experiment/paper.hpp"
-#include "bench_command.hpp"
+#include "bench/command/bench_command.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg::app {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bench/experiment/scaling.hpp"
-#include "bench_command.hpp"
+#include "bench/command/bench_command.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg::app {
