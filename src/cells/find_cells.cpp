@@ -8,7 +8,7 @@
 #include "cells/infinity.hpp"
 #include "cells/sight_lines.hpp"
 #include "cells/surface_samples.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 #include "paper/segment/sensor_views.hpp"
 
 namespace cloud2csg {

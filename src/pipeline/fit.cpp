@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "paper/objective/point_fit.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {

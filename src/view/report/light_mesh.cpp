@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "paper/objective/point_fit.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {
