@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "paper/objective/point_fit.hpp"
+#include "core/fields/point_fit.hpp"
 #include "core/geometry/spatial_order.hpp"
 
 namespace cloud2csg {

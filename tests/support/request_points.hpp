@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "paper/objective/point_blocks.hpp"
+#include "core/fields/point_blocks.hpp"
 #include "core/geometry/spatial_order.hpp"
 #include "support/scene.hpp"
 

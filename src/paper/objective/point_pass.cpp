@@ -3,7 +3,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
-#include "paper/objective/frame.hpp"
+#include "core/fields/frame.hpp"
 #include "core/geometry/spatial_order.hpp"
 #include "paper/objective/point_worker.hpp"
 #include "paper/objective/rank_classes_builder.hpp"

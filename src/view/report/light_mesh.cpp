@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "paper/objective/point_fit.hpp"
+#include "core/fields/point_fit.hpp"
 #include "core/geometry/spatial_order.hpp"
 
 namespace cloud2csg {
