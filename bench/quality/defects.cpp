@@ -6,6 +6,7 @@
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/sample.hpp"
 #include "core/geometry/random_between.hpp"
+#include "core/geometry/subset.hpp"
 #include "core/primitive/overloaded.hpp"
 
 namespace cloud2csg::bench {
@@ -27,17 +28,6 @@ Vector3d random_direction(RandomStream& random) {
     const Vector3d direction(random.normal(), random.normal(), random.normal());
     if (direction.norm() > 0) return direction.normalized();
   }
-}
-
-PointCloud select_points(const PointCloud& cloud, const std::vector<bool>& is_kept) {
-  PointCloud selected;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_kept[i]) continue;
-    selected.positions.push_back(cloud.positions[i]);
-    selected.normals.push_back(cloud.normals[i]);
-    if (cloud.has_sensor_positions()) selected.sensor_positions.push_back(cloud.sensor_positions[i]);
-  }
-  return selected;
 }
 
 /// The distance within which a share of the points lies.
@@ -62,7 +52,7 @@ PointCloud without_patches(const PointCloud& cloud, double patch_share, RandomSt
       ++gone;
     }
   }
-  return select_points(cloud, is_kept);
+  return select_points(cloud, places_where(is_kept));
 }
 
 PointCloud with_outliers(PointCloud cloud, double share, RandomStream& random) {

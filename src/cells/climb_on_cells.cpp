@@ -9,7 +9,7 @@
 #include "cells/tree_cells.hpp"
 #include "cloud2csg/advanced/restrict.hpp"
 #include "cloud2csg/advanced/simplify.hpp"
-#include "paper/evolve/local_search.hpp"
+#include "core/tree/local_search.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -85,9 +85,9 @@ CsgTree climb(const CellComplex& complex, const CellLabels& labels, LabelCosts c
                                 .alpha = options.leaf_cost / 2,  // a leaf more is two nodes more
                                 .work = cost.work(),
                                 .work_per_node = cost.work_per_node()};
-  std::optional<Evolution> best;
+  std::optional<LocalOptimum> best;
   for (const CsgTree& start : starts) {
-    Evolution climbed = local_search(objective, over_places(start, part.primitives), options.climb, run);
+    LocalOptimum climbed = local_search(objective, over_places(start, part.primitives), options.climb, run);
     if (!best || climbed.score > best->score) best = std::move(climbed);
   }
   return renumber(simplify(best->tree), part.primitives);

@@ -8,8 +8,8 @@
 #include "cells/side_kernels.hpp"
 #include "cells/sight_lines.hpp"
 #include "core/base/parallel.hpp"
-#include "paper/objective/frame.hpp"
-#include "paper/objective/point_blocks.hpp"
+#include "core/fields/frame.hpp"
+#include "core/fields/point_blocks.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -8,8 +8,9 @@
 #include "cells/infinity.hpp"
 #include "cells/sight_lines.hpp"
 #include "cells/surface_samples.hpp"
-#include "paper/objective/spatial_order.hpp"
-#include "paper/segment/sensor_views.hpp"
+#include "core/geometry/sensor_views.hpp"
+#include "core/geometry/spatial_order.hpp"
+#include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -126,17 +127,6 @@ class ComplexBuilder {
   double points_a_line_ = 0;
 };
 
-/// The points of which `chosen` says so.
-PointCloud those(const PointCloud& points, const std::vector<bool>& chosen, bool says) {
-  PointCloud result;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i] != says) continue;
-    result.positions.push_back(points.positions[i]);
-    result.normals.push_back(points.normals[i]);
-  }
-  return result;
-}
-
 void add_counts(const Crossings& share, CellComplex& sum) {
   for (std::size_t p = 0; p < sum.points_of_primitive.size(); ++p) {
     sum.points_of_primitive[p] += share.points_of_primitive[p];
@@ -166,8 +156,8 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
   };
   if (cloud.has_sensor_positions()) {
     const std::vector<bool> seen = are_seen(samples.points, cloud, order, run);
-    add_samples(those(samples.points, seen, true), Source::samples);
-    add_samples(those(samples.points, seen, false), Source::hidden_samples);
+    add_samples(select_points(samples.points, places_where(seen)), Source::samples);
+    add_samples(select_points(samples.points, places_where(seen, false)), Source::hidden_samples);
   } else {
     add_samples(samples.points, Source::samples);
   }

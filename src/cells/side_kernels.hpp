@@ -1,6 +1,7 @@
 #pragma once
 
-#include "paper/objective/point_kernels.hpp"
+#include "cloud2csg/advanced/segmentation.hpp"
+#include "core/fields/block_field.hpp"
 
 namespace cloud2csg {
 

@@ -5,19 +5,12 @@
 #include <tuple>
 
 #include "core/base/parallel.hpp"
+#include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
 namespace {
 
 using Eigen::Vector3d;
-
-/// So many entries, evenly along the list.
-std::vector<std::uint32_t> some_of(std::span<const std::uint32_t> list, std::size_t most) {
-  const std::size_t count = std::min(most, list.size());
-  std::vector<std::uint32_t> some(count);
-  for (std::size_t k = 0; k < count; ++k) some[k] = list[k * list.size() / count];
-  return some;
-}
 
 /// By point: whether it is near a primitive's surface.
 std::vector<char> are_near(const Points& points, const ReachingPrimitives& reaching, double tolerance,
@@ -70,8 +63,7 @@ SightLines find_sight_lines(const PointCloud& cloud, std::span<const std::uint32
   std::vector<std::uint32_t> seen = some_of(order, options.sight_lines);
   if (seen.empty()) return lines;
   lines.points_each = static_cast<double>(order.size()) / static_cast<double>(seen.size());
-  Points ends;
-  for (const std::uint32_t i : seen) ends.push_back(cloud.positions[i]);
+  const Points ends = select_points(cloud.positions, seen);
   const std::vector<char> is_near = are_near(ends, reaching, options.tolerances.distance, run);
   std::size_t k = 0;
   std::erase_if(seen, [&](std::uint32_t) { return is_near[k++] == 0; });

@@ -4,7 +4,11 @@
 #include <cmath>
 
 #include "core/base/parallel.hpp"
+#include "core/fields/onto_surface.hpp"
+#include "core/geometry/append.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/geometry/random_between.hpp"
+#include "core/geometry/subset.hpp"
 #include "core/primitive/bounds_index.hpp"
 #include "core/primitive/plain_surface.hpp"
 #include "core/primitive/sampled_field.hpp"
@@ -14,25 +18,11 @@ namespace {
 
 constexpr std::uint64_t k_sample_stream = 0x63656c6c73'00;
 
-/// Moves points onto f = 0 along the gradient and gives them its direction; those that do not get there are left out.
+/// The points that get onto the surface, with their normals.
 PointCloud settled(const Primitive& primitive, Points points, double scale) {
-  constexpr int k_steps = 12;
-  constexpr double k_arrived = 1e-6;
-  SampledField field = sample_field(primitive, points);
-  for (int step = 0; step < k_steps; ++step) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (field.slopes[i].squaredNorm() > 0) points.set(i, points[i] - field.offset(i));
-    }
-    field = sample_field(primitive, points);
-  }
-  PointCloud cloud;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d slope = field.slopes[i];
-    if (!(std::abs(field.distances[i]) <= k_arrived * scale) || !(slope.norm() > 0)) continue;
-    cloud.positions.push_back(points[i]);
-    cloud.normals.push_back(slope.normalized());
-  }
-  return cloud;
+  PointCloud near{.positions = std::move(points), .normals = {}};
+  near.normals.resize(near.size());
+  return select_points(near, places_where(move_onto_surface(primitive, scale, near)));
 }
 
 /// Samples of one surface, and what each stands for.
@@ -42,7 +32,7 @@ struct Drawn {
 };
 
 Drawn draw_plain(const Primitive& primitive, const AlignedBox& region, std::size_t samples, RandomStream& random) {
-  const PlainSurface surface = make_plain_surface(primitive, region);
+  const PrimitiveSurface surface = make_plain_surface(primitive, region);
   Drawn drawn{.points = {}, .area_of_one = surface.area / static_cast<double>(samples)};
   if (!(surface.area > 0)) return drawn;
   for (std::size_t i = 0; i < samples; ++i) {
@@ -93,15 +83,9 @@ Drawn draw_from_field(const Primitive& primitive, const AlignedBox& box, std::si
   return drawn;
 }
 
-/// By so many times its diagonal on each side.
-AlignedBox grown(const AlignedBox& box, double times) {
-  const Eigen::Vector3d more = Eigen::Vector3d::Constant(times * box.diagonal().norm());
-  return {box.min() - more, box.max() + more};
-}
-
 /// A box that may be infinite, cut down to what the index can hold.
 IndexBox finite(const AlignedBox& box, const AlignedBox& region) {
-  const AlignedBox all = grown(region, 1e3);
+  const AlignedBox all = grown(region, 1e3 * region.diagonal().norm());
   const auto within = [&all](const Eigen::Vector3d& corner) {
     return Eigen::Vector3d(corner.cwiseMax(all.min()).cwiseMin(all.max()));
   };
@@ -132,22 +116,16 @@ SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, std::span<const A
     RandomStream random(0, k_sample_stream, p);
     // Expressions reach anywhere, and half-spaces are without end.
     const bool is_formula = std::holds_alternative<Expression>(primitives[p].shape);
-    const AlignedBox box = (is_formula ? bounds(primitives[p]) : boxes[p]).intersection(grown(region, 1));
+    const AlignedBox box =
+        (is_formula ? bounds(primitives[p]) : boxes[p]).intersection(grown(region, region.diagonal().norm()));
     drawn[p] = is_plain(primitives[p]) ? draw_plain(primitives[p], region, samples, random)
                                        : draw_from_field(primitives[p], box, samples, random);
   };
   for_each_index(primitives.size(), run, draw);
   SurfaceSamples result;
-  std::size_t count = 0;
-  for (const Drawn& one : drawn) count += one.points.size();
-  result.points.positions.reserve(count);
-  result.points.normals.reserve(count);
   for (const Drawn& one : drawn) {
     result.area_of_sample.push_back(one.area_of_one);
-    for (std::size_t i = 0; i < one.points.size(); ++i) {
-      result.points.positions.push_back(one.points.positions[i]);
-      result.points.normals.push_back(one.points.normals[i]);
-    }
+    append(result.points, one.points);
   }
   return result;
 }

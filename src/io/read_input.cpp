@@ -75,12 +75,7 @@ PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, co
   if (options.mesh_points == 0) {
     throw Error({.file = {}, .where = "mesh_points", .expected = "expected at least one point", .remedy = {}});
   }
-  std::vector<Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-  }
-  const TriangleSampler sampler(std::move(triangles));
+  const TriangleSampler sampler(mesh.vertices, mesh.triangles);
   if (!(sampler.area() > 0.0)) {
     throw Error({.file = {}, .where = "mesh", .expected = "expected triangles with area, found none", .remedy = {}});
   }

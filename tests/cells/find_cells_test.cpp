@@ -8,7 +8,7 @@
 
 #include "cells/plain_crossings.hpp"
 #include "cloud2csg/error.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "cloud2csg/csg_tree.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <vector>
 
-#include "paper/objective/point_blocks.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/fields/point_blocks.hpp"
+#include "core/geometry/spatial_order.hpp"
 #include "support/scene.hpp"
 
 /// The tables of build_rank_classes() held against plain definitions: which points a request takes, and what trees

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/advanced/evolve.hpp"
 #include "cloud2csg/advanced/formula.hpp"
+#include "cloud2csg/advanced/local_search.hpp"
 #include "cloud2csg/advanced/rank_classes.hpp"
 #include "cloud2csg/advanced/segmentation.hpp"
 #include "cloud2csg/csg_tree.hpp"

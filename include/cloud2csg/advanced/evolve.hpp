@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "cloud2csg/advanced/local_search.hpp"
 #include "cloud2csg/advanced/overlap_graph.hpp"
 #include "cloud2csg/advanced/rank_classes.hpp"
 
@@ -84,15 +85,6 @@ struct Evolution {
 /// points that belong to them.
 [[nodiscard]] CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, const Clique& clique,
                                   const GaOptions& options = {}, const RunContext& run = {});
-
-struct LocalSearchOptions {
-  /// Only moves that make the tree smaller: redundancy removal.
-  bool shrink_only = false;
-  std::size_t evaluation_limit = 100'000;
-  /// Evaluations x classes x nodes: some ten seconds at most, however large the table is. On the cells of CellComplex:
-  /// evaluations x (cells + patches + nodes x cells / 64).
-  double work_limit = 4e10;
-};
 
 /// Climbs from `start` by the best of all small changes (a node replaced by its child, by a leaf, by another operation;
 /// a leaf put in anywhere) until none improves E(t). Deterministic.

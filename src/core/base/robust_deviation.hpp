@@ -7,13 +7,18 @@
 
 namespace cloud2csg {
 
+/// The middle one in ascending order, the upper one of two. Reorders them. O(n) Precondition: not empty.
+inline double median_of(std::vector<double>& values) {
+  assert(!values.empty());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// Standard deviation of a normal distribution around zero from the median of absolute values. Reorders them. O(n)
 /// Precondition: not empty.
 inline double robust_deviation(std::vector<double>& absolute_values) {
-  assert(!absolute_values.empty());
-  const auto middle = absolute_values.begin() + static_cast<std::ptrdiff_t>(absolute_values.size() / 2);
-  std::nth_element(absolute_values.begin(), middle, absolute_values.end());
-  return 1.4826 * *middle;
+  return 1.4826 * median_of(absolute_values);
 }
 
 }  // namespace cloud2csg

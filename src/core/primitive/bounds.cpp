@@ -3,17 +3,13 @@
 #include <limits>
 
 #include "cloud2csg/primitive.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/primitive/displaced_bounds.hpp"
 #include "core/primitive/overloaded.hpp"
 #include "core/primitive/polytope.hpp"
 
 namespace cloud2csg {
 namespace {
-
-AlignedBox everywhere() {
-  const Eigen::Vector3d corner = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  return {-corner, corner};
-}
 
 AlignedBox centred_box(const Eigen::Vector3d& half_size) {
   return {-half_size, half_size};
@@ -71,8 +67,7 @@ AlignedBox reach_of_shape(const Shape& shape, const Pose& pose, double distance)
   if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Expression>(shape)) return everywhere();
   // Outside, near edges and corners, its distance is below the Euclidean one.
   if (const auto* polytope = std::get_if<Polytope>(&shape)) return box_of_corners(grown(*polytope, distance), pose);
-  const AlignedBox box = shape_bounds(shape, pose);
-  return {box.min().array() - distance, box.max().array() + distance};
+  return grown(shape_bounds(shape, pose), distance);
 }
 
 /// The most that a displacement adds to a distance or takes from it.

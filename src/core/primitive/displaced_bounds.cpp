@@ -8,6 +8,8 @@
 #include <queue>
 #include <vector>
 
+#include "core/geometry/octree.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -83,17 +85,15 @@ class BoundsSearch {
 
   [[nodiscard]] std::vector<Cell> children(const Cell& cell, int axis, double sign) const {
     const int level = cell.level + 1;
-    const Eigen::Vector3d half = half_size(level);
-    Points centres(8);
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      const Eigen::Vector3d side((octant & 1U) != 0 ? 1 : -1, (octant & 2U) != 0 ? 1 : -1, (octant & 4U) != 0 ? 1 : -1);
-      centres.set(octant, cell.centre + side.cwiseProduct(half));
-    }
-    const std::vector<double> distances = signed_distance(undisplaced_, centres);
+    OctreeLevel parts{.centres = {}, .half_size = half_size(cell.level)};
+    parts.centres.push_back(cell.centre);
+    parts = octants(parts);
+    const std::vector<double> distances = signed_distance(undisplaced_, parts.centres);
     std::vector<Cell> result;
-    for (std::size_t i = 0; i < 8; ++i) {
-      const double least = distances[i] - half.norm() + least_displacement(centres[i], half);
-      result.push_back({centres[i], level, reach(centres[i], level, axis, sign), least});
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      const Eigen::Vector3d centre = parts.centres[i];
+      const double least = distances[i] - parts.radius() + least_displacement(centre, parts.half_size);
+      result.push_back({centre, level, reach(centre, level, axis, sign), least});
     }
     return result;
   }

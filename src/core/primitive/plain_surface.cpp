@@ -30,7 +30,7 @@ class LocalSurface {
  public:
   LocalSurface(const Pose& pose, const AlignedBox& region) : pose_(pose), region_(region) {}
 
-  PlainSurface operator()(const Box& box) const {
+  PrimitiveSurface operator()(const Box& box) const {
     const Vector3d size = box.size;
     const Vector3d face_area(size.y() * size.z(), size.z() * size.x(), size.x() * size.y());
     const auto draw = [size, face_area](RandomStream& random) {
@@ -44,7 +44,7 @@ class LocalSurface {
     return {.area = 2.0 * face_area.sum(), .draw = draw};
   }
 
-  PlainSurface operator()(const Sphere& sphere) const {
+  PrimitiveSurface operator()(const Sphere& sphere) const {
     const double radius = sphere.radius;
     const auto draw = [radius](RandomStream& random) {
       const double z = random.uniform(-1.0, 1.0);
@@ -56,11 +56,11 @@ class LocalSurface {
     return {.area = 4.0 * pi * radius * radius, .draw = draw};
   }
 
-  PlainSurface operator()(const Cylinder& cylinder) const {
+  PrimitiveSurface operator()(const Cylinder& cylinder) const {
     return (*this)(Cone{.radius_bottom = cylinder.radius, .radius_top = cylinder.radius, .height = cylinder.height});
   }
 
-  PlainSurface operator()(const Cone& cone) const {
+  PrimitiveSurface operator()(const Cone& cone) const {
     const double slant = std::hypot(cone.height, cone.radius_bottom - cone.radius_top);
     const double side_area = pi * (cone.radius_bottom + cone.radius_top) * slant;
     const double bottom_area = pi * cone.radius_bottom * cone.radius_bottom;
@@ -79,7 +79,7 @@ class LocalSurface {
     return {.area = area, .draw = draw};
   }
 
-  PlainSurface operator()(const Torus& torus) const {
+  PrimitiveSurface operator()(const Torus& torus) const {
     const double major = torus.major_radius;
     const double minor = torus.minor_radius;
     const auto draw = [major, minor](RandomStream& random) {
@@ -94,7 +94,7 @@ class LocalSurface {
     return {.area = 4.0 * pi * pi * major * minor, .draw = draw};
   }
 
-  PlainSurface operator()(const HalfSpace& /*half_space*/) const {
+  PrimitiveSurface operator()(const HalfSpace& /*half_space*/) const {
     // The disc in which the plane cuts the ball around the region.
     const Vector3d centre = pose_.to_local(region_.center());
     const double square = 0.25 * region_.diagonal().squaredNorm() - centre.z() * centre.z();
@@ -107,7 +107,7 @@ class LocalSurface {
     return {.area = pi * square, .draw = draw};
   }
 
-  PlainSurface operator()(const Polytope& polytope) const {
+  PrimitiveSurface operator()(const Polytope& polytope) const {
     TriangleSampler sampler(faces_of(polytope));
     const double area = sampler.area();
     const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
@@ -117,7 +117,7 @@ class LocalSurface {
     return {.area = area, .draw = draw};
   }
 
-  PlainSurface operator()(const Expression& /*expression*/) const { return {}; }
+  PrimitiveSurface operator()(const Expression& /*expression*/) const { return {}; }
 
  private:
   static SurfacePoint on_side(const Cone& cone, double slant, RandomStream& random) {
@@ -172,8 +172,8 @@ class LocalSurface {
 
 }  // namespace
 
-PlainSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region) {
-  PlainSurface local = std::visit(LocalSurface(primitive.pose, region), primitive.shape);
+PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region) {
+  PrimitiveSurface local = std::visit(LocalSurface(primitive.pose, region), primitive.shape);
   const auto place = [pose = primitive.pose, draw = std::move(local.draw)](RandomStream& random) {
     const SurfacePoint point = draw(random);
     return SurfacePoint{.position = pose.to_world(point.position), .normal = pose.orientation * point.normal};

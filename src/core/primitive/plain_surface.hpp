@@ -13,14 +13,17 @@ struct SurfacePoint {
   Eigen::Vector3d normal;
 };
 
-/// The surface of a shape, to draw points from, uniformly by area.
-struct PlainSurface {
-  double area = 0.0;  ///< 0 when no part of it lies in the region, and for expressions
+/// The surface of a primitive, to draw points from, uniformly by area.
+struct PrimitiveSurface {
+  double area = 0.0;  ///< 0 when no part of it lies in the region
   std::function<SurfacePoint(RandomStream&)> draw = {};
+  /// Drawn points are no farther from the surface. 0: they are on it; else they are to be moved onto it, see
+  /// move_onto_surface().
+  double reach = 0.0;
 };
 
 /// Closed forms, of the shape without its displacement; a half-space gives the part of its plane around `region`
-/// (finite).
-[[nodiscard]] PlainSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region);
+/// (finite). No area for expressions.
+[[nodiscard]] PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region);
 
 }  // namespace cloud2csg

@@ -12,6 +12,13 @@ Eigen::Vector3d doubled_area_vector(const Triangle& triangle) {
   return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
 }
 
+std::vector<Triangle> triangles_of(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(corners.size());
+  for (const auto& [a, b, c] : corners) triangles.push_back({vertices[a], vertices[b], vertices[c]});
+  return triangles;
+}
+
 }  // namespace
 
 TriangleSampler::TriangleSampler(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
@@ -22,6 +29,9 @@ TriangleSampler::TriangleSampler(std::vector<Triangle> triangles) : triangles_(s
     cumulative_area_.push_back(area);
   }
 }
+
+TriangleSampler::TriangleSampler(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners)
+    : TriangleSampler(triangles_of(vertices, corners)) {}
 
 TriangleSampler::Draw TriangleSampler::draw(RandomStream& random) const {
   const double target = random.uniform() * area();

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "cloud2csg/geometry.hpp"
@@ -15,6 +17,8 @@ using Triangle = std::array<Eigen::Vector3d, 3>;
 class TriangleSampler {
  public:
   explicit TriangleSampler(std::vector<Triangle> triangles);
+  /// Of a mesh: `corners` are places in `vertices`.
+  TriangleSampler(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners);
 
   struct Draw {
     Eigen::Vector3d position;

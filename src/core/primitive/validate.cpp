@@ -4,6 +4,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/primitive.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/primitive/expression.hpp"
 #include "core/primitive/overloaded.hpp"
 #include "core/primitive/polytope.hpp"
@@ -48,7 +49,7 @@ void require_value_at(ExpressionEvaluator& evaluator, const Eigen::Vector3d& poi
 
 void validate_expression(const Expression& expression) {
   const AlignedBox& box = expression.bounds;
-  if (!box.min().allFinite() || !box.max().allFinite() || (box.sizes().array() <= 0).any()) {
+  if (!is_finite(box) || (box.sizes().array() <= 0).any()) {
     refuse("bounds", "two finite corners, the first below the second in each coordinate");
   }
   validate_formula(expression.distance);

@@ -24,6 +24,8 @@ CsgTree renamed(const CsgTree& tree, const NewName& new_name) {
   return CsgTree(std::move(nodes));
 }
 
+}  // namespace
+
 CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
   std::vector<CsgNode> nodes;
   nodes.reserve(a.size() + b.size() + 1);
@@ -32,8 +34,6 @@ CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
   nodes.push_back(CsgNode::inner(operation, length_of(nodes.size() + 1)));
   return CsgTree(std::move(nodes));
 }
-
-}  // namespace
 
 CsgTree CsgTree::leaf(PrimitiveIndex primitive) {
   return CsgTree(std::vector{CsgNode::leaf(primitive)});

@@ -73,17 +73,6 @@ RawCloud read_raw_cloud(const std::filesystem::path& file, const RunContext& run
   return raw;
 }
 
-PointCloud select_points(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
-  const auto select = [indices](const Points& points) {
-    Points selected(points.empty() ? 0 : indices.size());
-    for (std::size_t i = 0; i < selected.size(); ++i) selected.set(i, points[indices[i]]);
-    return selected;
-  };
-  return {.positions = select(cloud.positions),
-          .normals = select(cloud.normals),
-          .sensor_positions = select(cloud.sensor_positions)};
-}
-
 void write_point_cloud(const std::filesystem::path& file, const PointCloud& cloud, const CloudWriteOptions& options) {
   assert(!cloud.has_normals() || cloud.normals.size() == cloud.positions.size());
   assert(!cloud.has_sensor_positions() || cloud.sensor_positions.size() == cloud.positions.size());

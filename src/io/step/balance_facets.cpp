@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "io/step/tree_volume.hpp"
+#include "core/fields/bounded_field.hpp"
 
 namespace cloud2csg::brep {
 namespace {

@@ -7,10 +7,11 @@
 
 #include "cloud2csg/mesh.hpp"
 #include "core/base/atomic_file.hpp"
+#include "core/fields/tree_volume.hpp"
+#include "core/geometry/boxes.hpp"
 #include "io/step/balance_facets.hpp"
 #include "io/step/kernel_solids.hpp"
 #include "io/step/step_text.hpp"
-#include "io/step/tree_volume.hpp"
 
 namespace cloud2csg::brep {
 
@@ -37,7 +38,7 @@ std::optional<VolumeEstimate> ModelHost::volume_of(std::size_t node) const {
   const CsgTree tree = tree_of(job_.plan, node);
   const AlignedBox box = cloud2csg::bounds_of(tree, primitives_);
   if (box.isEmpty()) return VolumeEstimate();
-  if (!box.min().allFinite() || !box.max().allFinite()) return {};
+  if (!is_finite(box)) return {};
   const double cube = std::pow(job_.frame.scale, 3);
   VolumeEstimate estimate;
   for (int levels = k_coarse; levels <= k_fine; ++levels) {

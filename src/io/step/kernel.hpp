@@ -10,6 +10,7 @@
 
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/run_context.hpp"
+#include "core/fields/tree_volume.hpp"
 #include "io/step/solid_plan.hpp"
 
 /// What the library and the module with OpenCASCADE say to each other. The module knows solids, not trees or meshes:
@@ -25,12 +26,6 @@ struct Facets {
 struct KernelSolid {
   std::variant<Box, Sphere, Cylinder, Cone, Torus, Facets> shape;
   Pose pose = {};
-};
-
-/// Volume by samples, with its standard error.
-struct VolumeEstimate {
-  double volume = 0;
-  double error = 0;
 };
 
 /// From the frame that the kernel works in to that of the model: x_model = scale * x + offset. The kernel's tolerances

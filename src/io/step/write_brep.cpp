@@ -9,11 +9,11 @@
 #include "cloud2csg/error.hpp"
 #include "core/base/atomic_file.hpp"
 #include "core/base/scratch_file.hpp"
+#include "core/fields/tree_volume.hpp"
 #include "io/step/host.hpp"
 #include "io/step/kernel_solids.hpp"
 #include "io/step/load_kernel.hpp"
 #include "io/step/step_text.hpp"
-#include "io/step/tree_volume.hpp"
 #include "shape/mesh/model_extent.hpp"
 
 namespace cloud2csg {
@@ -104,12 +104,12 @@ BrepReport report_of(const KernelResult& result, const KernelJob& job, const Csg
   return report;
 }
 
-brep::VolumeEstimate volume_within(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
-                                   const RunContext& run) {
+VolumeEstimate volume_within(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
+                             const RunContext& run) {
   constexpr int k_levels = 8;
   const AlignedBox own = bounds_of(tree, primitives);
   if (own.isEmpty()) return {};
-  return brep::tree_volume(tree, primitives, own.intersection(extent), k_levels, run);
+  return tree_volume(tree, primitives, own.intersection(extent), k_levels, run);
 }
 
 /// What the kernel made, and what is to be said of it.
@@ -129,7 +129,7 @@ Made make(const std::filesystem::path& file, const KernelJob& job, const CsgTree
     throw Error({.file = file.string(), .where = {}, .expected = result.error, .remedy = {}});
   }
   made.report = report_of(result, job, tree, primitives);
-  const brep::VolumeEstimate estimate = volume_within(tree, primitives, extent, run);
+  const VolumeEstimate estimate = volume_within(tree, primitives, extent, run);
   made.report.tree_volume = estimate.volume;
   made.report.tree_volume_error = estimate.error;
   made.report.cut_at = cut_at(tree, primitives, extent);

@@ -1,131 +1,22 @@
-#include "paper/evolve/local_search.hpp"
+#include "core/tree/local_search.hpp"
 
-#include <array>
+#include "cloud2csg/advanced/evolve.hpp"
 
 namespace cloud2csg {
-namespace {
-
-constexpr std::array k_binary{Operation::union_of, Operation::intersection, Operation::difference};
-
-CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
-  return operation == Operation::union_of       ? unite(a, b)
-         : operation == Operation::intersection ? intersect(a, b)
-                                                : subtract(a, b);
-}
-
-template <typename TreeEvaluator>
-bool is_spent(const TreeEvaluator& evaluator, const LocalSearchOptions& options) {
-  return evaluator.evaluations() >= options.evaluation_limit || evaluator.work() >= options.work_limit;
-}
-
-/// The best of the neighbours of one tree.
-template <typename TreeEvaluator>
-class Neighbourhood {
- public:
-  Neighbourhood(TreeEvaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options,
-                std::stop_token stop)
-      : evaluator_(evaluator), centre_(centre), options_(options), stop_(std::move(stop)), best_(centre) {}
-
-  ScoredTree best() {
-    for (std::size_t node = 0; node < centre_.tree.size() && !is_at_end(); ++node) {
-      shrink(node);
-      if (options_.shrink_only) continue;
-      change_operation(node);
-      for (PrimitiveIndex p = 0; p < evaluator_.primitives() && !is_at_end(); ++p) {
-        insert(node, CsgTree::leaf(p));
-        if (!centre_.tree.nodes()[node].is_leaf() || centre_.tree.nodes()[node].primitive() != p) {
-          consider(node, CsgTree::leaf(p));
-        }
-      }
-    }
-    return best_;
-  }
-
- private:
-  [[nodiscard]] bool is_at_end() const { return is_spent(evaluator_, options_) || stop_.stop_requested(); }
-
-  void consider(std::size_t node, const CsgTree& replacement) {
-    if (is_at_end()) return;
-    ScoredTree neighbour{centre_.tree};
-    neighbour.tree.replace(node, replacement.nodes());
-    neighbour.score = evaluator_.score(neighbour.tree);
-    if (neighbour.score > best_.score) best_ = std::move(neighbour);
-  }
-
-  [[nodiscard]] CsgTree child(std::size_t root) const { return CsgTree(centre_.tree.subtree(root)); }
-
-  /// A node gives way to one of its children, as it is or complemented.
-  void shrink(std::size_t node) {
-    const CsgNode& here = centre_.tree.nodes()[node];
-    if (here.is_leaf()) return;
-    const CsgTree second = child(centre_.tree.second_child(node));
-    consider(node, second);
-    if (arity(here.operation()) < 2) return;
-    consider(node, complement(second));
-    consider(node, child(centre_.tree.first_child(node)));
-  }
-
-  void change_operation(std::size_t node) {
-    const Operation now = centre_.tree.nodes()[node].operation();
-    if (arity(now) < 2) return;
-    const CsgTree first = child(centre_.tree.first_child(node));
-    const CsgTree second = child(centre_.tree.second_child(node));
-    for (const Operation operation : k_binary) {
-      if (operation != now) consider(node, join(operation, first, second));
-    }
-    consider(node, subtract(second, first));
-  }
-
-  void insert(std::size_t node, const CsgTree& leaf) {
-    const Operation now = centre_.tree.nodes()[node].operation();
-    if (now == Operation::empty || now == Operation::full) return;  // nothing to join, and tables take it alone only
-    const CsgTree here = child(node);
-    for (const Operation operation : k_binary) consider(node, join(operation, here, leaf));
-    consider(node, subtract(leaf, here));
-  }
-
-  TreeEvaluator& evaluator_;
-  const ScoredTree& centre_;
-  const LocalSearchOptions& options_;
-  std::stop_token stop_;
-  ScoredTree best_;
-};
-
-template <typename TreeEvaluator>
-Evolution climb(TreeEvaluator evaluator, const CsgTree& start, const LocalSearchOptions& options,
-                const RunContext& run) {
-  ScoredTree current{start, evaluator.score(start)};
-  bool complete = true;
-  while (!is_spent(evaluator, options)) {
-    if (run.stop.stop_requested()) {
-      complete = false;
-      break;
-    }
-    ScoredTree better = Neighbourhood(evaluator, current, options, run.stop).best();
-    if (better.score <= current.score) {
-      complete = !run.stop.stop_requested();
-      break;
-    }
-    current = std::move(better);
-  }
-  return {.tree = current.tree,
-          .score = current.score,
-          .geometry = evaluator.geometry(current.tree),
-          .generations = 0,
-          .evaluations = evaluator.evaluations(),
-          .complete = complete};
-}
-
-}  // namespace
 
 Evolution local_search(const RankClasses& table, const CsgTree& start, const LocalSearchOptions& options,
                        const RunContext& run) {
-  return climb(Evaluator(table), start, options, run);
-}
-
-Evolution local_search(const TreeObjective& objective, const CsgTree& start, const LocalSearchOptions& options,
-                       const RunContext& run) {
-  return climb(ObjectiveEvaluator(objective), start, options, run);
+  RankScratch scratch;
+  const TreeObjective objective{.primitives = table.primitive_count(),
+                                .geometry = [&](const CsgTree& tree) { return table.geometry(tree, scratch); },
+                                .alpha = table.objective().alpha,
+                                .work_per_node = static_cast<double>(table.class_count())};
+  const LocalOptimum best = local_search(objective, start, options, run);
+  return {.tree = best.tree,
+          .score = best.score,
+          .geometry = table.geometry(best.tree, scratch),
+          .evaluations = best.evaluations,
+          .complete = best.complete};
 }
 
 }  // namespace cloud2csg

@@ -1,49 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 
 #include "cloud2csg/advanced/rank_classes.hpp"
+#include "core/tree/tree_objective.hpp"
 
 namespace cloud2csg {
-
-/// A tree with its E(t).
-struct ScoredTree {
-  CsgTree tree;
-  double score = 0;
-};
-
-/// An objective without a table, such as reference_objective() over the points of a partition: slow, and what searches
-/// on tables are measured against.
-struct TreeObjective {
-  std::size_t primitives = 0;  ///< trees are over 0 .. primitives - 1
-  /// E(t) without the cost of size. Called by several threads at a time.
-  std::function<double(const CsgTree&)> geometry;
-  double alpha = 0;  ///< cost of a node
-  /// Of an evaluation, for limits: a part that is the same for all trees, and a part a node.
-  double work = 0, work_per_node = 1;
-};
-
-/// Evaluates trees on a TreeObjective and counts how many; one a thread.
-class ObjectiveEvaluator {
- public:
-  explicit ObjectiveEvaluator(const TreeObjective& objective) : objective_(objective) {}
-
-  [[nodiscard]] double score(const CsgTree& tree) {
-    ++evaluations_;
-    work_ += objective_.work + objective_.work_per_node * static_cast<double>(tree.size());
-    return geometry(tree) - objective_.alpha * static_cast<double>(tree.size());
-  }
-  [[nodiscard]] double geometry(const CsgTree& tree) const { return objective_.geometry(tree); }
-  [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
-  [[nodiscard]] double work() const { return work_; }
-  [[nodiscard]] std::size_t primitives() const { return objective_.primitives; }
-
- private:
-  const TreeObjective& objective_;
-  std::size_t evaluations_ = 0;
-  double work_ = 0;
-};
 
 /// Evaluates trees on a table and counts how many; one a thread.
 class Evaluator {

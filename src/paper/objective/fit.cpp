@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "paper/objective/point_fit.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/fields/point_fit.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {

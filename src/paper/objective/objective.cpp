@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/subset.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -92,8 +94,7 @@ double reference_objective(const CsgTree& tree, const PrimitiveSet& primitives, 
   double sum = 0;
   for (std::size_t begin = 0; begin < points.size(); begin += k_block) {
     const std::span<const std::uint32_t> block = points.subspan(begin, std::min(k_block, points.size() - begin));
-    Points positions;
-    for (const std::uint32_t point : block) positions.push_back(cloud.positions[point]);
+    const Points positions = select_points(cloud.positions, block);
     const BlockFields fields = evaluate_block(tree, primitives, positions);
     for (std::size_t i = 0; i < block.size(); ++i) {
       const Selected selected = select(tree, tree.root(), fields, i);

@@ -5,33 +5,13 @@
 #include <cstdint>
 
 #include "cloud2csg/advanced/rank_classes.hpp"
-#include "paper/objective/block_mask.hpp"
+#include "core/fields/block_field.hpp"
 #include "paper/objective/contribution_units.hpp"
 
 /// The vectorised inner loop of the pass over the points: what one primitive contributes at each point of a block. Only
 /// operations that IEEE 754 defines to the bit are used, in one order, so that every instruction set gives the same
 /// result. `Real` is double or float.
 namespace cloud2csg {
-
-/// The unit normals of a block of points; entries past the block's end may be anything finite.
-template <class Real>
-struct BlockNormals {
-  const Real *x, *y, *z;  ///< k_block_points each, aligned to 64 bytes
-};
-
-/// A primitive's field at a block of points.
-template <class Real>
-struct BlockField {
-  alignas(64) std::array<Real, k_block_points> distance{}, gradient_x{}, gradient_y{}, gradient_z{};
-};
-
-template <class Real>
-[[nodiscard]] BasicFieldSpans<Real> spans_of(BlockField<Real>& field) {
-  return {.distance = field.distance,
-          .gradient_x = field.gradient_x,
-          .gradient_y = field.gradient_y,
-          .gradient_z = field.gradient_z};
-}
 
 /// Units of contributions, a point of a block each.
 using Units = std::array<std::uint32_t, k_block_points>;

@@ -3,13 +3,16 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
-#include "paper/objective/frame.hpp"
+#include "core/fields/frame.hpp"
+#include "core/geometry/spatial_order.hpp"
 #include "paper/objective/point_worker.hpp"
 #include "paper/objective/rank_classes_builder.hpp"
-#include "paper/objective/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {
+
+/// From so many primitives on, a block of neighbouring points is near few of them, and it pays to find out of which.
+constexpr std::size_t k_many_primitives = 32;
 
 bool is_single_enough(const AlignedBox& box, const PrimitiveSet& primitives, const PointPassOptions& options) {
   if (options.precision != Precision::automatic) return options.precision == Precision::single;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "paper/objective/point_blocks.hpp"
+#include "core/fields/point_blocks.hpp"
 #include "paper/objective/root_table.hpp"
 
 namespace cloud2csg {

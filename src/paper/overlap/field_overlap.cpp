@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/geometry/boxes.hpp"
+#include "core/geometry/octree.hpp"
 #include "paper/overlap/narrow_phase.hpp"
 
 namespace cloud2csg {
@@ -20,42 +22,16 @@ std::vector<double> distance_bound(const OverlapBody& body, PointsView points) {
   return values;
 }
 
-/// Cells of equal size: the ones of the common bounds that may still hold a point of both solids.
-struct Cells {
-  Points centers;
-  Eigen::Vector3d half_size;
-};
-
-Cells initial_cells(const AlignedBox& region) {
-  const Eigen::Vector3d sizes = region.sizes();
-  const double side = std::max(sizes.maxCoeff() / k_initial_cells, 1e-300);
-  const auto count = [&](int axis) { return std::max(1, static_cast<int>(std::ceil(sizes[axis] / side))); };
-  const Eigen::Array3d step = sizes.array() / Eigen::Array3d(count(0), count(1), count(2));
-  Cells cells{.centers = {}, .half_size = step / 2};
-  for (int i = 0; i < count(0); ++i) {
-    for (int j = 0; j < count(1); ++j) {
-      for (int k = 0; k < count(2); ++k) {
-        cells.centers.push_back(region.min() + (Eigen::Array3d(i + 0.5, j + 0.5, k + 0.5) * step).matrix());
-      }
-    }
-  }
-  return cells;
+OctreeLevel initial_cells(const AlignedBox& region) {
+  const double side = std::max(region.sizes().maxCoeff() / k_initial_cells, 1e-300);
+  return lattice(region, (region.sizes() / side).array().ceil().max(1.0).cast<int>().matrix());
 }
 
 /// Halves the cells along their long sides, so that they approach cubes.
-Cells split(const Cells& cells) {
-  Cells halves = cells;
+OctreeLevel split(const OctreeLevel& cells) {
+  OctreeLevel halves = cells;
   for (int axis = 0; axis < 3; ++axis) {
-    if (cells.half_size[axis] <= 0.5 * cells.half_size.maxCoeff()) continue;
-    halves.half_size[axis] /= 2;
-    const Eigen::Vector3d offset = halves.half_size[axis] * Eigen::Vector3d::Unit(axis);
-    Points next;
-    next.reserve(2 * halves.centers.size());
-    for (std::size_t i = 0; i < halves.centers.size(); ++i) {
-      next.push_back(halves.centers[i] - offset);
-      next.push_back(halves.centers[i] + offset);
-    }
-    halves.centers = std::move(next);
+    if (cells.half_size[axis] > 0.5 * cells.half_size.maxCoeff()) halves = halved(halves, axis);
   }
   return halves;
 }
@@ -63,16 +39,16 @@ Cells split(const Cells& cells) {
 /// The cells that the field does not prove to be outside. Not-a-number proves nothing. `values` gets the fields at the
 /// centres of the cells that stay, the larger of the old value and this field's.
 struct Filtered {
-  Points centers;
+  Points centres;
   std::vector<double> values;
 };
 
 Filtered drop_outside(const OverlapBody& body, const Filtered& cells, double reach) {
   Filtered kept;
-  const std::vector<double> bound = distance_bound(body, cells.centers);
-  for (std::size_t i = 0; i < cells.centers.size(); ++i) {
+  const std::vector<double> bound = distance_bound(body, cells.centres);
+  for (std::size_t i = 0; i < cells.centres.size(); ++i) {
     if (bound[i] > reach) continue;
-    kept.centers.push_back(cells.centers[i]);
+    kept.centres.push_back(cells.centres[i]);
     kept.values.push_back(std::isnan(bound[i]) ? bound[i] : std::max(bound[i], cells.values[i]));
   }
   return kept;
@@ -121,10 +97,6 @@ std::size_t most_promising(const std::vector<double>& values) {
   return best;
 }
 
-AlignedBox grown(const AlignedBox& box, double margin) {
-  return {box.min().array() - margin, box.max().array() + margin};
-}
-
 }  // namespace
 
 bool fields_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance, const RunContext& run) {
@@ -133,20 +105,20 @@ bool fields_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance
   if (region.isEmpty()) return false;
   if (!region.sizes().allFinite()) return true;  // no search can end there: rather an edge too many
 
-  Cells cells = initial_cells(region);
-  for (std::size_t evaluations = 0; !cells.centers.empty(); cells = split(cells)) {
+  OctreeLevel cells = initial_cells(region);
+  for (std::size_t evaluations = 0; !cells.centres.empty(); cells = split(cells)) {
     run.throw_if_stopped();
-    evaluations += cells.centers.size();
+    evaluations += cells.centres.size();
     if (evaluations > k_evaluation_budget) return true;
-    const double radius = cells.half_size.norm();
-    const std::vector<double> lowest(cells.centers.size(), -std::numeric_limits<double>::infinity());
-    const Filtered near_a = drop_outside(a, {.centers = cells.centers, .values = lowest}, reach + radius);
+    const double radius = cells.radius();
+    const std::vector<double> lowest(cells.centres.size(), -std::numeric_limits<double>::infinity());
+    const Filtered near_a = drop_outside(a, {.centres = cells.centres, .values = lowest}, reach + radius);
     Filtered near_both = drop_outside(b, near_a, reach + radius);
     if (const std::size_t best = most_promising(near_both.values); best < near_both.values.size()) {
       if (near_both.values[best] <= reach) return true;
-      if (descent_finds_overlap(a, b, near_both.centers[best], region, reach)) return true;
+      if (descent_finds_overlap(a, b, near_both.centres[best], region, reach)) return true;
     }
-    cells.centers = std::move(near_both.centers);
+    cells.centres = std::move(near_both.centres);
   }
   return false;
 }

@@ -6,6 +6,7 @@
 
 #include "cloud2csg/advanced/segmentation.hpp"
 #include "core/base/parallel.hpp"
+#include "core/geometry/subset.hpp"
 #include "core/primitive/sampled_field.hpp"
 
 namespace cloud2csg {
@@ -34,10 +35,7 @@ std::vector<std::uint32_t> candidates_of(const Primitive& primitive, PointsView 
 void claim(std::uint32_t index, const Primitive& primitive, PointsView positions, PointsView normals,
            const SegmentationTolerances& tolerances, NearestInBlock& nearest) {
   const std::vector<std::uint32_t> candidates = candidates_of(primitive, positions, tolerances.distance);
-  Points places;
-  places.reserve(candidates.size());
-  for (const std::uint32_t i : candidates) places.push_back(positions[i]);
-  const SampledField field = sample_field(primitive, places);
+  const SampledField field = sample_field(primitive, select_points(positions, candidates));
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const std::uint32_t i = candidates[k];
     const double slope = field.slopes[k].norm();

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "core/base/parallel.hpp"
-#include "core/base/random.hpp"
 #include "core/base/robust_deviation.hpp"
+#include "core/geometry/subset.hpp"
 #include "core/primitive/sampled_field.hpp"
 
 namespace cloud2csg {
@@ -31,23 +31,6 @@ double cosine_of_deg(double degrees) {
 bool agrees(const Eigen::Vector3d& slope, const Eigen::Vector3d& normal, double least_cosine) {
   const double length = slope.norm();
   return length > 0 && std::abs(slope.dot(normal)) / length >= least_cosine;
-}
-
-struct Sample {
-  Points positions, normals;
-};
-
-/// One point out of every few, which one by chance: scans come in rows, and a fixed step may follow a column of them.
-Sample one_of_every_few(const PointCloud& cloud, std::size_t most) {
-  Sample sample;
-  RandomStream random(0, k_sampling_stage);
-  const std::size_t few = (cloud.size() + most - 1) / most;
-  for (std::size_t begin = 0; begin < cloud.size(); begin += few) {
-    const std::size_t i = begin + random.below(std::min(few, cloud.size() - begin));
-    sample.positions.push_back(cloud.positions[i]);
-    sample.normals.push_back(cloud.normals[i]);
-  }
-  return sample;
 }
 
 /// Lowers `nearest` to the distances from the primitives whose slope agrees with the normal.
@@ -75,7 +58,8 @@ void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& 
 double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, double angle_tolerance_deg,
                       const RunContext& run) {
   assert(cloud.has_normals());
-  const Sample sample = one_of_every_few(cloud, k_noise_sample);
+  const PointCloud sample =
+      select_points(cloud, one_of_every_few(cloud.size(), k_noise_sample, RandomStream(0, k_sampling_stage)));
   std::vector<double> nearest(sample.positions.size(), std::numeric_limits<double>::infinity());
   for_each_index((nearest.size() + k_noise_block - 1) / k_noise_block, run, [&](std::size_t block) {
     const std::size_t begin = block * k_noise_block;

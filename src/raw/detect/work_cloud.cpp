@@ -1,29 +1,11 @@
 #include "raw/detect/work_cloud.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/geometry/spatial_order.hpp"
+#include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
-namespace {
-
-/// Puts two zero bits before each of the low ten.
-std::uint32_t spread(std::uint32_t v) {
-  v = (v | (v << 16U)) & 0x030000FFU;
-  v = (v | (v << 8U)) & 0x0300F00FU;
-  v = (v | (v << 4U)) & 0x030C30C3U;
-  return (v | (v << 2U)) & 0x09249249U;
-}
-
-std::uint32_t code_of(const Eigen::Vector3d& p, const AlignedBox& box, double edge) {
-  constexpr double k_steps = 1 << WorkCloud::k_levels;
-  const auto step = [&](int axis) {
-    const double t = (p[axis] - box.min()[axis]) / edge * k_steps;
-    return static_cast<std::uint32_t>(std::clamp(t, 0.0, k_steps - 1));
-  };
-  return spread(step(0)) | (spread(step(1)) << 1U) | (spread(step(2)) << 2U);
-}
-
-}  // namespace
 
 std::pair<std::uint32_t, std::uint32_t> WorkCloud::cell_of(std::uint32_t i, int level) const {
   const int shift = 3 * (k_levels - level);
@@ -41,10 +23,8 @@ double WorkCloud::extent_of(const std::vector<std::uint32_t>& indices) const {
 }
 
 std::vector<OrientedPoint> WorkCloud::some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const {
-  const std::size_t count = std::min(most, indices.size());
   std::vector<OrientedPoint> some;
-  some.reserve(count);
-  for (std::size_t k = 0; k < count; ++k) some.push_back(points[indices[k * indices.size() / count]]);
+  for (const std::uint32_t i : cloud2csg::some_of(indices, most)) some.push_back(points[i]);
   return some;
 }
 
@@ -53,17 +33,16 @@ WorkCloud make_work_cloud(const PointCloud& cloud) {
   WorkCloud work;
   work.middle = box.center();
   work.diagonal = std::max(box.diagonal().norm(), 1e-300);
+  // A little more than the points take up, so that none is on the far border.
   const double edge = std::max(box.sizes().maxCoeff(), 1e-300) * (1 + 1e-9);
-  std::vector<std::uint32_t> codes(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) codes[i] = code_of(cloud.positions[i], box, edge);
-  work.index.resize(cloud.size());
-  std::iota(work.index.begin(), work.index.end(), 0U);
-  std::ranges::stable_sort(work.index, {}, [&](std::uint32_t i) { return codes[i]; });
+  const MortonCurve curve(box.min(), edge, WorkCloud::k_levels);
+  work.index = spatial_order(cloud.positions, curve, {.threads = 1});
   work.code.reserve(cloud.size());
   work.points.reserve(cloud.size());
   for (const std::uint32_t i : work.index) {
-    work.code.push_back(codes[i]);
-    work.points.push_back({(cloud.positions[i] - work.middle) / work.diagonal, cloud.normals[i]});
+    const Eigen::Vector3d position = cloud.positions[i];
+    work.code.push_back(curve.cell_of(position.x(), position.y(), position.z()));
+    work.points.push_back({(position - work.middle) / work.diagonal, cloud.normals[i]});
   }
   return work;
 }

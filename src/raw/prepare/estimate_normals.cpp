@@ -8,7 +8,7 @@
 #include "cloud2csg/advanced/normals.hpp"
 #include "cloud2csg/advanced/winding_number.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/random.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/orient_fits.hpp"
@@ -83,17 +83,6 @@ Orientation orientation_of(const PointCloud& cloud, const LocalFits& fits, const
   return {.flipped = orient_to_sensors(places, normals, sensors, fits.neighbours, run, share)};
 }
 
-/// One point of every few, which one by chance: scans come in rows.
-std::vector<std::uint32_t> sample_of(std::size_t count, std::size_t wanted) {
-  RandomStream random(0, k_field_stage);
-  const std::size_t few = (count + wanted - 1) / wanted;
-  std::vector<std::uint32_t> sample;
-  for (std::size_t begin = 0; begin < count; begin += few) {
-    sample.push_back(static_cast<std::uint32_t>(begin + random.below(std::min(few, count - begin))));
-  }
-  return sample;
-}
-
 /// Whether most of the normals at these points look away from their sensors.
 bool look_away(const PointCloud& cloud, std::span<const std::uint32_t> points) {
   double sum = 0.0;
@@ -162,8 +151,10 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
   if (cloud.has_sensor_positions()) {
     return look_away(cloud, sample) ? NormalsVerdict::inward : NormalsVerdict::outward;
   }
-  const std::vector<double> levels = winding_numbers(select_points(cloud, sample_of(cloud.size(), k_check_field)),
-                                                     select_points(cloud, sample).positions, run);
+  const std::vector<std::uint32_t> field =
+      one_of_every_few(cloud.size(), k_check_field, RandomStream(0, k_field_stage));
+  const std::vector<double> levels =
+      winding_numbers(select_points(cloud, field), select_points(cloud, sample).positions, run);
   // Half a turn less in the middle of the surface, where it closes; about none for a sheet, whose sides are alike.
   const double mean = std::accumulate(levels.begin(), levels.end(), 0.0) / count;
   return mean < k_inward_level ? NormalsVerdict::inward : NormalsVerdict::outward;

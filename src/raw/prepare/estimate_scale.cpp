@@ -10,7 +10,7 @@
 #include "cloud2csg/advanced/scale.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/random.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
 
@@ -41,17 +41,6 @@ double quantile(std::vector<double> values, double share) {
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
-}
-
-/// One point out of every few, which one by chance: scans come in rows, and a fixed step may follow a column of them.
-std::vector<std::uint32_t> sample_of(std::size_t count) {
-  std::vector<std::uint32_t> sample;
-  RandomStream random(0, k_sampling_stage);
-  const std::size_t few = (count + k_sample - 1) / k_sample;
-  for (std::size_t begin = 0; begin < count; begin += few) {
-    sample.push_back(static_cast<std::uint32_t>(begin + random.below(std::min(few, count - begin))));
-  }
-  return sample;
 }
 
 /// What the neighbourhoods of a sample of points look like.
@@ -96,7 +85,8 @@ std::vector<double> credible_deviations(const Neighbourhoods& found) {
 
 /// From neighbourhoods as small as the noise allows: larger ones have more edges, and take longer.
 void measure_spacing_and_noise(Scale& scale, const Points& points, const NeighbourTree& tree, const RunContext& run) {
-  const std::vector<std::uint32_t> sample = sample_of(points.size());
+  const std::vector<std::uint32_t> sample =
+      one_of_every_few(points.size(), k_sample, RandomStream(0, k_sampling_stage));
   for (const std::size_t size : k_sizes) {
     if (size > k_sizes.front() && size > points.size() / 4) break;
     const Neighbourhoods found = measure(points, tree, sample, size, run);

@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/base/robust_deviation.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -142,12 +143,6 @@ Vector6d monomials(double u, double v) {
   return terms;
 }
 
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 LocalPlane fit_local_plane(const Points& points, std::size_t point, std::span<const std::uint32_t> neighbours,
@@ -224,7 +219,7 @@ double quadric_deviation(const Points& points, std::span<const std::uint32_t> in
     for (std::size_t i = 0; i < places.size(); ++i) {
       residuals[i] = std::abs(places[i].z() - quadric.dot(monomials(places[i].x(), places[i].y())));
     }
-    deviation = 1.4826 * median_of(residuals);
+    deviation = robust_deviation(residuals);
     reach = std::max(4.685 * deviation, 1e-14);
   }
   const auto count = static_cast<double>(places.size());

@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/geometry/subset.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -35,10 +37,7 @@ std::string sentence(const std::string& what, const std::vector<std::string>& na
 class Candidate {
  public:
   Candidate(const DetectedSurface& detected, const Points& positions) : surface_(detected.surface) {
-    const std::size_t count = std::min(k_most_points, detected.points.size());
-    for (std::size_t k = 0; k < count; ++k) {
-      points_.push_back(positions[detected.points[k * detected.points.size() / count]]);
-    }
+    for (const std::uint32_t i : some_of(detected.points, k_most_points)) points_.push_back(positions[i]);
     rms_ = rms_of(surface_);
   }
 

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "core/base/parallel.hpp"
-#include "paper/segment/sensor_views.hpp"
+#include "core/geometry/sensor_views.hpp"
 #include "raw/solids/edges.hpp"
 
 namespace cloud2csg {
@@ -22,7 +23,6 @@ constexpr std::size_t k_most_cells = 1'000'000;
 constexpr double k_hidden_density = 0.3;  // of the cloud's: what would have fewer points is hidden
 constexpr double k_most_gaps = 0.2;       // of cells without points, those that sensors could see
 constexpr double k_least_hidden = 8;      // cells: fewer are no wall
-constexpr std::size_t k_reference_points = 2000;
 constexpr std::size_t k_least_floor_points = 10;
 
 /// The heights that a wall is seen at, or that something across its axis ends it at.
@@ -153,18 +153,6 @@ class RolledWall {
   std::vector<char> is_seen_, is_line_seen_;
 };
 
-/// Points per area that the surface has at the median.
-double usual_density(const SensorViews& views, const PointCloud& cloud, const RunContext& run) {
-  std::vector<double> densities(std::min(cloud.size(), k_reference_points));
-  for_each_index(densities.size(), run, [&](std::size_t k) {
-    const std::size_t i = k * cloud.size() / densities.size();
-    densities[k] = views.density_at(cloud.positions[i], cloud.normals[i]);
-  });
-  const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
-  std::nth_element(densities.begin(), middle, densities.end());
-  return *middle;
-}
-
 /// Of bare places, those that no sensor could see; none where they could see many.
 Points hidden_places(const RolledWall& wall, const SensorViews& views, double usual, const RunContext& run) {
   const Points bare = wall.bare_places();
@@ -197,7 +185,9 @@ std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud, std::span<con
     run.throw_if_stopped();
     if (!views) {
       views.emplace(cloud);
-      usual = usual_density(*views, cloud, run);
+      std::vector<std::uint32_t> order(cloud.size());
+      std::iota(order.begin(), order.end(), 0U);
+      usual = views->usual_density(cloud, order, run);
     }
     const RolledWall rolled(cloud, surfaces, s, k_cell_spacings * scale.spacing);
     HiddenWall wall{.surface = s};

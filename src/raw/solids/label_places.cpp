@@ -8,8 +8,10 @@
 #include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/random.hpp"
+#include "core/base/robust_deviation.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/geometry/neighbour_tree.hpp"
+#include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -43,12 +45,6 @@ void check(const PointCloud& cloud, const PlaceOptions& options) {
   }
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// One place by chance in each of the cells of a lattice.
 Points stratified(const AlignedBox& box, std::size_t count, std::uint64_t seed) {
   const double side = std::cbrt(box.volume() / static_cast<double>(count));
@@ -77,10 +73,10 @@ class Labelling {
     const AlignedBox box = bounds_of(cloud.positions);
     diagonal_ = box.diagonal().norm();
     if (!(diagonal_ > 0)) refuse("cloud", "expected points that are not all in one place");
-    spacing_ = std::sqrt(median(areas_));
+    std::vector<double> areas = areas_;
+    spacing_ = std::sqrt(median_of(areas));
     noise_ = options.noise.value_or(0.1 * spacing_);
-    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(options.margin * diagonal_);
-    grown_ = AlignedBox(box.min() - margin, box.max() + margin);
+    grown_ = grown(box, options.margin * diagonal_);
     if (!(enclosed_volume() > 0)) refuse_without_inside();
   }
 
@@ -96,7 +92,7 @@ class Labelling {
       if (number > 0.5) inside.push_back(number);
     }
     if (inside.empty()) refuse_without_inside();
-    const double unit = median(inside);
+    const double unit = median_of(inside);
     const std::vector<int> sides = sides_of(candidates, numbers, unit);
     const auto count_in = static_cast<double>(std::max<std::ptrdiff_t>(std::ranges::count(sides, 1), 1));
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -109,8 +105,7 @@ class Labelling {
 
   /// Some far around, so that no solid reaches out there unseen.
   void add_far(LabelledPlaces& places, double weight_of_volume) const {
-    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(k_far_margin * diagonal_);
-    const AlignedBox far(grown_.min() - margin, grown_.max() + margin);
+    const AlignedBox far = grown(grown_, k_far_margin * diagonal_);
     const Points candidates = stratified(far, std::max<std::size_t>(options_.volume_places / 8, 1), options_.seed);
     const double weight = weight_of_volume * far.volume() / static_cast<double>(candidates.size());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -121,7 +116,8 @@ class Labelling {
   }
 
   void add_surface(LabelledPlaces& places) const {
-    const std::vector<std::uint32_t> points = some_points();
+    const std::vector<std::uint32_t> points =
+        one_of_every_few(cloud_.size(), options_.surface_points, RandomStream(options_.seed, k_place_stage, 1));
     std::vector<double> depths(points.size());
     for_each_index_by_chunks(points.size(), k_chunk_places, run_,
                              [&](std::size_t i) { depths[i] = depth_at(points[i]); });
@@ -165,16 +161,6 @@ class Labelling {
     const std::uint32_t point = index_.nearest(place).point;
     const double height = cloud_.normals[point].dot(place - cloud_.positions[point]);
     return std::abs(height) <= 1.5 * noise_ ? 0 : height < 0 ? 1 : -1;
-  }
-
-  [[nodiscard]] std::vector<std::uint32_t> some_points() const {
-    RandomStream random(options_.seed, k_place_stage, 1);
-    const std::size_t few = (cloud_.size() + options_.surface_points - 1) / options_.surface_points;
-    std::vector<std::uint32_t> points;
-    for (std::size_t begin = 0; begin < cloud_.size(); begin += few) {
-      points.push_back(static_cast<std::uint32_t>(begin + random.below(std::min(few, cloud_.size() - begin))));
-    }
-    return points;
   }
 
   /// How far the places beside a point are from it: less where another surface is near on either side.

@@ -9,6 +9,7 @@
 
 #include "cloud2csg/advanced/surface.hpp"
 #include "core/base/robust_deviation.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/surface/chart.hpp"
 #include "raw/surface/robust_loss.hpp"
 #include "raw/surface/unit_frame.hpp"
@@ -76,15 +77,6 @@ double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> p
   distances.reserve(points.size());
   for (const Eigen::Vector3d& point : points) distances.push_back(std::abs(signed_distance(surface, point)));
   return robust_deviation(distances);
-}
-
-/// The points, or some of them, evenly over their order.
-std::vector<Eigen::Vector3d> some_of(std::span<const Eigen::Vector3d> points, std::size_t most) {
-  const std::size_t count = std::min(points.size(), most);
-  std::vector<Eigen::Vector3d> result;
-  result.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) result.push_back(points[i * points.size() / count]);
-  return result;
 }
 
 /// What points in the unit frame say.

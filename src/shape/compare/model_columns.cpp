@@ -3,7 +3,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/random.hpp"
+#include "core/fields/lipschitz.hpp"
 #include "shape/compare/column_grid.hpp"
 
 namespace cloud2csg {
@@ -41,49 +41,13 @@ double depth_of_zero(const Piece& piece) {
   return piece.from + (std::isfinite(share) ? share : 0.5) * piece.length();
 }
 
-/// The largest slope among samples of an expression's own box, and a margin, for nothing is known about it.
-double estimated_slope(const Primitive& expression) {
-  constexpr std::size_t k_samples = 4096;
-  constexpr double k_margin = 1.5;
-  const AlignedBox box = bounds(expression);
-  RandomStream random(0);
-  Points places;
-  for (std::size_t i = 0; i < k_samples; ++i) {
-    const Eigen::Vector3d share{random.uniform(), random.uniform(), random.uniform()};
-    places.push_back(box.min() + share.cwiseProduct(box.sizes()));
-  }
-  const Points gradients = gradient(expression, places);
-  double steepest = 1.0;
-  for (std::size_t i = 0; i < k_samples; ++i) {
-    const double slope = gradients[i].norm();
-    if (std::isfinite(slope)) steepest = std::max(steepest, slope);
-  }
-  return k_margin * steepest;
-}
-
-/// Of min and max of fields none is steeper than the steepest of them.
-double steepest_slope(const CsgTree& tree, const PrimitiveSet& primitives) {
-  double steepest = 1.0;
-  for (const PrimitiveIndex p : primitives_of(tree)) {
-    const Primitive& primitive = primitives[p];
-    double slope = 1.0;
-    if (std::holds_alternative<Expression>(primitive.shape)) {
-      slope = estimated_slope(primitive);
-    } else if (primitive.displacement) {
-      slope = 1.0 + std::abs(primitive.displacement->frequency);  // |grad sin(kx) sin(ky) sin(kz)| <= k
-    }
-    steepest = std::max(steepest, slope);
-  }
-  return steepest;
-}
-
 }  // namespace
 
 ModelColumns::ModelColumns(const CsgTree& tree, const PrimitiveSet& primitives, const ColumnGrid& grid)
     : tree_(tree),
       primitives_(primitives),
       grid_(grid),
-      steepest_(steepest_slope(tree, primitives)),
+      steepest_(lipschitz_estimate(tree, primitives)),
       smallest_gap_(k_smallest_gap_spacings * grid.spacing()) {}
 
 std::vector<double> ModelColumns::values_at(const Points& places) const {

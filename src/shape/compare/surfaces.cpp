@@ -8,9 +8,10 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "core/base/parallel.hpp"
+#include "core/fields/lipschitz.hpp"
 #include "core/geometry/neighbour_tree.hpp"
 #include "core/primitive/triangle_sampler.hpp"
-#include "shape/compare/triangle_tree.hpp"
+#include "shape/sample/ray_caster.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -29,12 +30,7 @@ std::vector<double> for_each_point(std::size_t count, const RunContext& run, con
 }
 
 Points sample_mesh(const TriangleMesh& mesh, const CompareOptions& options) {
-  std::vector<Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-  }
-  const TriangleSampler sampler(std::move(triangles));
+  const TriangleSampler sampler(mesh.vertices, mesh.triangles);
   if (!(sampler.area() > 0.0)) {
     throw Error({.file = {}, .where = "mesh", .expected = "the mesh is empty: it has no surface", .remedy = {}});
   }
@@ -47,11 +43,6 @@ Points sample_mesh(const TriangleMesh& mesh, const CompareOptions& options) {
 std::vector<double> distances_to_cloud(const PointCloud& cloud, const Points& points, const RunContext& run) {
   const NeighbourTree tree(cloud.positions);
   return for_each_point(points.size(), run, [&](std::size_t i) { return tree.nearest(points[i]).distance; });
-}
-
-bool has_bounded_slope(const Model& model) {
-  const std::vector<PrimitiveIndex> used = primitives_of(*model.tree);
-  return std::ranges::all_of(used, [&](PrimitiveIndex p) { return is_plain(model.primitives[p]); });
 }
 
 constexpr double k_no_foot = -1.0;
@@ -89,15 +80,16 @@ std::vector<double> distances_to_model(const Model& model, const Points& points,
     for (std::size_t i = 0; i < count; ++i) part.set(i, points[first + i]);
     std::ranges::copy(distances_to_feet(model, part), distances.begin() + static_cast<std::ptrdiff_t>(first));
   });
-  // Where the slope has no bound a nearer part of the surface may be hidden: look at the mesh for all points.
-  const bool is_exact = has_bounded_slope(model);
+  // Where the field may fall faster, a nearer part of the surface may be hidden: look at the mesh for all points.
+  const bool is_exact = lipschitz_bound(*model.tree, model.primitives) == 1;
   if (is_exact && std::ranges::find(distances, k_no_foot) == distances.end()) return distances;
-  const TriangleTree tree(
-      mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives), {}, run));
+  const TriangleMesh surface =
+      mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives), {}, run);
+  const RayCaster caster(surface);
   return for_each_point(points.size(), run, [&](std::size_t i) {
     const double foot = distances[i];
     if (foot != k_no_foot && (is_exact || foot == 0.0)) return foot;
-    const double mesh = tree.distance(points[i]);
+    const double mesh = caster.distance(points[i]);
     return foot == k_no_foot ? mesh : std::min(foot, mesh);
   });
 }
@@ -115,8 +107,8 @@ Points surface_points(const Shape3d& shape, const CompareOptions& options, const
 std::vector<double> distances_to(const Shape3d& shape, const Points& points, const RunContext& run) {
   if (shape.cloud) return distances_to_cloud(*shape.cloud, points, run);
   if (shape.model) return distances_to_model(*shape.model, points, run);
-  const TriangleTree tree(*shape.mesh);
-  return for_each_point(points.size(), run, [&](std::size_t i) { return tree.distance(points[i]); });
+  const RayCaster caster(*shape.mesh);
+  return for_each_point(points.size(), run, [&](std::size_t i) { return caster.distance(points[i]); });
 }
 
 }  // namespace cloud2csg

@@ -7,6 +7,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
+#include "core/geometry/boxes.hpp"
 #include "shape/compare/column_grid.hpp"
 
 namespace cloud2csg {
@@ -19,7 +20,7 @@ AlignedBox volume_bounds(const Shape3d& shape) {
   if (shape.mesh) return bounds_of(shape.mesh->vertices.view());
   if (!shape.model) return {};
   const AlignedBox box = bounds_of(*shape.model->tree, shape.model->primitives);
-  if (!box.isEmpty() && (!box.min().allFinite() || !box.max().allFinite())) {
+  if (!box.isEmpty() && !is_finite(box)) {
     throw Error({.file = {},
                  .where = "tree",
                  .expected = "the solid is unbounded: it has no volume",

@@ -1,14 +1,12 @@
 #pragma once
 
-#include "cloud2csg/csg_tree.hpp"
+#include "core/fields/bounded_field.hpp"
 
 namespace cloud2csg {
 
 /// A solid made fit for a grid: finite, and every value either a known Lipschitz function or known to be outside.
-struct BoundedSolid {
-  CsgTree tree;
-  PrimitiveSet primitives;  ///< the caller's, and boxes added for cutting
-  AlignedBox bounds;        ///< finite, encloses the solid; empty for an empty solid
+struct BoundedSolid : BoundedField {
+  AlignedBox bounds;  ///< finite, encloses the solid; empty for an empty solid
 };
 
 /// The solid cut at `bounds`. Expressions are cut at their own bounds, beyond which their formula means nothing.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <variant>
 
+#include "core/fields/lipschitz.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -103,13 +105,6 @@ class Pruner {
 };
 
 }  // namespace
-
-double lipschitz_bound(const Primitive& primitive) {
-  if (std::holds_alternative<Expression>(primitive.shape)) return k_infinity;
-  // |grad sin(kx) sin(ky) sin(kz)| is at most k: its square is multilinear in the squared sines, so largest where
-  // each is 0 or 1.
-  return primitive.displacement ? 1.0 + std::abs(primitive.displacement->frequency) : 1.0;
-}
 
 Interval value_near(const Primitive& primitive, double value, double radius) {
   if (std::isnan(value)) return {.low = -k_infinity, .high = k_infinity};

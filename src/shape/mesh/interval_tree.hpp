@@ -12,9 +12,6 @@ struct Interval {
   double high;
 };
 
-/// How fast the implicit value of a primitive may change with distance; infinite when nothing is known (expressions).
-[[nodiscard]] double lipschitz_bound(const Primitive& primitive);
-
 /// Within `radius` of a point where the primitive's implicit value is `value`.
 [[nodiscard]] Interval value_near(const Primitive& primitive, double value, double radius);
 

@@ -1,9 +1,10 @@
 #include "shape/mesh/model_extent.hpp"
 
 #include <algorithm>
-#include <variant>
 
 #include "cloud2csg/mesh.hpp"
+#include "core/fields/bounded_field.hpp"
+#include "core/geometry/boxes.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -29,18 +30,6 @@ Points points_on_faces(const AlignedBox& box) {
   return points;
 }
 
-/// Beyond its bounds the formula of an expression means nothing: there it is as much outside as its box.
-PrimitiveSet with_boxes_for_expressions(PrimitiveSet primitives) {
-  for (Primitive& primitive : primitives) {
-    if (!std::holds_alternative<Expression>(primitive.shape)) continue;
-    const OrientedBox box = oriented_bounds(primitive);
-    primitive.shape = Box{.size = 2 * box.half_size};
-    primitive.pose = box.pose;
-    primitive.displacement.reset();
-  }
-  return primitives;
-}
-
 }  // namespace
 
 AlignedBox model_extent(const CsgTree& tree, const PrimitiveSet& primitives) {
@@ -48,7 +37,7 @@ AlignedBox model_extent(const CsgTree& tree, const PrimitiveSet& primitives) {
   AlignedBox extent;
   for (const PrimitiveIndex index : primitives_of(tree)) {
     const AlignedBox box = bounds(primitives[index]);
-    if (box.min().allFinite() && box.max().allFinite()) {
+    if (is_finite(box)) {
       extent.extend(box);
     } else {
       extent.extend(primitives[index].pose.position);  // a half-space: at least show where its face is
@@ -56,14 +45,13 @@ AlignedBox model_extent(const CsgTree& tree, const PrimitiveSet& primitives) {
   }
   if (extent.isEmpty()) extent = AlignedBox(Eigen::Vector3d::Zero().eval());
   const double largest = extent.sizes().maxCoeff();
-  const Eigen::Vector3d room = Eigen::Vector3d::Constant(largest > 0 ? k_room * largest : 1.0);
-  return {extent.min() - room, extent.max() + room};
+  return grown(extent, largest > 0 ? k_room * largest : 1.0);
 }
 
 std::optional<AlignedBox> cut_at(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent) {
   if (extent.contains(bounds_of(tree, primitives))) return {};
-  const std::vector<double> values =
-      implicit_value(tree, with_boxes_for_expressions(primitives), points_on_faces(extent));
+  const BoundedField field = bounded_field(tree, primitives);
+  const std::vector<double> values = implicit_value(field.tree, field.primitives, points_on_faces(extent));
   const bool goes_on = std::any_of(values.begin(), values.end(), [](double value) { return value < 0; });
   return goes_on ? std::optional(extent) : std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cloud2csg/advanced/restrict.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/primitive/bounds_index.hpp"
 
 namespace cloud2csg {
@@ -12,7 +13,7 @@ namespace {
 
 /// Of an expression, the formula may be negative outside of the bounds that it is given.
 bool has_known_reach(const Primitive& primitive, const AlignedBox& box) {
-  return !std::holds_alternative<Expression>(primitive.shape) && box.min().allFinite() && box.max().allFinite();
+  return !std::holds_alternative<Expression>(primitive.shape) && is_finite(box);
 }
 
 }  // namespace

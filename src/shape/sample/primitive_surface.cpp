@@ -1,15 +1,46 @@
 #include "shape/sample/primitive_surface.hpp"
 
-#include <utility>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
 
-#include "shape/sample/field_surface.hpp"
+#include "cloud2csg/mesh.hpp"
+#include "core/geometry/boxes.hpp"
+#include "core/primitive/triangle_sampler.hpp"
 
 namespace cloud2csg {
+namespace {
+
+/// Cells along the longest side: enough for the shape, and for the waves of a displacement.
+int mesh_resolution(const Primitive& primitive, const AlignedBox& bounds) {
+  constexpr double k_plain = 160;
+  constexpr double k_cells_per_wave = 20;
+  constexpr double k_most = 400;  // memory grows with the cube
+  if (!primitive.displacement) return static_cast<int>(k_plain);
+  const double waves =
+      bounds.sizes().maxCoeff() * std::abs(primitive.displacement->frequency) / (2.0 * std::numbers::pi);
+  return static_cast<int>(std::clamp(k_cells_per_wave * waves, k_plain, k_most));
+}
+
+}  // namespace
 
 PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region, const RunContext& run) {
-  if (!is_plain(primitive)) return make_field_surface(primitive, region, run);
-  PlainSurface plain = make_plain_surface(primitive, region);
-  return {.area = plain.area, .draw = std::move(plain.draw)};
+  if (is_plain(primitive)) return make_plain_surface(primitive, region);
+  // Room around the region, so that the cap of a solid that is cut off there lies outside.
+  constexpr double k_room = 0.05;
+  const double room = k_room * region.diagonal().norm();
+  const AlignedBox limits = grown(bounds(primitive), room).intersection(grown(region, room));
+  if (limits.isEmpty()) return {};
+  const int resolution = mesh_resolution(primitive, limits);
+  const TriangleMesh mesh = mesh_surface(CsgTree::leaf(0), {primitive}, limits, {.resolution = resolution}, run);
+  const auto sampler = std::make_shared<const TriangleSampler>(mesh.vertices, mesh.triangles);
+  const auto draw = [sampler](RandomStream& random) {
+    const TriangleSampler::Draw drawn = sampler->draw(random);
+    return SurfacePoint{.position = drawn.position, .normal = sampler->normal(drawn.triangle)};
+  };
+  // Farther off there is no surface: the mesh is wrong there, or it is the cap where the mesh was cut off.
+  return {.area = sampler->area(), .draw = draw, .reach = 2.0 * limits.sizes().maxCoeff() / resolution};
 }
 
 }  // namespace cloud2csg

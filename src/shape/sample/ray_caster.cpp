@@ -25,6 +25,27 @@ void check(RTCDevice device) {
   if (code != RTC_ERROR_NONE) fail_embree("Embree's error " + std::to_string(static_cast<int>(code)));
 }
 
+double squared_distance_to_segment(const Vector3d& a, const Vector3d& b, const Vector3d& point) {
+  const Vector3d along = b - a;
+  const double square = along.squaredNorm();
+  const double share = square > 0.0 ? std::clamp((point - a).dot(along) / square, 0.0, 1.0) : 0.0;
+  return (point - a - share * along).squaredNorm();
+}
+
+/// To a triangle, which may be degenerate.
+double squared_distance(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& point) {
+  const Vector3d normal = (b - a).cross(c - a);
+  const bool is_over_face = normal.dot((b - a).cross(point - a)) >= 0.0 &&
+                            normal.dot((c - b).cross(point - b)) >= 0.0 && normal.dot((a - c).cross(point - c)) >= 0.0;
+  const double square = normal.squaredNorm();
+  if (is_over_face && square > 0.0) {
+    const double height = normal.dot(point - a);
+    return height * height / square;
+  }
+  return std::min({squared_distance_to_segment(a, b, point), squared_distance_to_segment(b, c, point),
+                   squared_distance_to_segment(c, a, point)});
+}
+
 }  // namespace
 
 struct RayCaster::EmbreeScene {
@@ -87,6 +108,46 @@ std::optional<RayHit> RayCaster::first_hit(const Ray& ray) const {
   rtcIntersect1(scene_->scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return hit_on(query.hit.primID, ray);
+}
+
+/// What a search knows so far.
+struct RayCaster::NearestTriangle {
+  const RayCaster& caster;
+  const Vector3d& point;
+  double square = std::numeric_limits<double>::infinity();
+
+  /// Looks at a triangle whose box is near enough. Returns whether the search has become narrower.
+  static bool look_at(RTCPointQueryFunctionArguments* arguments) {
+    auto& nearest = *static_cast<NearestTriangle*>(arguments->userPtr);
+    const TriangleMesh& mesh = *nearest.caster.mesh_;
+    const auto& [a, b, c] = mesh.triangles[arguments->primID];
+    const double square = squared_distance(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], nearest.point);
+    if (!(square < nearest.square)) return false;
+    nearest.square = square;
+    // Wider than the distance by more than single precision is off, for vertices within 1 and for the point.
+    constexpr float k_rounding = 1e-6F;
+    RTCPointQuery& query = *arguments->query;
+    const float farthest = 1 + std::max({std::abs(query.x), std::abs(query.y), std::abs(query.z)});
+    const auto radius = static_cast<float>(std::sqrt(square) / nearest.caster.radius_);
+    query.radius = std::min(query.radius, radius + k_rounding * (radius + farthest));
+    return true;
+  }
+};
+
+double RayCaster::distance(const Vector3d& point) const {
+  // From farther off all triangles are equally far in single precision: each is looked at.
+  constexpr double k_farthest = 1e15;
+  const Vector3d place = ((point - middle_) / radius_).cwiseMax(-k_farthest).cwiseMin(k_farthest);
+  RTCPointQuery query{.x = static_cast<float>(place.x()),
+                      .y = static_cast<float>(place.y()),
+                      .z = static_cast<float>(place.z()),
+                      .time = 0,
+                      .radius = std::numeric_limits<float>::infinity()};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  NearestTriangle nearest{.caster = *this, .point = point};
+  rtcPointQuery(scene_->scene, &query, &context, NearestTriangle::look_at, &nearest);
+  return std::sqrt(nearest.square);
 }
 
 /// Where a ray meets the plane of a triangle that it is known to hit, brought back onto the triangle where rounding

@@ -18,8 +18,9 @@ struct RayHit {
   Eigen::Vector3d normal;  ///< of the surface, unit length, against the ray
 };
 
-/// The first triangle along rays, by Embree. It works in single precision; where exactly the triangle is hit is
-/// computed again in double, so that a hit is on its triangle to the last bits whatever Embree's instruction set.
+/// The first triangle along rays, and the nearest to points, by Embree. It works in single precision; where exactly the
+/// triangle is hit, and how far it is, is computed again in double: right to the last bits whatever Embree's
+/// instruction set. The mesh must outlive it.
 class RayCaster {
  public:
   /// O(n log n). @throws Error when Embree cannot be set up.
@@ -32,9 +33,12 @@ class RayCaster {
 
   /// Absent where the ray hits nothing. May be called from several threads at once. O(log n)
   [[nodiscard]] std::optional<RayHit> first_hit(const Ray& ray) const;
+  /// To the nearest point of any triangle; infinite for a mesh without triangles. As first_hit() in threads and time.
+  [[nodiscard]] double distance(const Eigen::Vector3d& point) const;
 
  private:
   struct EmbreeScene;
+  struct NearestTriangle;
 
   [[nodiscard]] std::optional<RayHit> hit_on(std::size_t triangle, const Ray& ray) const;
 

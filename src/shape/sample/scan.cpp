@@ -131,15 +131,12 @@ class Scanner {
 /// As many of the points as wanted, in their order, each as likely to stay as any other (Knuth's algorithm S).
 PointCloud thin_out(const PointCloud& cloud, const ScanOptions& options) {
   RandomStream random(options.seed, k_thinning_stream);
-  PointCloud kept;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     const auto wanted = static_cast<double>(options.count - kept.size());
-    if (!(random.uniform() * static_cast<double>(cloud.size() - i) < wanted)) continue;
-    kept.positions.push_back(cloud.positions[i]);
-    kept.sensor_positions.push_back(cloud.sensor_positions[i]);
-    if (cloud.has_normals()) kept.normals.push_back(cloud.normals[i]);
+    if (random.uniform() * static_cast<double>(cloud.size() - i) < wanted) kept.push_back(i);
   }
-  return kept;
+  return select_points(cloud, kept);
 }
 
 /// The step between rays at which about this many return, told by a coarse scan.

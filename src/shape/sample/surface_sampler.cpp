@@ -8,6 +8,8 @@
 #include "cloud2csg/mesh.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/fields/onto_surface.hpp"
+#include "core/geometry/boxes.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -49,7 +51,7 @@ void refuse_without_surface() {
 AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives) {
   const AlignedBox region = bounds_of(tree, primitives);
   if (region.isEmpty()) refuse_without_surface();
-  if (!region.min().allFinite() || !region.max().allFinite()) {
+  if (!is_finite(region)) {
     throw Error({.file = {},
                  .where = "tree",
                  .expected = "the solid is unbounded: its surface cannot be sampled",
@@ -128,8 +130,9 @@ SurfaceSampler::Candidates SurfaceSampler::sorted_by_surface(const std::vector<S
     const std::uint32_t s = surface[order[k]];
     PointCloud group;
     for (; k < begin[s + std::size_t{1}]; ++k) add(group, points[order[k]].position, points[order[k]].normal);
+    const double reach = surfaces_[s].reach;
     const std::vector<bool> is_good =
-        surfaces_[s].settle ? surfaces_[s].settle(group) : std::vector<bool>(group.size(), true);
+        reach > 0 ? move_onto_surface(primitives_[used_[s]], reach, group) : std::vector<bool>(group.size(), true);
     for (std::size_t i = 0; i < group.size(); ++i) {
       if (!is_good[i]) continue;
       add(candidates.points, group.positions[i], group.normals[i]);

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
-#include "paper/objective/point_fit.hpp"
+#include "core/fields/point_fit.hpp"
+#include "core/geometry/subset.hpp"
 #include "shape/sample/ray_caster.hpp"
 
 namespace cloud2csg {
@@ -57,11 +58,8 @@ void find_owners(std::vector<Hit>& hits, const Model& model, const View& view, c
     of_primitive[fit.owners[k]].push_back(k);
   }
   for_each_index(of_primitive.size(), run, [&](std::size_t p) {
-    Points points;
-    points.reserve(of_primitive[p].size());
-    for (const std::size_t k : of_primitive[p]) points.push_back(places.positions[k]);
-    const Points normals = gradient(model.primitives[p], points);
-    for (std::size_t j = 0; j < points.size(); ++j) {
+    const Points normals = gradient(model.primitives[p], select_points(places.positions, of_primitive[p]));
+    for (std::size_t j = 0; j < normals.size(); ++j) {
       Hit& hit = hits[sample_of[of_primitive[p][j]]];
       hit.owner = static_cast<PrimitiveIndex>(p);
       const Vector3d normal = normals[j].stableNormalized();

@@ -4,18 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/subset.hpp"
 #include "view/report/light_mesh.hpp"
 
 namespace cloud2csg {
 namespace {
-
-std::vector<std::uint32_t> shown_points(std::span<const std::uint32_t> order, std::size_t most) {
-  if (order.size() <= most) return {order.begin(), order.end()};
-  std::vector<std::uint32_t> shown;
-  shown.reserve(most);
-  for (std::size_t k = 0; k < most; ++k) shown.push_back(order[k * order.size() / most]);
-  return shown;
-}
 
 std::uint16_t half_bits(double value) {
   return Eigen::numext::bit_cast<std::uint16_t>(Eigen::half(static_cast<float>(value)));
@@ -41,7 +34,7 @@ OctahedralNormal octahedral(const Eigen::Vector3d& direction) {
 
 Payload::Json cloud_sections(const PointCloud& cloud, const Deviation& deviation, std::size_t most, Payload& payload) {
   constexpr PrimitiveIndex k_most_owners = 65'534;
-  const std::vector<std::uint32_t> shown = shown_points(deviation.order, most);
+  const std::vector<std::uint32_t> shown = some_of(deviation.order, most);
   const PointCloud points = select_points(cloud, shown);
   const AlignedBox box = bounds_of(points.positions);
   const double largest = std::max({std::abs(deviation.summary.least), std::abs(deviation.summary.greatest), 1e-300});

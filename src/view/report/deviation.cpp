@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/base/robust_deviation.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cloud2csg/report.hpp"
-#include "paper/objective/point_fit.hpp"
+#include "core/fields/point_fit.hpp"
 
 namespace cloud2csg {
 

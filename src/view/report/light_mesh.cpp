@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "paper/objective/point_fit.hpp"
-#include "paper/objective/spatial_order.hpp"
+#include "core/fields/point_fit.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "cloud2csg/error.hpp"
-#include "paper/objective/point_fit.hpp"
+#include "core/fields/point_fit.hpp"
 #include "view/report/light_mesh.hpp"
 #include "view/report/shown_tree.hpp"
 

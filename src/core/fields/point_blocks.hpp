@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cloud2csg/point_cloud.hpp"
-#include "paper/objective/point_kernels.hpp"
+#include "core/fields/block_field.hpp"
 
 namespace cloud2csg {
 

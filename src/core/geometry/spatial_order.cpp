@@ -1,4 +1,4 @@
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,6 @@
 namespace cloud2csg {
 namespace {
 
-/// Along each axis at most: three times as many bits must fit a key's upper half.
-constexpr int k_most_bits = 10;
 /// So many bits of a cell are sorted by at once.
 constexpr int k_digit_bits = 11;
 /// A part of the points is the work of one thread.
@@ -21,39 +19,8 @@ constexpr std::size_t k_least_part = 65'536;
 /// Bits along each axis: with points on a surface, some in each cell.
 int bits_for(std::size_t count) {
   const double side = std::sqrt(static_cast<double>(count));
-  return std::clamp(static_cast<int>(std::bit_width(static_cast<std::size_t>(side))) - 2, 1, k_most_bits);
+  return std::clamp(static_cast<int>(std::bit_width(static_cast<std::size_t>(side))) - 2, 1, MortonCurve::k_most_bits);
 }
-
-/// A cubic grid over a box, its cells numbered along Morton's space-filling curve.
-class MortonCurve {
- public:
-  MortonCurve(const AlignedBox& box, int bits)
-      : corner_(box.min()),
-        last_step_((1 << bits) - 1),
-        cells_a_unit_((1 << bits) / std::max(box.sizes().maxCoeff(), 1e-300)) {
-    for (std::uint32_t step = 0; step < std::uint32_t{1} << static_cast<unsigned>(bits); ++step) {
-      for (unsigned bit = 0; bit < k_most_bits; ++bit) spread_[step] |= (step >> bit & 1U) << (3 * bit);
-    }
-  }
-
-  /// Points outside of the box count to the cells at its border.
-  [[nodiscard]] std::uint32_t cell_of(double x, double y, double z) const {
-    return step(x - corner_.x()) | step(y - corner_.y()) << 1U | step(z - corner_.z()) << 2U;
-  }
-
- private:
-  /// The cell along one axis, its bits spread three apart.
-  [[nodiscard]] std::uint32_t step(double offset) const {
-    // The lower bound first: whatever the number, the result is an index.
-    const double cell = std::min(std::max(0.0, offset * cells_a_unit_), last_step_);
-    return spread_[static_cast<std::size_t>(static_cast<std::int32_t>(cell))];
-  }
-
-  Eigen::Vector3d corner_;
-  double last_step_;
-  double cells_a_unit_;
-  std::array<std::uint32_t, 1U << k_most_bits> spread_{};
-};
 
 /// Sorts points by cell, the lowest digit first, which keeps the order of equal ones.
 class CellSort {
@@ -138,12 +105,22 @@ class CellSort {
 
 }  // namespace
 
-std::vector<std::uint32_t> spatial_order(PointsView positions, const AlignedBox& box, const RunContext& run) {
-  const int bits = bits_for(positions.size());
-  const MortonCurve curve(box, bits);
+MortonCurve::MortonCurve(const Eigen::Vector3d& corner, double edge, int bits)
+    : corner_(corner), bits_(bits), last_step_((1 << bits) - 1), cells_a_unit_((1 << bits) / std::max(edge, 1e-300)) {
+  for (std::uint32_t step = 0; step < std::uint32_t{1} << static_cast<unsigned>(bits); ++step) {
+    for (unsigned bit = 0; bit < k_most_bits; ++bit) spread_[step] |= (step >> bit & 1U) << (3 * bit);
+  }
+}
+
+std::vector<std::uint32_t> spatial_order(PointsView positions, const MortonCurve& curve, const RunContext& run) {
   const auto cell_of = [&](std::size_t i) { return curve.cell_of(positions.x[i], positions.y[i], positions.z[i]); };
-  const int digits = (3 * bits + k_digit_bits - 1) / k_digit_bits;
+  const int digits = (3 * curve.bits() + k_digit_bits - 1) / k_digit_bits;
   return CellSort(positions.size(), digits, run).order_by(cell_of);
+}
+
+std::vector<std::uint32_t> spatial_order(PointsView positions, const AlignedBox& box, const RunContext& run) {
+  const MortonCurve curve(box.min(), box.sizes().maxCoeff(), bits_for(positions.size()));
+  return spatial_order(positions, curve, run);
 }
 
 }  // namespace cloud2csg

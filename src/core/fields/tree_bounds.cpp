@@ -1,7 +1,7 @@
-#include <limits>
 #include <vector>
 
 #include "cloud2csg/mesh.hpp"
+#include "core/geometry/boxes.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -11,11 +11,6 @@ struct Bounds {
   AlignedBox inside;
   AlignedBox outside;
 };
-
-AlignedBox everywhere() {
-  const Eigen::Vector3d infinite = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  return {-infinite, infinite};
-}
 
 AlignedBox common(const AlignedBox& a, const AlignedBox& b) {
   const AlignedBox box = a.intersection(b);

@@ -1,4 +1,4 @@
-#include "paper/objective/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -90,6 +90,23 @@ TEST(SpatialOrder, MakesSmallBlocks) {
       volume += box.volume();
     }
     EXPECT_LT(volume, 4 * bounds_of(points).volume()) << scale;  // there are 64 blocks
+  }
+}
+
+/// Cells of an octree are runs along the curve.
+RC_GTEST_PROP(MortonCurve, NestsItsCells, (std::uint64_t seed)) {
+  RandomStream random(seed);
+  const Points corner = random_points(1, {10, 10, 10}, random);
+  const double edge = random.uniform(0.1, 10);
+  const MortonCurve fine(corner[0], edge, MortonCurve::k_most_bits);
+  const Points points = random_points(50, {20, 20, 20}, random);  // in the cube and around it
+  for (int bits = 1; bits < fine.bits(); ++bits) {
+    const MortonCurve coarse(corner[0], edge, bits);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::uint32_t cell = fine.cell_of(points.x[i], points.y[i], points.z[i]);
+      const std::uint32_t around = coarse.cell_of(points.x[i], points.y[i], points.z[i]);
+      RC_ASSERT(cell >> static_cast<unsigned>(3 * (fine.bits() - bits)) == around);
+    }
   }
 }
 

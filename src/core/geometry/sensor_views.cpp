@@ -1,4 +1,4 @@
-#include "paper/segment/sensor_views.hpp"
+#include "core/geometry/sensor_views.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +11,8 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/base/robust_deviation.hpp"
+#include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -114,6 +116,16 @@ double SensorViews::density_at(const Vector3d& place, const Vector3d& normal) co
   return density;
 }
 
+double SensorViews::usual_density(const PointCloud& cloud, std::span<const std::uint32_t> order,
+                                  const RunContext& run) const {
+  const std::vector<std::uint32_t> points = some_of(order, k_reference_points);
+  std::vector<double> densities(points.size());
+  for_each_index(points.size(), run, [&](std::size_t k) {
+    densities[k] = density_at(cloud.positions[points[k]], cloud.normals[points[k]]);
+  });
+  return median_of(densities);
+}
+
 double SensorViews::share_that_sees(const View& view, const Vector3d& way, double range, double cosine) {
   const GridCell middle = cell_of(way, view.resolution);
   // So much nearer may the surface itself be within the cell.
@@ -145,19 +157,13 @@ std::vector<bool> are_seen(const PointCloud& points, const PointCloud& cloud, st
   std::vector<bool> seen(points.size(), true);
   if (!cloud.has_sensor_positions()) return seen;
   const SensorViews views(cloud);
-  std::vector<double> of_cloud(std::min(order.size(), k_reference_points));
-  for_each_index(of_cloud.size(), run, [&](std::size_t k) {
-    const std::uint32_t i = order[k * order.size() / of_cloud.size()];
-    of_cloud[k] = views.density_at(cloud.positions[i], cloud.normals[i]);
-  });
-  const auto middle = of_cloud.begin() + static_cast<std::ptrdiff_t>(of_cloud.size() / 2);
-  std::nth_element(of_cloud.begin(), middle, of_cloud.end());
+  const double usual = views.usual_density(cloud, order, run);
   std::vector<double> densities(points.size());
   for_each_index_by_chunks(points.size(), 256, run, [&](std::size_t i) {
     densities[i] = views.density_at(points.positions[i], points.normals[i]);
   });
   RandomStream random(0, k_view_stream);
-  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = random.uniform() * *middle < densities[i];
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = random.uniform() * usual < densities[i];
   return seen;
 }
 

@@ -1,4 +1,4 @@
-#include "paper/objective/point_fit.hpp"
+#include "core/fields/point_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 
 #include "cloud2csg/advanced/restrict.hpp"
 #include "core/base/parallel.hpp"
+#include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -89,8 +90,7 @@ class FitMeasure {
   }
 
   void measure_with(const CsgTree& tree, const std::vector<std::uint32_t>& points) {
-    Points positions;
-    for (const std::uint32_t i : points) positions.push_back(cloud_.positions[i]);
+    const Points positions = select_points(cloud_.positions, points);
     const std::vector<double> values = implicit_value(tree, primitives_, positions);
     for (std::size_t k = 0; k < points.size(); ++k) fit_.signed_distances[points[k]] = values[k];
     if (!fit_.angles.empty()) measure_angles(tree, points, positions);

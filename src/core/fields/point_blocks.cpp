@@ -1,4 +1,4 @@
-#include "paper/objective/point_blocks.hpp"
+#include "core/fields/point_blocks.hpp"
 
 #include <type_traits>
 

@@ -1,4 +1,4 @@
-#include "paper/segment/sensor_views.hpp"
+#include "core/geometry/sensor_views.hpp"
 
 #include <gtest/gtest.h>
 

@@ -21,6 +21,11 @@ class SensorViews {
   /// surface. O(views)
   [[nodiscard]] double density_at(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 
+  /// The median of what the points of the cloud have, by some of them, evenly along `order`, which holds all. The cloud
+  /// has normals. O(views) @throws Cancelled
+  [[nodiscard]] double usual_density(const PointCloud& cloud, std::span<const std::uint32_t> order,
+                                     const RunContext& run) const;
+
  private:
   /// Directions are told apart by a grid on an octahedron (Meyer et al. 2010) around the sensor.
   struct View {

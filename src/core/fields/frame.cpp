@@ -1,4 +1,4 @@
-#include "paper/objective/frame.hpp"
+#include "core/fields/frame.hpp"
 
 #include <algorithm>
 

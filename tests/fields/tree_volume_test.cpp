@@ -1,15 +1,17 @@
-#include "io/step/tree_volume.hpp"
+#include "core/fields/tree_volume.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "cloud2csg/mesh.hpp"
-#include "io/step/balance_facets.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/random_between.hpp"
 #include "support/known_solids.hpp"
 
-namespace cloud2csg::brep {
+namespace cloud2csg {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
@@ -50,24 +52,23 @@ TEST(TreeVolume, OfNothingIsNothing) {
   EXPECT_EQ(tree_volume(CsgTree::empty(), {}, AlignedBox(), 6, {}).volume, 0);
 }
 
-TEST(BalanceFacets, BringsTheVolumeOfFewFacetsNearTheTruth) {
-  const PrimitiveSet primitives{test::placed("ball", Sphere{.radius = 1}, {0.1, 0.2, 0.3})};
-  const CsgTree ball = CsgTree::leaf(0);
-  TriangleMesh mesh = mesh_surface(ball, primitives, bounds_of(ball, primitives), {.resolution = 12});
-  const double expected = 4 * k_pi / 3;
-  ASSERT_GT(std::abs(volume_of(mesh) / expected - 1), 0.005);
-  balance_facets(mesh, ball, primitives);
-  EXPECT_NEAR(volume_of(mesh) / expected, 1, 0.001);
-  EXPECT_TRUE(is_watertight(mesh));
-}
-
-TEST(BalanceFacets, LeavesFlatFacesAsTheyAre) {
-  const PrimitiveSet primitives{test::placed("box", Box{.size = {1, 2, 3}}, {0, 0, 0})};
-  const CsgTree box = CsgTree::leaf(0);
-  TriangleMesh mesh = mesh_surface(box, primitives, bounds_of(box, primitives), {.resolution = 12});
-  balance_facets(mesh, box, primitives);
-  EXPECT_NEAR(volume_of(mesh), 6, 1e-9);
+/// Waves as high as half of the radius: what a displacement does to the slope must not hide them.
+TEST(TreeVolume, CountsWavesThatAreSmallBesideCells) {
+  for (const double frequency : {3.0, 30.0}) {
+    Primitive waves = test::placed("waves", Sphere{.radius = 2}, {0, 0, 0});
+    waves.displacement = Displacement{.frequency = frequency};
+    const VolumeEstimate fine = volume(CsgTree::leaf(0), {waves}, 7);
+    // The box in cells, none left out.
+    const AlignedBox box = bounds(waves);
+    RandomStream random(1);
+    Points places;
+    for (int i = 0; i < 400'000; ++i) places.push_back(random_between(box.min(), box.max(), random));
+    const std::vector<double> values = signed_distance(waves, places);
+    const auto inside = static_cast<double>(std::ranges::count_if(values, [](double value) { return value < 0; }));
+    const double expected = box.volume() * inside / 400'000;
+    EXPECT_NEAR(fine.volume / expected, 1, 0.01) << frequency;
+  }
 }
 
 }  // namespace
-}  // namespace cloud2csg::brep
+}  // namespace cloud2csg

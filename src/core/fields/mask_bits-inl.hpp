@@ -1,9 +1,9 @@
 // Included once per instruction set (Highway's foreach_target), hence no ordinary include guard.
-#if defined(CLOUD2CSG_FITNESS_MASK_BITS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLOUD2CSG_FITNESS_MASK_BITS_INL
-#undef CLOUD2CSG_FITNESS_MASK_BITS_INL
+#if defined(CLOUD2CSG_FIELDS_MASK_BITS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLOUD2CSG_FIELDS_MASK_BITS_INL
+#undef CLOUD2CSG_FIELDS_MASK_BITS_INL
 #else
-#define CLOUD2CSG_FITNESS_MASK_BITS_INL
+#define CLOUD2CSG_FIELDS_MASK_BITS_INL
 #endif
 
 #include <hwy/highway.h>

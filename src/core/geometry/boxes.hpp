@@ -1,0 +1,24 @@
+#pragma once
+
+#include <limits>
+
+#include "cloud2csg/geometry.hpp"
+
+namespace cloud2csg {
+
+[[nodiscard]] inline AlignedBox everywhere() {
+  const Eigen::Vector3d corner = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  return {-corner, corner};
+}
+
+/// By so much on each side. Precondition: it is not empty.
+[[nodiscard]] inline AlignedBox grown(const AlignedBox& box, double margin) {
+  return {box.min().array() - margin, box.max().array() + margin};
+}
+
+/// Whether no side is at infinity.
+[[nodiscard]] inline bool is_finite(const AlignedBox& box) {
+  return box.min().allFinite() && box.max().allFinite();
+}
+
+}  // namespace cloud2csg

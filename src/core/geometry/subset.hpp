@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <ranges>
+#include <vector>
+
+#include "cloud2csg/geometry.hpp"
+#include "core/base/random.hpp"
+
+/// Some of many.
+namespace cloud2csg {
+
+/// At most so many entries, evenly along the list: all where there are no more. O(most)
+template <std::ranges::random_access_range List>
+[[nodiscard]] std::vector<std::ranges::range_value_t<List>> some_of(const List& list, std::size_t most) {
+  const std::size_t size = std::ranges::size(list);
+  const std::size_t count = size < most ? size : most;
+  std::vector<std::ranges::range_value_t<List>> some;
+  some.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) some.push_back(list[k * size / count]);
+  return some;
+}
+
+/// The points with these indices, in this order. O(indices)
+template <std::ranges::sized_range Indices>
+[[nodiscard]] Points select_points(PointsView points, const Indices& indices) {
+  Points selected;
+  selected.reserve(std::ranges::size(indices));
+  for (const std::size_t i : indices) selected.push_back(points[i]);
+  return selected;
+}
+
+/// Where `chosen` says so, ascending.
+[[nodiscard]] std::vector<std::uint32_t> places_where(const std::vector<bool>& chosen, bool says = true);
+
+/// One of 0 .. count - 1 out of every few, `most` at most, ascending. Chance says which one: scans come in rows, and a
+/// fixed step may follow a column of them. Precondition: most > 0. O(most)
+[[nodiscard]] std::vector<std::uint32_t> one_of_every_few(std::size_t count, std::size_t most, RandomStream random);
+
+}  // namespace cloud2csg
