@@ -25,7 +25,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "The library of cloud2csg, its headers, and packages for CMake and pkg-config.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libeigen3-dev, libtbb-dev, libhwy-dev, libboost-dev, libccd-dev, libmuparser-dev, libassimp-dev, libminizip-dev, libceres-dev, \
+    "libeigen3-dev, libtbb-dev, libhwy-dev, libboost-dev, libccd-dev, libmuparser-dev, libzip-dev, libpugixml-dev, libceres-dev, \
 libembree-dev, nlohmann-json3-dev, libfmt-dev, zlib1g-dev, libpng-dev, libmeshoptimizer-dev, pkg-config")
 # The module with OpenCASCADE is in the program's package.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cloud2csg (= ${PROJECT_VERSION})")

@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
   g++ make cmake ninja-build pkg-config ccache
-  libeigen3-dev libtbb-dev libhwy-dev libboost-dev libboost-graph-dev libccd-dev libmuparser-dev libassimp-dev libminizip-dev
+  libeigen3-dev libtbb-dev libhwy-dev libboost-dev libboost-graph-dev libccd-dev libmuparser-dev libzip-dev libpugixml-dev
   libceres-dev libembree-dev libnanoflann-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtomlplusplus-dev libfmt-dev
   libocct-data-exchange-dev zlib1g-dev libpng-dev libmeshoptimizer-dev libcpp-httplib-dev
   pybind11-dev python3-dev python3-numpy python3-pytest

@@ -8,7 +8,8 @@ namespace cloud2csg {
 /// Bad input: one exception type, thrown where input enters the library (files, options, models).
 /// Programming errors are assertions instead.
 ///
-/// `what()` is one line: `file: where: expected; remedy`, empty parts left out.
+/// `what()` is one line: `file: where: expected; remedy`, empty parts left out; of at most 200 bytes beside the file,
+/// to which a long place, and then a long `expected`, are cut.
 class Error : public std::exception {
  public:
   struct Parts {

@@ -40,8 +40,9 @@ struct MeshingOptions {
 /// Volume enclosed by a closed mesh, positive when it is oriented outward.
 [[nodiscard]] double volume_of(const TriangleMesh& mesh);
 
-/// .stl .off .obj .ply .3mf .glb as assimp reads them, in single precision; vertices at the same place are joined, and
-/// triangles that lose a corner by it are left out. @throws Error
+/// .stl (binary and text) .off .obj .ply .3mf .glb by the file's ending. Polygons are cut into triangles, vertices at
+/// the same place joined; triangles that lose a corner by it are left out. .3mf is read in millimetres.
+/// O(vertices log vertices) @throws Error for whatever else a file may hold
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);
 /// .stl (binary) .off .obj .3mf by the file's ending. Nothing half-written. @throws Error
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);

@@ -225,7 +225,7 @@ void bind_clouds(py::module_& module) {
         const py::gil_scoped_release unlocked;
         return read_mesh(file);
       },
-      py::arg("file"), "Reads a mesh: .stl .off .obj .ply .3mf .glb, in single precision. Raises Error.");
+      py::arg("file"), "Reads a mesh: .stl .off .obj .ply .3mf .glb. Raises Error.");
 }
 
 }  // namespace cloud2csg::python

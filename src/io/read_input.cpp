@@ -40,17 +40,22 @@ Input read_cloud(const std::filesystem::path& file, const RunContext& run) {
   return input;
 }
 
-/// Readers of meshes give single precision, whatever the file says.
+/// Most files of meshes hold numbers in single precision.
+bool is_in_single_precision(const TriangleMesh& mesh) {
+  return std::ranges::all_of(std::array{&mesh.vertices.x, &mesh.vertices.y, &mesh.vertices.z}, [](const auto* axis) {
+    return std::ranges::all_of(*axis, [](double x) { return x == static_cast<double>(static_cast<float>(x)); });
+  });
+}
+
 void warn_of_coarse_corners(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
   constexpr double k_coarse = 1e-4;  // of the diagonal: a tenth of the least tolerance
   const AlignedBox box = bounds_of(mesh.vertices);
-  if (box.isEmpty()) return;
   const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
   const double step = farthest * static_cast<double>(std::numeric_limits<float>::epsilon());
-  if (step <= k_coarse * box.diagonal().norm()) return;
+  if (step <= k_coarse * box.diagonal().norm() || !is_in_single_precision(mesh)) return;
   warnings.push_back(fmt::format(
-      "The mesh is so far from the origin that its corners are read in steps of {:.2g}: move it there before, "
-      "or give a cloud.",
+      "The mesh is in single precision, and so far from the origin that its corners are in steps of {:.2g}: move it "
+      "there before it is written, or give a cloud.",
       step));
 }
 

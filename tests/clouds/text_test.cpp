@@ -35,7 +35,7 @@ TEST(Xyz, RefusesBadRowsNamingTheLine) {
   expect_refused("a.xyz", "1 2 3 0 nan 0\n", "line 1", "expected a normal that is finite");
   expect_refused("a.xyzn", "1 2 3\n", "line 1", "expected 6 columns");
   expect_refused("a.xyzn", "", "", "holds no points");
-  expect_refused("a.xyz", std::string("1 2 \x01\0\x7f", 7), "line 1", "found \"???\"");
+  expect_refused("a.xyz", std::string("1 2 \x01\0\x7f", 7), "line 1", "found \"\\x01\\x00\\x7f\"");
 }
 
 TEST(Pts, WithAndWithoutIntensityAndColour) {

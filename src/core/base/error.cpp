@@ -1,5 +1,6 @@
 #include "cloud2csg/error.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/visible_text.hpp"
@@ -7,15 +8,31 @@
 namespace cloud2csg {
 namespace {
 
+/// Beside the name of the file.
+constexpr std::size_t k_longest_message = 200;
+
+/// A path of a field may be as long as the file is deep: its middle is left out.
+std::string brief_place(const std::string& where) {
+  constexpr std::size_t k_longest = 60;
+  constexpr std::size_t k_end = 28;
+  const std::string visible = visible_text(where);
+  if (visible.size() <= k_longest) return visible;
+  return visible.substr(0, k_end) + "..." + visible.substr(visible.size() - k_end);
+}
+
 std::string one_line(const Error::Parts& parts) {
+  const std::string where = brief_place(parts.where);
+  const std::string end = parts.remedy.empty() ? "" : "; " + visible_text(parts.remedy);
+  // Words of the file that are quoted may be of any length.
+  const std::size_t taken = std::min(where.size() + end.size() + 7, k_longest_message);
   std::string line;
-  for (const std::string* part : {&parts.file, &parts.where, &parts.expected}) {
-    if (part->empty()) continue;
+  for (const std::string& part :
+       {visible_text(parts.file), where, visible_text(parts.expected, k_longest_message - taken)}) {
+    if (part.empty()) continue;
     if (!line.empty()) line += ": ";
-    line += *part;
+    line += part;
   }
-  if (!parts.remedy.empty()) line += "; " + parts.remedy;
-  return visible_text(line);
+  return line + end;
 }
 
 }  // namespace

@@ -145,9 +145,4 @@ PointCloud cloud_of_columns(const FileContent& content, const CloudColumns& colu
   return cloud;
 }
 
-void fail_truncated(const FileContent& content, FilePosition where, std::size_t announced, std::size_t found) {
-  content.fail(where, fmt::format("the file announces {} points but ends after {}", announced, found),
-               "the file is cut off or damaged: copy or export it again");
-}
-
 }  // namespace cloud2csg

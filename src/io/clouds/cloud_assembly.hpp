@@ -74,8 +74,4 @@ class CloudAssembly {
                                           const std::function<std::size_t(std::size_t)>& byte_of, InvalidPoints invalid,
                                           const RunContext& run);
 
-/// @throws Error: `announced` points were announced, only `found` are there.
-[[noreturn]] void fail_truncated(const FileContent& content, FilePosition where, std::size_t announced,
-                                 std::size_t found);
-
 }  // namespace cloud2csg

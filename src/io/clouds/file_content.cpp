@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -51,15 +52,20 @@ void FileContent::grow(std::size_t capacity) {
 }
 
 void FileContent::fail(FilePosition where, std::string expected, std::string remedy) const {
-  const char* unit = where.unit == FilePosition::Unit::line ? "line" : "byte";
+  constexpr std::array<const char*, 4> k_units{"line", "byte", "vertex", "triangle"};
   throw Error({.file = name_,
-               .where = fmt::format("{} {}", unit, where.number),
+               .where = fmt::format("{} {}", k_units.at(static_cast<std::size_t>(where.unit)), where.number),
                .expected = std::move(expected),
                .remedy = std::move(remedy)});
 }
 
 void FileContent::fail(std::string expected, std::string remedy) const {
   throw Error({.file = name_, .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
+}
+
+void FileContent::fail_truncated(FilePosition where, std::size_t announced, std::size_t found,
+                                 const char* things) const {
+  fail(where, fmt::format("the file announces {} {} but ends after {}", announced, things, found), k_copy_again);
 }
 
 }  // namespace cloud2csg

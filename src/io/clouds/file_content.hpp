@@ -11,12 +11,15 @@
 
 namespace cloud2csg {
 
-/// A place in a file, for messages: a line of text, counted from 1, or a byte, counted from 0.
+/// A place in a file, for messages: a line of text, counted from 1, or something else, counted from 0.
 struct FilePosition {
-  enum class Unit { line, byte };
+  enum class Unit { line, byte, vertex, triangle };
   Unit unit;
   std::size_t number;
 };
+
+/// What to do about a file that ends too early.
+constexpr const char* k_copy_again = "the file is cut off or damaged: copy or export it again";
 
 /// The bytes of a file, with the name to use in messages.
 class FileContent {
@@ -32,6 +35,9 @@ class FileContent {
   /// @throws Error with this file's name.
   [[noreturn]] void fail(FilePosition where, std::string expected, std::string remedy = {}) const;
   [[noreturn]] void fail(std::string expected, std::string remedy = {}) const;
+  /// @throws Error: so many of some things were announced, only `found` are there.
+  [[noreturn]] void fail_truncated(FilePosition where, std::size_t announced, std::size_t found,
+                                   const char* things = "points") const;
 
  private:
   void grow(std::size_t capacity);

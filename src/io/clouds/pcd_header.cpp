@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "io/clouds/text_rows.hpp"
@@ -35,13 +32,6 @@ std::optional<ScalarType> scalar_type(std::string_view type, std::string_view si
     if (size == "8") return ScalarType::uint64;
   }
   return std::nullopt;
-}
-
-std::optional<double> parse_number(std::string_view word) {
-  double value = 0.0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || stop != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 /// The words that follow each keyword, and the line they stand in (0 = not there).

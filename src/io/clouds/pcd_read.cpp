@@ -53,7 +53,7 @@ PointCloud read_ascii(const FileContent& content, const PcdHeader& header, const
     }
     assembly.add(layout.map([&](const auto& columns) { return pick(*row, columns); }), rows.where());
   }
-  if (assembly.size() < header.points) fail_truncated(content, rows.where(), header.points, assembly.size());
+  if (assembly.size() < header.points) content.fail_truncated(rows.where(), header.points, assembly.size());
   return std::move(assembly).finish();
 }
 
@@ -78,7 +78,7 @@ PointCloud read_binary(const FileContent& content, const PcdHeader& header, cons
   const std::size_t stride = header.stride();
   const std::size_t found = (content.bytes().size() - header.data_offset) / stride;
   if (found < header.points) {
-    fail_truncated(content, {FilePosition::Unit::byte, header.data_offset + found * stride}, header.points, found);
+    content.fail_truncated({FilePosition::Unit::byte, header.data_offset + found * stride}, header.points, found);
   }
   const char* const data = content.bytes().data() + header.data_offset;
   return cloud_of_columns(
@@ -91,7 +91,7 @@ PointCloud read_compressed(const FileContent& content, const PcdHeader& header, 
   const FilePosition where{FilePosition::Unit::byte, header.data_offset};
   constexpr std::size_t k_size_bytes = 2 * sizeof(std::uint32_t);
   const std::string_view data = content.bytes().substr(header.data_offset);
-  if (data.size() < k_size_bytes) fail_truncated(content, where, header.points, 0);
+  if (data.size() < k_size_bytes) content.fail_truncated(where, header.points, 0);
   const std::size_t compressed_size = load<std::uint32_t>(data.data(), std::endian::little);
   const std::size_t size = load<std::uint32_t>(data.data() + sizeof(std::uint32_t), std::endian::little);
   if (size != header.points * header.stride()) {
@@ -102,10 +102,10 @@ PointCloud read_compressed(const FileContent& content, const PcdHeader& header, 
     content.fail(where,
                  fmt::format("the file announces {} points in {} compressed bytes but ends after {} bytes",
                              header.points, compressed_size, data.size() - k_size_bytes),
-                 "the file is cut off or damaged: copy or export it again");
+                 k_copy_again);
   }
   const std::optional<std::string> records = decompress_lzf(data.substr(k_size_bytes, compressed_size), size);
-  if (!records) content.fail(where, "the compressed data is damaged", "copy or export the file again");
+  if (!records) content.fail(where, "the compressed data is damaged", k_copy_again);
   return cloud_of_columns(
       content, columns_at(header, layout, records->data(), true), header.points,
       [&](std::size_t) { return header.data_offset; }, invalid, run);

@@ -79,7 +79,7 @@ PointCloud read_pts(const FileContent& content, InvalidPoints invalid, const Run
     }
     add_row(assembly, *row, false, rows.where());
   }
-  if (assembly.size() < *announced) fail_truncated(content, rows.where(), *announced, assembly.size());
+  if (assembly.size() < *announced) content.fail_truncated(rows.where(), *announced, assembly.size());
   return std::move(assembly).finish();
 }
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <system_error>
+
+#include "core/base/visible_text.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -22,14 +25,6 @@ std::string_view trim(std::string_view line) {
   return line;
 }
 
-/// A piece of a bad file that is fit for a message: short, and without control characters.
-std::string printable(std::string_view token) {
-  constexpr std::size_t k_longest = 24;
-  std::string text;
-  for (const char c : token.substr(0, k_longest)) text += c >= ' ' && c <= '~' ? c : '?';
-  return token.size() > k_longest ? text + "..." : text;
-}
-
 }  // namespace
 
 TextRows::TextRows(const FileContent& content, std::size_t first_byte, std::size_t lines_before)
@@ -41,10 +36,11 @@ TextRows::TextRows(const FileContent& content, std::size_t first_byte, std::size
 std::optional<std::string_view> TextRows::next_line() {
   while (!rest_.empty()) {
     const std::size_t end = rest_.find('\n');
-    const std::string_view line = trim(rest_.substr(0, end));
+    const std::string_view whole_line = rest_.substr(0, end);
+    const std::string_view line = trim(whole_line.substr(0, whole_line.find('#')));
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     ++line_number_;
-    if (!line.empty() && line.front() != '#' && !line.starts_with("//")) return line;
+    if (!line.empty() && !line.starts_with("//")) return line;
   }
   return std::nullopt;
 }
@@ -52,16 +48,20 @@ std::optional<std::string_view> TextRows::next_line() {
 std::optional<std::span<const double>> TextRows::next_row() {
   const std::optional<std::string_view> line = next_line();
   if (!line) return std::nullopt;
+  return numbers_in(*line);
+}
+
+std::span<const double> TextRows::numbers_in(std::string_view text) {
   row_.clear();
-  const char* cursor = line->data();
-  const char* const end = cursor + line->size();
+  const char* const end = text.data() + text.size();
+  const char* cursor = std::find_if_not(text.data(), end, is_blank);
   while (cursor != end) {
     const char* const token = cursor;
     if (*cursor == '+') ++cursor;  // from_chars knows no plus sign
     double value = 0.0;
     const auto [stop, error] = std::from_chars(cursor, end, value);
     if (error != std::errc{} || (stop != end && !is_separator(*stop))) {
-      fail_at({token, static_cast<std::size_t>(std::find_if(token, end, is_separator) - token)});
+      fail_number({token, static_cast<std::size_t>(std::find_if(token, end, is_separator) - token)});
     }
     row_.push_back(value);
     cursor = std::find_if_not(stop, end, is_separator);
@@ -69,9 +69,14 @@ std::optional<std::span<const double>> TextRows::next_row() {
   return row_;
 }
 
-void TextRows::fail_at(std::string_view token) const {
-  content_.fail(where(), fmt::format("expected a number, found \"{}\"", printable(token)),
+void TextRows::fail_number(std::string_view word) const {
+  content_.fail(where(), fmt::format("expected a number, found \"{}\"", visible_text(word, k_longest_quote)),
                 "lines that are no data must start with #");
+}
+
+std::pair<std::string_view, std::string_view> first_word(std::string_view line) {
+  const std::string_view word = line.substr(0, std::min(line.find_first_of(" \t"), line.size()));
+  return {word, trim(line.substr(word.size()))};
 }
 
 std::vector<std::string> split_words(std::string_view line) {
@@ -91,6 +96,18 @@ std::optional<std::size_t> parse_count(std::string_view word) {
   const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc{} || stop != word.data() + word.size()) return std::nullopt;
   return value;
+}
+
+std::optional<double> parse_number(std::string_view word) {
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || stop != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::size_t> whole_number(double number, std::size_t most) {
+  if (!(number >= 0.0) || number > static_cast<double>(most) || number != std::floor(number)) return std::nullopt;
+  return static_cast<std::size_t>(number);
 }
 
 }  // namespace cloud2csg

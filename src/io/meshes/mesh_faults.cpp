@@ -22,7 +22,7 @@ using IndexBox = bg::model::box<IndexPoint>;
 using TriangleIndex = bg::index::rtree<std::pair<IndexBox, std::uint32_t>, bg::index::linear<16>>;
 
 constexpr std::size_t k_triangles_a_task = 1024;
-/// Of a length: nearer than this counts as touching. Readers of meshes give single precision.
+/// Of a length: nearer than this counts as touching. Most files of meshes are in single precision.
 constexpr double k_touching = 1e-6;
 
 using CornerPoints = std::array<Vector3d, 3>;

@@ -1,11 +1,7 @@
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <assimp/Importer.hpp>
-#include <cmath>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -14,43 +10,23 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "core/base/file_ending.hpp"
+#include "core/base/visible_text.hpp"
+#include "io/meshes/formats.hpp"
 
 namespace cloud2csg {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file, std::string expected, std::string remedy = {}) {
-  throw Error({.file = file.string(), .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
-}
+struct MeshFormat {
+  std::string_view ending;
+  TriangleMesh (*read)(const FileContent&);
+};
 
-void require_readable(const std::filesystem::path& file) {
-  const std::string ending = lower_ending(file);
-  constexpr std::array<std::string_view, 6> k_endings{".stl", ".off", ".obj", ".ply", ".3mf", ".glb"};
-  if (std::find(k_endings.begin(), k_endings.end(), ending) == k_endings.end()) {
-    fail(file, fmt::format("expected a file ending in .stl, .off, .obj, .ply, .3mf or .glb, found \"{}\"", ending));
-  }
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    fail(file, fmt::format("cannot be read ({})", error ? error.message() : "not a file"),
-         "check the path and its permissions");
-  }
-}
-
-/// Appends the triangles of one part of the scene, corners not yet joined.
-void append(TriangleMesh& mesh, const aiMesh& part, const std::filesystem::path& file) {
-  const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& v = part.mVertices[i];
-    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z)) {
-      fail(file, fmt::format("expected finite coordinates, found ({}, {}, {})", v.x, v.y, v.z));
-    }
-    mesh.vertices.push_back({v.x, v.y, v.z});
-  }
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    if (face.mNumIndices != 3) continue;
-    mesh.triangles.push_back({offset + face.mIndices[0], offset + face.mIndices[1], offset + face.mIndices[2]});
-  }
-}
+constexpr std::array<MeshFormat, 6> k_mesh_formats{{{".stl", read_stl},
+                                                    {".off", read_off},
+                                                    {".obj", read_obj},
+                                                    {".ply", read_ply_mesh},
+                                                    {".3mf", read_3mf},
+                                                    {".glb", read_glb}}};
 
 /// Vertices at the same place become one; triangles that lose a corner by it go.
 TriangleMesh joined(const TriangleMesh& mesh) {
@@ -84,15 +60,18 @@ TriangleMesh joined(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
-  require_readable(file);
-  Assimp::Importer importer;
-  // .3mf and .glb place their parts by a tree of motions.
-  constexpr unsigned k_steps = unsigned{aiProcess_Triangulate} | unsigned{aiProcess_PreTransformVertices};
-  const aiScene* scene = importer.ReadFile(file.string(), k_steps);
-  if (scene == nullptr) fail(file, fmt::format("cannot be read as a mesh ({})", importer.GetErrorString()));
-  TriangleMesh mesh;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(mesh, *scene->mMeshes[i], file);
-  if (mesh.triangles.empty()) fail(file, "expected triangles, found none", "a point cloud is no mesh");
+  const std::string ending = lower_ending(file);
+  const auto* const format = std::ranges::find(k_mesh_formats, ending, &MeshFormat::ending);
+  if (format == k_mesh_formats.end()) {
+    throw Error({.file = file.string(),
+                 .where = {},
+                 .expected = fmt::format("expected a file ending in .stl, .off, .obj, .ply, .3mf or .glb, found \"{}\"",
+                                         visible_text(ending, k_longest_quote)),
+                 .remedy = {}});
+  }
+  const FileContent content(file);
+  const TriangleMesh mesh = format->read(content);
+  if (mesh.triangles.empty()) content.fail("expected triangles, found none", "a point cloud is no mesh");
   return joined(mesh);
 }
 

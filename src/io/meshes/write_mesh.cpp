@@ -8,7 +8,7 @@
 #include "cloud2csg/mesh.hpp"
 #include "core/base/atomic_file.hpp"
 #include "core/base/file_ending.hpp"
-#include "io/meshes/threemf.hpp"
+#include "io/meshes/formats.hpp"
 
 namespace cloud2csg {
 namespace {

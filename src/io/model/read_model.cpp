@@ -10,6 +10,7 @@
 #include "cloud2csg/model.hpp"
 #include "core/base/atomic_file.hpp"
 #include "core/base/file_ending.hpp"
+#include "core/base/visible_text.hpp"
 #include "io/model/json_text.hpp"
 #include "io/model/schema_message.hpp"
 #include "io/model/schema_validator.hpp"
@@ -97,7 +98,7 @@ class ModelReader {
         throw Error({.file = {},
                      .where = where + "/id",
                      .expected = fmt::format("expected an id of its own, found \"{}\" as in /primitives/{}",
-                                             primitive.id, first->second),
+                                             visible_text(primitive.id, k_longest_quote), first->second),
                      .remedy = {}});
       }
       model.primitives.push_back(std::move(primitive));

@@ -86,12 +86,11 @@ class TreeReader {
   }
 
   [[nodiscard]] CsgNode leaf(const json& node) const {
-    const auto id = node["primitive"].get<std::string>();
-    const auto found = index_of_id_.find(id);
+    const auto found = index_of_id_.find(node["primitive"].get_ref<const std::string&>());
     if (found == index_of_id_.end()) {
       throw Error({.file = {},
                    .where = path() + "/primitive",
-                   .expected = fmt::format(R"(expected the id of a primitive, found "{}")", id),
+                   .expected = fmt::format("expected the id of a primitive, found {}", brief(node["primitive"])),
                    .remedy = "add the primitive or correct the id"});
     }
     return CsgNode::leaf(found->second);

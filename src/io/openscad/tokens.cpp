@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
+#include "core/base/visible_text.hpp"
 #include "io/openscad/syntax.hpp"
 
 namespace cloud2csg::scad {
@@ -40,12 +41,7 @@ void refuse(std::string_view text, std::size_t offset, std::string expected, std
 
 std::string shown(const Token& token) {
   if (token.kind == Token::Kind::end) return "the end of the file";
-  constexpr std::size_t k_longest = 40;
-  std::string word(token.raw.substr(0, k_longest));
-  // What a terminal would obey, or break a line at.
-  std::ranges::replace_if(
-      word, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return fmt::format("'{}{}'", word, token.raw.size() > k_longest ? "..." : "");
+  return fmt::format("'{}'", visible_text(token.raw, k_longest_quote));
 }
 
 Token Tokens::next() {
