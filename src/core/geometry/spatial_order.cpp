@@ -105,8 +105,11 @@ class CellSort {
 
 }  // namespace
 
-MortonCurve::MortonCurve(const Eigen::Vector3d& corner, double edge, int bits)
-    : corner_(corner), bits_(bits), last_step_((1 << bits) - 1), cells_a_unit_((1 << bits) / std::max(edge, 1e-300)) {
+MortonCurve::MortonCurve(Eigen::Vector3d corner, double edge, int bits)
+    : corner_(std::move(corner)),
+      bits_(bits),
+      last_step_((1 << bits) - 1),
+      cells_a_unit_((1 << bits) / std::max(edge, 1e-300)) {
   for (std::uint32_t step = 0; step < std::uint32_t{1} << static_cast<unsigned>(bits); ++step) {
     for (unsigned bit = 0; bit < k_most_bits; ++bit) spread_[step] |= (step >> bit & 1U) << (3 * bit);
   }

@@ -18,7 +18,7 @@ class MortonCurve {
   static constexpr int k_most_bits = 10;
 
   /// Precondition: 1 <= bits <= k_most_bits.
-  MortonCurve(const Eigen::Vector3d& corner, double edge, int bits);
+  MortonCurve(Eigen::Vector3d corner, double edge, int bits);
 
   [[nodiscard]] int bits() const { return bits_; }
   /// Points outside of the cube count to the cells at its border.
