@@ -48,6 +48,8 @@ class Session {
   Session(const RunOptions& options, std::stop_token stop);
   [[nodiscard]] const RunContext& run() const { return run_; }
   [[nodiscard]] ProgressDisplay& display() { return display_; }
+  /// A note each.
+  void warn(const std::vector<std::string>& warnings);
 
  private:
   ProgressDisplay display_;
@@ -60,13 +62,6 @@ CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, con
 /// A required file to read, as an option or by its place.
 CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& file, const std::string& help);
 
-/// What stands at the place of a cloud and of the primitives over it.
-/// @throws WrongUsage where it is one file, Error where a file has the ending of the other
-void check_cloud_and_primitives(const std::string& cloud, const std::string& primitives);
-
-/// @throws Error for a file that is, by its ending, a mesh or a cloud: those have no tree
-void check_model_input(const std::string& file);
-
 /// @throws Error naming the file when the model has no tree.
 [[nodiscard]] const CsgTree& tree_of(const Model& model, const std::string& file);
 
@@ -76,8 +71,9 @@ auto naming(const std::string& files, const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
+    if (!error.parts().file.empty()) throw;
     Error::Parts parts = error.parts();
-    if (parts.file.empty()) parts.file = files;
+    parts.file = files;
     throw Error(std::move(parts));
   }
 }

@@ -55,6 +55,9 @@ void CompareCommand::run(std::stop_token stop) const {
   Session session(running, std::move(stop));
   const Shape3d truth_shape = read_shape(truth);
   const Shape3d result_shape = read_shape(result);
+  for (const Shape3d* shape : {&truth_shape, &result_shape}) {
+    if (shape->model) session.warn(shape->model->warnings);
+  }
   const Comparison comparison = naming(truth + " with " + result, [&] {
     return cloud2csg::compare(truth_shape, result_shape, comparing, session.run());
   });

@@ -7,6 +7,7 @@
 #include "cloud2csg/model.hpp"
 #include "command.hpp"
 #include "core/base/output_set.hpp"
+#include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "reports.hpp"
 #include "values.hpp"
@@ -25,7 +26,6 @@ struct ConvertCommand {
 };
 
 void ConvertCommand::run(std::stop_token stop) const {
-  check_model_input(model);
   for (const std::string& file : outputs) check_output(file, model_endings());
   check_distinct(outputs);
   check_pictures(drawing);
@@ -36,20 +36,22 @@ void ConvertCommand::run(std::stop_token stop) const {
   ExportOptions options = exporting;
   options.script.facet_resolution = options.brep.facet_resolution;
   AddedModels added = naming(model, [&] { return add_models(written, outputs, read, options, session.run()); });
+  std::vector<std::string> warnings = read.warnings;
+  warnings.insert(warnings.end(), added.warnings.begin(), added.warnings.end());
   const Report report{.title = std::filesystem::path(model).filename().string(),
                       .source = read.description,
                       .model = read,
                       .downloads = std::move(added.texts),
-                      .warnings = added.warnings};
+                      .warnings = warnings};
   naming(model, [&] { add_reports(written, outputs, report, session.run()); });
   naming(model, [&] { add_pictures(written, outputs, {.model = read}, drawing, session.run()); });
   written.commit();
-  for (const std::string& warning : added.warnings) session.display().note("warning: " + warning);
+  session.warn(warnings);
 }
 
 void add_options(CLI::App& app, ConvertCommand& command) {
-  add_file(app, "model", command.model, "Model file: .json, or of OpenSCAD: .scad .csg")->type_name("MODEL");
-  add_outputs(app, command.outputs, join_endings(model_endings()));
+  add_file(app, "model", command.model, "Model file: " + endings_read({FileKind::model}))->type_name("MODEL");
+  add_outputs(app, command.outputs, model_endings());
   add_mesh_options(app, command.exporting);
   app.add_option("--facets", command.exporting.openscad.facets, "OpenSCAD (.scad .csg): facets of a full circle")
       ->transform(whole_number(3, 10'000))

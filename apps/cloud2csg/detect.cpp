@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <string_view>
 
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
@@ -15,6 +13,7 @@
 #include "cloud2csg/reconstruct.hpp"
 #include "command.hpp"
 #include "core/base/output_set.hpp"
+#include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "raw_arguments.hpp"
 #include "values.hpp"
@@ -22,7 +21,7 @@
 namespace cloud2csg::app {
 namespace {
 
-constexpr std::array<std::string_view, 3> k_endings{".json", ".ply", ".png"};
+constexpr const char* k_endings = ".json .ply .png";
 
 struct DetectCommand {
   std::string cloud;
@@ -80,11 +79,10 @@ std::vector<Colour> colours_of(const Extraction& found) {
 }
 
 void DetectCommand::check_files() const {
-  check_cloud_and_primitives(cloud, primitives);
   for (const std::string& file : outputs) check_output(file, k_endings);
   std::vector<std::string> files = outputs;
   files.push_back(cloud);
-  if (!primitives.empty()) files.push_back(primitives);
+  if (!primitives.empty() && primitives != cloud) files.push_back(primitives);
   check_distinct(files);
   check_pictures(drawing);
 }
@@ -93,12 +91,12 @@ void DetectCommand::run(std::stop_token stop) const {
   check_files();
   Session session(running, std::move(stop));
 
-  PrimitiveSet known;
-  if (!primitives.empty()) known = read_model(primitives).primitives;
+  Model known;
+  if (!primitives.empty()) known = read_model(primitives);
   const ExtractOptions options{.time_limit_seconds = time_limit_seconds, .seed = seed};
   const Input input = read_cloud_or_mesh(cloud, raw.input(options), session.run());
   ReconstructOptions from_raw = raw.options(options, input);
-  from_raw.known = known;
+  from_raw.known = known.primitives;
   const Extraction found = naming(primitives.empty() ? cloud : cloud + " with " + primitives,
                                   [&] { return find_primitives(input.cloud, from_raw, session.run()); });
 
@@ -112,7 +110,7 @@ void DetectCommand::run(std::stop_token stop) const {
   for (const std::string& file : outputs) {
     if (is_picture(file)) continue;
     written.add(file, [&](const std::filesystem::path& path) {
-      if (lower_ending(file) == ".json") {
+      if (has_ending_of(file, FileKind::model)) {
         write_model(path, model);
       } else {
         write_point_cloud(path, found.cloud, {.colours = colours_of(found)});
@@ -121,8 +119,9 @@ void DetectCommand::run(std::stop_token stop) const {
   }
   written.commit();
   fmt::print("{}", table);
-  for (const std::string& warning : input.warnings) session.display().note("warning: " + warning);
-  for (const std::string& warning : found.statistics.warnings) session.display().note("warning: " + warning);
+  session.warn(known.warnings);
+  session.warn(input.warnings);
+  session.warn(found.statistics.warnings);
   const FindingStatistics& finding = *found.statistics.finding;
   const LargestChange largest = largest_change(finding.snaps);
   session.display().note(fmt::format(
@@ -134,12 +133,13 @@ void DetectCommand::run(std::stop_token stop) const {
 
 void add_options(CLI::App& app, DetectCommand& command) {
   add_file(app, "cloud", command.cloud,
-           "Point cloud: .ply .pcd .xyz .xyzn .txt .pts, or mesh: .stl .off .obj .ply .3mf .glb")
+           fmt::format("Point cloud: {}, or mesh: {}", endings_read({FileKind::cloud}), endings_read({FileKind::mesh})))
       ->type_name("CLOUD|MESH");
   CLI::Option* primitives =
       app.add_option("--primitives", command.primitives,
-                     "Model .json .scad .csg with primitives that are known: they are kept as they are, and "
-                     "only what they leave unexplained is looked for")
+                     "Model " + endings_read({FileKind::model}) +
+                         " with primitives that are known: they are kept as they are, and only what they leave "
+                         "unexplained is looked for")
           ->check(file_name())
           ->type_name("MODEL")
           ->group("Input");

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
 
@@ -19,6 +18,7 @@
 #include "core/base/stopwatch.hpp"
 #include "core/base/without_stop.hpp"
 #include "extract_arguments.hpp"
+#include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "raw_arguments.hpp"
 #include "reports.hpp"
@@ -27,8 +27,6 @@
 
 namespace cloud2csg::app {
 namespace {
-
-constexpr std::array<std::string_view, 1> k_statistics_endings{".json"};
 
 struct ExtractCommand {
   std::string cloud;
@@ -145,16 +143,15 @@ Extraction ExtractCommand::extract(Input input, const PrimitiveSet& given, const
 }
 
 std::vector<std::string> ExtractCommand::check_files() const {
-  check_cloud_and_primitives(cloud, primitives);
   for (const std::string& file : outputs) check_output(file, model_endings());
-  if (statistics) check_output(*statistics, k_statistics_endings, Content::statistics);
+  if (statistics) check_output(*statistics, ".json", true);
   if (unexplained) check_output(*unexplained, cloud_endings());
   std::vector<std::string> written = outputs;
   if (unexplained) written.push_back(*unexplained);
   if (statistics) written.push_back(*statistics);
   std::vector<std::string> all = written;
   all.push_back(cloud);
-  if (!primitives.empty()) all.push_back(primitives);
+  if (!primitives.empty() && primitives != cloud) all.push_back(primitives);
   check_distinct(all);
   check_pictures(drawing);
   return written;
@@ -165,12 +162,13 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   const std::vector<std::string> to_write = check_files();
   Session session(running, stop);
 
-  PrimitiveSet given;
-  if (!primitives.empty()) given = read_model(primitives).primitives;
+  Model given;
+  if (!primitives.empty()) given = read_model(primitives);
   Input input = read_cloud_or_mesh(cloud, raw.input(arguments.options()), session.run());
-  const std::vector<std::string> doubts = std::move(input.warnings);
+  std::vector<std::string> doubts = std::move(given.warnings);
+  doubts.insert(doubts.end(), input.warnings.begin(), input.warnings.end());
   const double read_seconds = total.seconds();
-  Extraction result = extract(std::move(input), given, session.run());
+  Extraction result = extract(std::move(input), given.primitives, session.run());
   result.statistics.warnings.insert(result.statistics.warnings.begin(), doubts.begin(), doubts.end());
 
   const Stopwatch writing;
@@ -195,7 +193,7 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   report(std::move(result), std::move(models.texts), session.run(), written);
   written.commit();
 
-  for (const std::string& warning : summary.warnings) session.display().note("warning: " + warning);
+  session.warn(summary.warnings);
   for (const std::string& line : summary_of(summary, to_write)) session.display().note(line);
   if (stop.stop_requested() && !summary.complete) {
     throw Error({.file = {}, .where = "interrupted", .expected = "the best tree so far was written", .remedy = {}});
@@ -204,11 +202,12 @@ void ExtractCommand::run(const std::stop_token& stop) const {
 
 void add_options(CLI::App& app, ExtractCommand& command) {
   add_file(app, "cloud", command.cloud,
-           "Point cloud: .ply .pcd .xyz .xyzn .txt .pts, or mesh: .stl .off .obj .ply .3mf .glb")
+           fmt::format("Point cloud: {}, or mesh: {}", endings_read({FileKind::cloud}), endings_read({FileKind::mesh})))
       ->type_name("CLOUD|MESH");
   CLI::Option* primitives =
       app.add_option("--primitives", command.primitives,
-                     "Model .json .scad .csg with the primitives to combine; if not given, they are found in the cloud")
+                     "Model " + endings_read({FileKind::model}) +
+                         " with the primitives to combine; if not given, they are found in the cloud")
           ->check(file_name())
           ->type_name("MODEL")
           ->group("Input");
@@ -217,7 +216,7 @@ void add_options(CLI::App& app, ExtractCommand& command) {
                    "Keep the primitives that are given as they are, and find in the cloud what they leave unexplained")
           ->needs(primitives)
           ->group("Input");
-  add_outputs(app, command.outputs, join_endings(model_endings()));
+  add_outputs(app, command.outputs, model_endings());
   add_mesh_options(app, command.exporting);
   app.add_option("--stats", command.statistics, "Statistics: times, search, merge, fit")
       ->check(file_name())

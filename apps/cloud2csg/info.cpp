@@ -116,7 +116,11 @@ std::string to_table(const Json& fields, const std::string& indent) {
 }
 
 void InfoCommand::run() const {
-  const Json fields = describe(read_shape(file));
+  const Shape3d shape = read_shape(file);
+  const Json fields = describe(shape);
+  for (const std::string& warning : shape.model ? shape.model->warnings : std::vector<std::string>()) {
+    fmt::print(stderr, "warning: {}\n", visible_text(warning));
+  }
   if (is_json) {
     fmt::print("{}\n", fields.dump(2));
   } else {

@@ -132,6 +132,8 @@ int main(int argc, char** argv) {
     return app::complain(app::k_failed, "interrupted");
   } catch (const app::WrongUsage& error) {
     return app::complain(app::k_wrong_usage, error.what());
+  } catch (const WrongFile& error) {
+    return app::complain(app::k_failed, fmt::format("{}; {}", error.what(), app::taker_of(error.found())));
   } catch (const std::bad_alloc&) {
     return app::complain(app::k_failed, "not enough memory");
   } catch (const std::system_error& error) {

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -13,6 +12,7 @@
 #include "cloud2csg/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/atomic_file.hpp"
+#include "io/formats/formats.hpp"
 #include "reports.hpp"
 #include "usage.hpp"
 #include "values.hpp"
@@ -20,16 +20,10 @@
 namespace cloud2csg::app {
 namespace {
 
-constexpr std::array<std::string_view, 6> k_cloud_endings{".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"};
-constexpr std::array<std::string_view, 15> k_model_endings{".json", ".scad", ".csg",  ".FCMacro", ".py",
-                                                           ".step", ".stp",  ".brep", ".stl",     ".off",
-                                                           ".obj",  ".3mf",  ".dot",  ".html",    ".png"};
-
 /// What can be downloaded from a page as well as it can be had in a file of its own.
 bool is_text_model(const std::filesystem::path& file) {
-  const std::string ending = lower_ending(file);
-  constexpr std::array<std::string_view, 7> k_texts{".scad", ".csg", ".fcmacro", ".py", ".json", ".step", ".stp"};
-  return std::ranges::find(k_texts, ending) != k_texts.end();
+  const FileFormat* const format = format_by_ending(file);
+  return format->kind == FileKind::model || format->kind == FileKind::script || format->id == FileFormat::Id::step;
 }
 
 std::string corner(const Eigen::Vector3d& point) {
@@ -62,31 +56,30 @@ ExportOptions named_for(const std::string& file, ExportOptions options) {
 
 }  // namespace
 
-std::span<const std::string_view> cloud_endings() {
-  return k_cloud_endings;
+std::string cloud_endings() {
+  return endings_written({FileKind::cloud});
 }
-std::span<const std::string_view> model_endings() {
-  return k_model_endings;
-}
-
-std::string join_endings(std::span<const std::string_view> endings) {
-  return fmt::format("{}", fmt::join(endings.begin(), endings.end(), " "));
+std::string model_endings() {
+  using Kind = FileKind;
+  return endings_written({Kind::model, Kind::script, Kind::solid, Kind::mesh, Kind::graph, Kind::page, Kind::picture});
 }
 
-void check_output(const std::filesystem::path& file, std::span<const std::string_view> endings, Content content) {
+void check_output(const std::filesystem::path& file, const std::string& endings, bool is_statistics) {
   const auto refuse = [&file](std::string expected, std::string remedy) {
     throw Error({.file = file.string(), .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
   };
-  const std::string ending = lower_ending(file);
-  const auto is_same = [&ending](std::string_view known) { return lower_case(std::string(known)) == ending; };
-  if (std::none_of(endings.begin(), endings.end(), is_same)) {
+  const FileFormat* const format = format_by_ending(file);
+  if (format == nullptr || (endings + ' ').find(fmt::format("{} ", format->endings[0])) == std::string::npos) {
+    const std::string ending = file.extension().string();
     throw WrongUsage({.file = file.string(),
                       .where = {},
                       .expected = ending.empty() ? std::string("the name has no ending")
-                                                 : fmt::format("unknown ending '{}'", ending),
-                      .remedy = fmt::format("use one of {}", join_endings(endings))});
+                                  : format == nullptr
+                                      ? fmt::format("unknown ending '{}'", ending)
+                                      : fmt::format("{} ('{}') is not written here", kind_name(format->kind), ending),
+                      .remedy = fmt::format("use one of {}", endings)});
   }
-  if (ending == ".step" || ending == ".stp" || ending == ".brep") require_brep(file);
+  if (format->kind == FileKind::solid) require_brep(file);
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
@@ -97,12 +90,16 @@ void check_output(const std::filesystem::path& file, std::span<const std::string
     refuse(fmt::format("cannot be written: folder '{}' ({})", folder.string(), std::strerror(errno)),
            "check its permissions");
   }
-  if (is_report(file.string())) check_report_page(file.string());
-  check_overwriting(file, content);
+  if (is_report(file)) check_report_page(file.string());
+  check_overwriting(file, is_statistics);
 }
 
 bool is_picture(const std::filesystem::path& file) {
-  return lower_ending(file) == ".png";
+  return has_ending_of(file, FileKind::picture);
+}
+
+bool is_report(const std::filesystem::path& file) {
+  return has_ending_of(file, FileKind::page);
 }
 
 void add_pictures(OutputSet& set, std::span<const std::string> files, const Scene& scene, const PictureOptions& options,
@@ -127,7 +124,8 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
 
 void add_mesh_options(CLI::App& app, ExportOptions& options) {
   app.add_option("--resolution", options.meshing.resolution,
-                 "Meshes (.stl .off .obj .3mf): cells along the longest side; of exact solids, to a fiftieth of these")
+                 fmt::format("Meshes ({}): cells along the longest side; of exact solids, to a fiftieth of these",
+                             endings_written({FileKind::mesh})))
       ->transform(whole_number(4, 4096))
       ->type_name("N")
       ->group("Output")
@@ -150,7 +148,8 @@ void check_pictures(const PictureOptions& options) {
 }
 
 bool needs_tree(const std::filesystem::path& file) {
-  return lower_ending(file) != ".json";
+  const FileFormat* const format = format_by_ending(file);
+  return format == nullptr || format->id != FileFormat::Id::json;
 }
 
 AddedModels add_models(OutputSet& set, std::span<const std::string> files, const Model& model,

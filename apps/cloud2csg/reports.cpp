@@ -44,10 +44,6 @@ std::vector<ReportParameter> search_parameters(const GaOptions& search) {
 
 }  // namespace
 
-bool is_report(const std::string& file) {
-  return lower_ending(file) == ".html";
-}
-
 void check_report_page(const std::string& file) {
   if (has_report_page()) return;
   throw Error({.file = file,

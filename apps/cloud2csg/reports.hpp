@@ -10,9 +10,6 @@
 
 namespace cloud2csg::app {
 
-/// Whether a file is to be a report, by its ending.
-[[nodiscard]] bool is_report(const std::string& file);
-
 /// @throws Error naming the file when this build has no page to make reports of.
 void check_report_page(const std::string& file);
 

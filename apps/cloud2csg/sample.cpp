@@ -12,6 +12,7 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "command.hpp"
 #include "core/base/output_set.hpp"
+#include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "values.hpp"
 
@@ -67,6 +68,7 @@ void SampleCommand::run(std::stop_token stop) const {
   check_distinct(files);
   Session session(running, std::move(stop));
   const Shape3d read = read_shape(shape);
+  if (read.model) session.warn(read.model->warnings);
   const PointCloud cloud = naming(shape, [&] { return sample(read, session.run()); });
   OutputSet written;
   for (const std::string& file : outputs) {
@@ -80,9 +82,10 @@ void SampleCommand::run(std::stop_token stop) const {
 
 void add_options(CLI::App& app, SampleCommand& command) {
   add_file(app, "shape", command.shape,
-           "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply .3mf .glb")
+           fmt::format("Model file with a tree: {}, or mesh: {}", endings_read({FileKind::model}),
+                       endings_read({FileKind::mesh})))
       ->type_name("MODEL|MESH");
-  add_outputs(app, command.outputs, join_endings(cloud_endings()));
+  add_outputs(app, command.outputs, cloud_endings());
   app.add_flag("--ascii", command.is_ascii, "Text instead of binary numbers in .ply and .pcd")->group("Output");
   SampleOptions& sampling = command.sampling;
   CLI::Option* count = app.add_option("-n,--count", sampling.count, "How many points")

@@ -9,6 +9,7 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "command.hpp"
 #include "core/base/output_set.hpp"
+#include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "values.hpp"
 
@@ -43,6 +44,7 @@ void ScanCommand::run(std::stop_token stop) const {
   check_distinct(files);
   Session session(running, std::move(stop));
   const Shape3d read = read_shape(shape);
+  if (read.model) session.warn(read.model->warnings);
   const ScanOptions options = is_perfect ? without_defects(scanning) : scanning;
   const PointCloud cloud = naming(shape, [&] { return scan_shape(read, shape, options, session.run()); });
   OutputSet written;
@@ -110,9 +112,10 @@ void add_defects(CLI::App& app, ScanCommand& command) {
 
 void add_options(CLI::App& app, ScanCommand& command) {
   add_file(app, "shape", command.shape,
-           "Model file with a tree: .json .scad .csg, or mesh: .stl .off .obj .ply .3mf .glb")
+           fmt::format("Model file with a tree: {}, or mesh: {}", endings_read({FileKind::model}),
+                       endings_read({FileKind::mesh})))
       ->type_name("MODEL|MESH");
-  add_outputs(app, command.outputs, join_endings(cloud_endings()) + ", with sensor positions in .ply and .pcd");
+  add_outputs(app, command.outputs, cloud_endings() + ", with sensor positions in .ply and .pcd");
   app.add_flag("--normals", command.scanning.with_normals, "With the true outward normals, which no scanner knows")
       ->group("Output");
   app.add_flag("--ascii", command.is_ascii, "Text instead of binary numbers in .ply and .pcd")->group("Output");

@@ -40,6 +40,30 @@ std::string unknown_argument(const CLI::App& app, std::string word) {
 
 }  // namespace
 
+const char* taker_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::cloud:
+      return "'extract' makes a model of it, 'detect' finds its solids, 'compare' and 'info' take it, too";
+    case FileKind::mesh:
+      return "'extract' makes a model of it, 'sample' a cloud, 'compare' and 'info' take it, too";
+    case FileKind::model:
+      return "'convert' writes it in other formats, 'sample' makes a cloud of it, 'info' tells what it holds";
+    case FileKind::script:
+      return "no command reads it; 'convert' takes the .json that it was written from";
+    case FileKind::solid:
+      return "no command reads it; export a mesh from the CAD program, which 'extract' makes a model of";
+    case FileKind::graph:
+      return "no command reads it; Graphviz draws it";
+    case FileKind::page:
+      return "no command reads it; a browser shows it";
+    case FileKind::picture:
+      return "no command reads it; 'convert' writes such files";
+    case FileKind::statistics:
+      return "no command reads it; 'extract --stats' writes such files";
+  }
+  return "";
+}
+
 bool lacks_command(const CLI::App& program) {
   const CLI::App& last = *chosen(program).back();
   const auto is_any = [](const CLI::App* /*command*/) { return true; };

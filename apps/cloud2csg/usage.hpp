@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "cloud2csg/error.hpp"
+#include "io/formats/formats.hpp"
 
 namespace cloud2csg::app {
 
@@ -14,6 +15,9 @@ class WrongUsage : public Error {
  public:
   using Error::Error;
 };
+
+/// Which command takes a file of this kind, where another one was given it.
+[[nodiscard]] const char* taker_of(FileKind kind);
 
 /// Whether a command was named that is only the first word of others, and nothing behind it.
 [[nodiscard]] bool lacks_command(const CLI::App& program);

@@ -8,6 +8,7 @@
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/report.hpp"
 #include "command.hpp"
+#include "io/formats/formats.hpp"
 #include "page_server.hpp"
 #include "reports.hpp"
 #include "values.hpp"
@@ -32,16 +33,16 @@ Report ViewCommand::report(const RunContext& run) const {
       .title = std::filesystem::path(model).filename().string(), .model = read_model(model), .parameters = parameters};
   (void)tree_of(report.model, model);
   report.source = report.model.description;
+  report.warnings = report.model.warnings;
   if (cloud.empty()) return report;
   Input input = read_cloud_or_mesh(cloud, {}, run);
   report.cloud = std::move(input.cloud);
-  report.warnings = std::move(input.warnings);
+  report.warnings.insert(report.warnings.end(), input.warnings.begin(), input.warnings.end());
   return report;
 }
 
 void ViewCommand::run(const std::stop_token& stop) const {
   check_report_page(model);
-  check_model_input(model);
   std::string page;
   {
     const Session session(running, stop);
@@ -58,7 +59,8 @@ void ViewCommand::run(const std::stop_token& stop) const {
 }
 
 void add_options(CLI::App& app, ViewCommand& command) {
-  add_file(app, "model", command.model, "Model file with a tree: .json .scad .csg")->type_name("MODEL");
+  add_file(app, "model", command.model, "Model file with a tree: " + endings_read({FileKind::model}))
+      ->type_name("MODEL");
   app.add_option("--cloud", command.cloud, "Points to show beside the solid, and how far they are from it")
       ->check(file_name())
       ->type_name("CLOUD|MESH");

@@ -163,6 +163,8 @@ struct Model {
   std::optional<CsgTree> tree = {};
   /// Free text about where the model comes from; kept when a file is read and written again.
   std::string description = {};
+  /// Sentences for the user: what is doubtful about how it was read. Not written to files.
+  std::vector<std::string> warnings = {};
 };
 
 }  // namespace cloud2csg

@@ -15,7 +15,7 @@
 #include "cloud.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/mesh.hpp"
-#include "core/base/overwriting.hpp"
+#include "io/formats/formats.hpp"
 #include "option_class.hpp"
 #include "run_work.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 #include "cloud2csg/error.hpp"
+#include "io/formats/formats.hpp"
 
 namespace cloud2csg::python {
 namespace {
@@ -18,6 +19,20 @@ void raise(const Error& error) {
   raised.attr("expected") = error.parts().expected;
   raised.attr("remedy") = error.parts().remedy;
   PyErr_SetObject(type.ptr(), raised.ptr());
+}
+
+/// Which function takes a file of this kind, where another one was given it.
+const char* taker_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::cloud:
+      return "read_cloud() takes it";
+    case FileKind::mesh:
+      return "read_mesh() takes it, and read_cloud() draws points from it";
+    case FileKind::model:
+      return "Model.read() takes it";
+    default:
+      return "no function reads it";
+  }
 }
 
 }  // namespace
@@ -35,6 +50,10 @@ void bind_errors(py::module_& module) {
   py::register_local_exception_translator([](std::exception_ptr pending) {
     try {
       if (pending) std::rethrow_exception(std::move(pending));
+    } catch (const WrongFile& error) {
+      Error::Parts parts = error.parts();
+      parts.remedy = taker_of(error.found());
+      raise(Error(std::move(parts)));
     } catch (const Error& error) {
       raise(error);
     } catch (const Cancelled& cancelled) {

@@ -12,8 +12,8 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/picture.hpp"
-#include "core/base/overwriting.hpp"
 #include "field_arrays.hpp"
+#include "io/formats/formats.hpp"
 #include "model.hpp"
 #include "option_class.hpp"
 #include "reports.hpp"
@@ -54,9 +54,9 @@ ExportReport write_any(const std::filesystem::path& file, const Report& report,
                        const std::optional<ExportOptions>& options, const RunArguments& arguments) {
   check_overwriting(file);
   return run_work(arguments, [&](const RunContext& run) {
-    if (file.extension() == ".html") {
+    if (has_ending_of(file, FileKind::page)) {
       write_report(file, report, {}, run);
-    } else if (file.extension() == ".png") {
+    } else if (has_ending_of(file, FileKind::picture)) {
       write_picture(file, {.model = report.model, .cloud = report.cloud, .colours = {}}, {}, run);
     } else {
       return export_model(file, report.model, options.value_or(ExportOptions{}), run);
@@ -130,6 +130,7 @@ void bind_content(ModelClass& model) {
           },
           "The tree as nested objects (see cloud2csg.tree), or None.")
       .def_readonly("description", &Model::description, "Free text on where the model comes from.")
+      .def_readonly("warnings", &Model::warnings, "Sentences: what was doubtful when the model was read.")
       .def_property_readonly(
           "size", [](const Model& self) { return tree_of(self).size(); },
           "Nodes of the tree as a binary one, as in the paper. Raises Error without a tree.")
@@ -155,7 +156,8 @@ void bind_texts(ModelClass& model) {
       .def_static(
           "from_json", [](const std::string& text) { return parse_model(text); }, py::arg("text"),
           "From the text of a model file. Raises Error with the path of the field that is wrong.")
-      .def_static("read", &read_file, py::arg("file"), "Reads a model file (.json). Raises Error.")
+      .def_static("read", &read_file, py::arg("file"),
+                  "Reads a model file (.json), or one of OpenSCAD (.scad .csg). Raises Error.")
       .def(
           "to_json", [](const Model& self) { return to_json(self); }, "The text of a model file.")
       .def(

@@ -91,6 +91,17 @@ def test_sensor_positions_are_kept(tmp_path):
     np.testing.assert_array_equal(cloud2csg.read_cloud(tmp_path / "scan.ply").sensor_positions, POINTS + 5)
 
 
+def test_a_file_of_the_wrong_kind_is_told_which_function_takes_it(tmp_path):
+    model = tmp_path / "part.json"
+    cloud2csg.Model([cloud2csg.Primitive("ball", cloud2csg.Sphere(1))], "ball").write(model)
+    with pytest.raises(cloud2csg.Error, match=r"found a model; Model.read\(\) takes it") as raised:
+        cloud2csg.read_cloud(model)
+    assert "Model.read()" in raised.value.remedy
+    cloud2csg.PointCloud(POINTS).write(tmp_path / "scan.ply")
+    with pytest.raises(cloud2csg.Error, match=r"expected a mesh, found a point cloud; read_cloud\(\) takes it"):
+        cloud2csg.read_mesh(tmp_path / "scan.ply")
+
+
 def test_missing_file_is_an_error_with_parts(tmp_path):
     file = tmp_path / "none.ply"
     with pytest.raises(cloud2csg.Error) as raised:

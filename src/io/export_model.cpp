@@ -6,8 +6,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "core/base/atomic_file.hpp"
-#include "core/base/file_ending.hpp"
-#include "core/base/overwriting.hpp"
+#include "io/formats/formats.hpp"
 #include "shape/mesh/model_extent.hpp"
 
 namespace cloud2csg {
@@ -77,42 +76,37 @@ ExportReport export_mesh(const std::filesystem::path& file, const Model& model, 
   return {.cut_at = cut_at(tree, model.primitives, extent)};
 }
 
-ExportReport export_brep(const std::filesystem::path& file, const Model& model, const std::string& ending,
-                         const BrepOptions& options, const RunContext& run) {
-  const auto write = ending == ".brep" ? write_brep : write_step;
-  const BrepReport report = write(file, tree_of(model, file), model.primitives, options, run);
-  return {.cut_at = report.cut_at, .brep = report};
-}
-
 }  // namespace
 
 ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
                           const RunContext& run) {
-  const std::string ending = lower_ending(file);
-  if (ending == ".json") {
-    write_model(file, model);
-    return {};
+  using Kind = FileKind;
+  const FileFormat::Id format =
+      format_to_write(file, {Kind::model, Kind::script, Kind::solid, Kind::mesh, Kind::graph});
+  switch (format) {
+    case FileFormat::Id::json:
+      write_model(file, model);
+      return {};
+    case FileFormat::Id::dot:
+      write_marked(file, "//", to_graphviz(tree_of(model, file), model.primitives));
+      return {};
+    case FileFormat::Id::scad:
+      return export_script(file, "//", model, options.openscad, to_openscad);
+    case FileFormat::Id::csg:
+      return export_script(file, "//", model, options.openscad, to_openscad_csg);
+    case FileFormat::Id::freecad:
+      return export_script(file, "#", model, options.script, to_freecad_macro);
+    case FileFormat::Id::cadquery:
+      return export_script(file, "#", model, options.script, to_cadquery);
+    case FileFormat::Id::step:
+    case FileFormat::Id::brep: {
+      const auto write = format == FileFormat::Id::brep ? write_brep : write_step;
+      const BrepReport report = write(file, tree_of(model, file), model.primitives, options.brep, run);
+      return {.cut_at = report.cut_at, .brep = report};
+    }
+    default:
+      return export_mesh(file, model, options, run);
   }
-  if (ending == ".dot") {
-    write_marked(file, "//", to_graphviz(tree_of(model, file), model.primitives));
-    return {};
-  }
-  if (ending == ".scad") return export_script(file, "//", model, options.openscad, to_openscad);
-  if (ending == ".csg") return export_script(file, "//", model, options.openscad, to_openscad_csg);
-  if (ending == ".fcmacro") return export_script(file, "#", model, options.script, to_freecad_macro);
-  if (ending == ".py") return export_script(file, "#", model, options.script, to_cadquery);
-  if (ending == ".stl" || ending == ".off" || ending == ".obj" || ending == ".3mf")
-    return export_mesh(file, model, options, run);
-  if (ending == ".step" || ending == ".stp" || ending == ".brep") {
-    return export_brep(file, model, ending, options.brep, run);
-  }
-  throw Error(
-      {.file = file.string(),
-       .where = {},
-       .expected = fmt::format("expected a file ending in .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, "
-                               ".stl, .off, .obj, .3mf or .dot, found \"{}\"",
-                               ending),
-       .remedy = {}});
 }
 
 }  // namespace cloud2csg

@@ -1,29 +1,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/input.hpp"
-#include "core/base/file_ending.hpp"
 #include "core/base/parallel.hpp"
 #include "core/primitive/triangle_sampler.hpp"
-#include "io/clouds/ply_header.hpp"
+#include "io/formats/formats.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_chunk_points = 4096;
 constexpr std::uint64_t k_sampling_stage = 0x696e'7075'74;  // names its stream of random numbers
-
-bool is_one_of(std::string_view ending, std::initializer_list<std::string_view> endings) {
-  return std::ranges::find(endings, ending) != endings.end();
-}
 
 Input read_cloud(const std::filesystem::path& file, const RunContext& run) {
   RawCloud raw = read_raw_cloud(file, run);
@@ -99,15 +92,8 @@ PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, co
 }
 
 Input read_cloud_or_mesh(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
-  const std::string ending = lower_ending(file);
-  if (is_one_of(ending, {".stl", ".off", ".obj", ".3mf", ".glb"})) return read_and_sample(file, options, run);
-  if (ending == ".ply" && ply_has_faces(file)) return read_and_sample(file, options, run);
-  if (is_one_of(ending, {".ply", ".pcd", ".xyz", ".xyzn", ".txt", ".pts"})) return read_cloud(file, run);
-  throw Error({.file = file.string(),
-               .where = {},
-               .expected = "expected a point cloud (.ply, .pcd, .xyz, .xyzn, .txt, .pts) or a mesh (.stl, .off, .obj, "
-                           ".3mf, .glb, .ply with faces)",
-               .remedy = "rename or convert the file"});
+  const FileKind kind = format_to_read(file, {FileKind::cloud, FileKind::mesh}).kind;
+  return kind == FileKind::mesh ? read_and_sample(file, options, run) : read_cloud(file, run);
 }
 
 }  // namespace cloud2csg

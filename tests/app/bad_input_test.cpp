@@ -69,14 +69,6 @@ TEST_F(BadInput, FilesNamedTwice) {
   EXPECT_FALSE(std::filesystem::exists(same));
 }
 
-TEST_F(BadInput, FilesAtTheWrongPlaceAreToldWhatTakesThem) {
-  const std::string stl = file("part.stl", "solid part\nendsolid part\n");
-  expect_failure(run({"convert", stl, "-o", path("x.step")}), 1, {"part.stl", "expected a model", "'extract'"});
-  expect_failure(run({"extract", shipped("m1.json"), "-o", path("x.scad")}), 1, {"found a model", "'convert'"});
-  expect_failure(run({"extract", stl, "--primitives", stl, "-o", path("x.scad")}), 2, {"part.stl", "--primitives"});
-  expect_failure(run({"info", path("nothing")}), 1, {"nothing: cannot be read", "check the path"});
-}
-
 TEST_F(BadInput, PicturesTooLargeAreWrongUsage) {
   expect_failure(
       run({"convert", shipped("m1.json"), "-o", path("x.png"), "--picture-width", "4096", "--picture-height", "4096"}),

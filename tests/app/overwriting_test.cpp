@@ -1,11 +1,10 @@
-#include "core/base/overwriting.hpp"
-
 #include "app/program.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/picture.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/report.hpp"
+#include "io/formats/formats.hpp"
 
 namespace cloud2csg::test {
 namespace {
@@ -78,7 +77,7 @@ TEST_F(Overwriting, ModelsAndStatisticsAreTwoKinds) {
   };
   ASSERT_EQ(extract("m.json", "s.json").status, 0);
   EXPECT_NO_THROW(check_overwriting(path("m.json")));
-  EXPECT_NO_THROW(check_overwriting(path("s.json"), Content::statistics));
+  EXPECT_NO_THROW(check_overwriting(path("s.json"), true));
   expect_failure(extract("s.json", "new.json"), 1, {"s.json: is there already and is no model of cloud2csg"});
   expect_failure(extract("new.json", "m.json"), 1, {"m.json: is there already and is no file of statistics"});
 }

@@ -47,15 +47,6 @@ TEST(Ply, BinaryWithListsInAndBeforeTheVertices) {
   expect_equal(read_bytes("a.ply", bytes), make_cloud({{1, 2, 3}, {4, 5, 6}}));
 }
 
-TEST(Ply, KnowsWhetherThereAreFaces) {
-  const TemporaryFolder folder;
-  const std::string vertices = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
-  put_file(folder / "cloud.ply", vertices + "element face 0\nend_header\n0\n");
-  put_file(folder / "mesh.ply", vertices + "element face 1\nproperty list uchar int v\nend_header\n0\n0\n");
-  EXPECT_FALSE(ply_has_faces(folder / "cloud.ply"));
-  EXPECT_TRUE(ply_has_faces(folder / "mesh.ply"));
-}
-
 constexpr std::string_view k_xyz = "property float x\nproperty float y\nproperty float z\n";
 
 std::string ascii_ply(std::string_view count, std::string_view rows) {

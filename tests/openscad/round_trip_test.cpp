@@ -81,7 +81,7 @@ TEST(OpenScadRoundTrip, OurScriptsAreReadAsOpenScadFlattensThem) {
   for (std::uint64_t seed = 100; seed < 120; ++seed) {
     RandomStream random(seed);
     const Model model = random_model(random);
-    export_model(scad, model);
+    write_text_file(scad, to_openscad(*model.tree, model.primitives));
     const std::string command = "openscad -o '" + csg.string() + "' '" + scad.string() + "' > /dev/null 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: our names
     SCOPED_TRACE(read_text_file(csg));

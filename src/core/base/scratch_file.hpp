@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "core/base/temporary_file.hpp"
 
@@ -10,8 +11,8 @@ namespace cloud2csg {
 /// A file in the system's folder for temporary files, as long as this lives.
 class ScratchFile {
  public:
-  /// @throws Error
-  ScratchFile();
+  /// Its name has that ending. @throws Error
+  explicit ScratchFile(std::string_view ending = {});
   [[nodiscard]] const std::filesystem::path& path() const { return file_->path(); }
 
  private:

@@ -127,11 +127,4 @@ PlyHeader parse_ply_header(const FileContent& content) {
   return PlyHeaderParser(content).parse();
 }
 
-bool ply_has_faces(const std::filesystem::path& file) {
-  constexpr std::size_t k_longest_header = std::size_t{1} << 20;
-  const PlyHeader header = parse_ply_header(FileContent(file, {}, k_longest_header));
-  return std::any_of(header.elements.begin(), header.elements.end(),
-                     [](const PlyElement& element) { return element.name == "face" && element.count > 0; });
-}
-
 }  // namespace cloud2csg

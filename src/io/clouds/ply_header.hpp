@@ -41,8 +41,4 @@ struct PlyHeader {
 /// @throws Error naming the line.
 [[nodiscard]] PlyHeader parse_ply_header(const FileContent& content);
 
-/// Whether a .ply file announces faces, so that it is a mesh, not a cloud. Reads no more than the header.
-/// @throws Error when it cannot be read or is no .ply file.
-[[nodiscard]] bool ply_has_faces(const std::filesystem::path& file);
-
 }  // namespace cloud2csg

@@ -12,48 +12,40 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/atomic_file.hpp"
-#include "core/base/file_ending.hpp"
 #include "io/clouds/file_content.hpp"
 #include "io/clouds/formats.hpp"
+#include "io/formats/formats.hpp"
 
 namespace cloud2csg {
 namespace {
 
 struct CloudFormat {
-  std::string_view ending;
+  FileFormat::Id id;
   PointCloud (*read)(const FileContent&, InvalidPoints, const RunContext&);
   void (*write)(AtomicFile&, const PointCloud&, const CloudWriteOptions&);
-  bool needs_normals = false;
 };
 
-constexpr std::array<CloudFormat, 6> k_formats{{
-    {".ply", read_ply, write_ply},
-    {".pcd", read_pcd, write_pcd},
-    {".xyz", read_xyz, write_xyz},
-    {".xyzn", read_xyzn, write_xyz, true},
-    {".txt", read_xyz, write_xyz},
-    {".pts", read_pts, write_pts},
+constexpr std::array<CloudFormat, 5> k_formats{{
+    {FileFormat::Id::ply, read_ply, write_ply},
+    {FileFormat::Id::pcd, read_pcd, write_pcd},
+    {FileFormat::Id::xyz, read_xyz, write_xyz},
+    {FileFormat::Id::xyzn, read_xyzn, write_xyz},
+    {FileFormat::Id::pts, read_pts, write_pts},
 }};
 
-const CloudFormat& format_of(const std::filesystem::path& file) {
-  const std::string ending = lower_ending(file);
-  const auto* const found = std::ranges::find(k_formats, ending, &CloudFormat::ending);
-  if (found != k_formats.end()) return *found;
-  throw Error({.file = file.string(),
-               .where = {},
-               .expected = "expected a point cloud with ending .ply, .pcd, .xyz, .xyzn, .txt or .pts",
-               .remedy = "rename or convert the file"});
+const CloudFormat& cloud_format(FileFormat::Id id) {
+  return *std::ranges::find(k_formats, id, &CloudFormat::id);
 }
 
 }  // namespace
 
 PointCloud read_point_cloud(const std::filesystem::path& file, const RunContext& run) {
-  const CloudFormat& format = format_of(file);
+  const CloudFormat& format = cloud_format(format_to_read(file, {FileKind::cloud}).format);
   return format.read(FileContent(file, run), InvalidPoints::refuse, run);
 }
 
 RawCloud read_raw_cloud(const std::filesystem::path& file, const RunContext& run) {
-  const CloudFormat& format = format_of(file);
+  const CloudFormat& format = cloud_format(format_to_read(file, {FileKind::cloud}).format);
   const FileContent content(file, run);
   RawCloud raw{.cloud = format.read(content, InvalidPoints::keep, run)};
   const std::size_t count = raw.cloud.size();
@@ -77,8 +69,8 @@ void write_point_cloud(const std::filesystem::path& file, const PointCloud& clou
   assert(!cloud.has_normals() || cloud.normals.size() == cloud.positions.size());
   assert(!cloud.has_sensor_positions() || cloud.sensor_positions.size() == cloud.positions.size());
   assert(options.colours.empty() || options.colours.size() == cloud.positions.size());
-  const CloudFormat& format = format_of(file);
-  if (format.needs_normals && !cloud.has_normals()) {
+  const CloudFormat& format = cloud_format(format_to_write(file, {FileKind::cloud}));
+  if (format.id == FileFormat::Id::xyzn && !cloud.has_normals()) {
     throw Error({.file = file.string(),
                  .where = {},
                  .expected = "a file of this ending holds normals, the cloud has none",

@@ -1,32 +1,26 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <string>
-#include <string_view>
 #include <tuple>
 
-#include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
-#include "core/base/file_ending.hpp"
-#include "core/base/visible_text.hpp"
+#include "io/formats/formats.hpp"
 #include "io/meshes/formats.hpp"
 
 namespace cloud2csg {
 namespace {
 
 struct MeshFormat {
-  std::string_view ending;
+  FileFormat::Id id;
   TriangleMesh (*read)(const FileContent&);
 };
 
-constexpr std::array<MeshFormat, 6> k_mesh_formats{{{".stl", read_stl},
-                                                    {".off", read_off},
-                                                    {".obj", read_obj},
-                                                    {".ply", read_ply_mesh},
-                                                    {".3mf", read_3mf},
-                                                    {".glb", read_glb}}};
+constexpr std::array<MeshFormat, 6> k_mesh_formats{{{FileFormat::Id::stl, read_stl},
+                                                    {FileFormat::Id::off, read_off},
+                                                    {FileFormat::Id::obj, read_obj},
+                                                    {FileFormat::Id::ply, read_ply_mesh},
+                                                    {FileFormat::Id::threemf, read_3mf},
+                                                    {FileFormat::Id::glb, read_glb}}};
 
 /// Vertices at the same place become one; triangles that lose a corner by it go.
 TriangleMesh joined(const TriangleMesh& mesh) {
@@ -60,18 +54,10 @@ TriangleMesh joined(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
-  const std::string ending = lower_ending(file);
-  const auto* const format = std::ranges::find(k_mesh_formats, ending, &MeshFormat::ending);
-  if (format == k_mesh_formats.end()) {
-    throw Error({.file = file.string(),
-                 .where = {},
-                 .expected = fmt::format("expected a file ending in .stl, .off, .obj, .ply, .3mf or .glb, found \"{}\"",
-                                         visible_text(ending, k_longest_quote)),
-                 .remedy = {}});
-  }
+  const FileFormat::Id format = format_to_read(file, {FileKind::mesh}).format;
   const FileContent content(file);
-  const TriangleMesh mesh = format->read(content);
-  if (mesh.triangles.empty()) content.fail("expected triangles, found none", "a point cloud is no mesh");
+  const TriangleMesh mesh = std::ranges::find(k_mesh_formats, format, &MeshFormat::id)->read(content);
+  if (mesh.triangles.empty()) content.fail("expected triangles, found none");
   return joined(mesh);
 }
 

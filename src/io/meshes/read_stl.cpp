@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstdint>
 
-#include "core/base/file_ending.hpp"
 #include "io/clouds/scalar_type.hpp"
 #include "io/clouds/text_rows.hpp"
 #include "io/meshes/formats.hpp"

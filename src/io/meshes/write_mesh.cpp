@@ -4,10 +4,9 @@
 #include <iterator>
 #include <string>
 
-#include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "core/base/atomic_file.hpp"
-#include "core/base/file_ending.hpp"
+#include "io/formats/formats.hpp"
 #include "io/meshes/formats.hpp"
 
 namespace cloud2csg {
@@ -63,15 +62,16 @@ std::string to_obj(const TriangleMesh& mesh) {
 }  // namespace
 
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  const std::string ending = lower_ending(file);
-  if (ending == ".stl") return write_text_file(file, to_stl(mesh));
-  if (ending == ".off") return write_text_file(file, to_off(mesh));
-  if (ending == ".obj") return write_text_file(file, to_obj(mesh));
-  if (ending == ".3mf") return write_text_file(file, to_3mf(mesh));
-  throw Error({.file = file.string(),
-               .where = {},
-               .expected = fmt::format("expected a file ending in .stl, .off, .obj or .3mf, found \"{}\"", ending),
-               .remedy = {}});
+  switch (format_to_write(file, {FileKind::mesh})) {
+    case FileFormat::Id::stl:
+      return write_text_file(file, to_stl(mesh));
+    case FileFormat::Id::off:
+      return write_text_file(file, to_off(mesh));
+    case FileFormat::Id::obj:
+      return write_text_file(file, to_obj(mesh));
+    default:
+      return write_text_file(file, to_3mf(mesh));
+  }
 }
 
 }  // namespace cloud2csg

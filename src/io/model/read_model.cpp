@@ -9,12 +9,13 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
 #include "core/base/atomic_file.hpp"
-#include "core/base/file_ending.hpp"
 #include "core/base/visible_text.hpp"
+#include "io/formats/formats.hpp"
 #include "io/model/json_text.hpp"
 #include "io/model/schema_message.hpp"
 #include "io/model/schema_validator.hpp"
 #include "io/model/tree_reader.hpp"
+#include "io/openscad/read_openscad.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -177,14 +178,15 @@ Model parse_model(std::string_view json, const std::string& name) {
   }
 }
 
-bool is_openscad(const std::filesystem::path& file) {
-  const std::string ending = lower_ending(file);
-  return ending == ".scad" || ending == ".csg";
-}
-
 Model read_model(const std::filesystem::path& file) {
-  const std::string text = read_text_file(file);
-  return is_openscad(file) ? parse_openscad(text, file.string()) : parse_model(text, file.string());
+  switch (format_to_read(file, {FileKind::model}).format) {
+    case FileFormat::Id::scad:
+      return read_openscad(file);
+    case FileFormat::Id::csg:
+      return parse_openscad(read_text_file(file), file.string());
+    default:
+      return parse_model(read_text_file(file), file.string());
+  }
 }
 
 }  // namespace cloud2csg

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
+#include <sstream>
 #include <variant>
 
 #include "cloud2csg/error.hpp"
@@ -34,60 +36,15 @@ Eigen::Vector3d axis_angles(const Eigen::Vector3d& axis) {
 }  // namespace
 
 const std::set<std::string>& reserved_words() {
-  static const std::set<std::string> words{"assert",
-                                           "assign",
-                                           "child",
-                                           "children",
-                                           "circle",
-                                           "color",
-                                           "cube",
-                                           "cylinder",
-                                           "difference",
-                                           "dxf_linear_extrude",
-                                           "dxf_rotate_extrude",
-                                           "each",
-                                           "echo",
-                                           "else",
-                                           "everything",
-                                           "false",
-                                           "for",
-                                           "function",
-                                           "group",
-                                           "hull",
-                                           "if",
-                                           "import",
-                                           "import_dxf",
-                                           "import_off",
-                                           "import_stl",
-                                           "include",
-                                           "intersection",
-                                           "intersection_for",
-                                           "let",
-                                           "linear_extrude",
-                                           "minkowski",
-                                           "mirror",
-                                           "module",
-                                           "multmatrix",
-                                           "nothing",
-                                           "offset",
-                                           "parent_module",
-                                           "polygon",
-                                           "polyhedron",
-                                           "projection",
-                                           "render",
-                                           "resize",
-                                           "rotate",
-                                           "rotate_extrude",
-                                           "scale",
-                                           "sphere",
-                                           "square",
-                                           "surface",
-                                           "text",
-                                           "translate",
-                                           "true",
-                                           "undef",
-                                           "union",
-                                           "use"};
+  static const std::set<std::string> words = [] {
+    std::istringstream all(
+        "assert assign child children circle color cube cylinder difference dxf_linear_extrude "
+        "dxf_rotate_extrude each echo else everything false for function group hull if import import_dxf "
+        "import_off import_stl include intersection intersection_for let linear_extrude minkowski mirror "
+        "module multmatrix nothing offset parent_module polygon polyhedron projection render resize rotate "
+        "rotate_extrude scale sphere square surface text translate true undef union use");
+    return std::set<std::string>{std::istream_iterator<std::string>(all), {}};
+  }();
   return words;
 }
 

@@ -1,0 +1,326 @@
+#include "io/openscad/program.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/error.hpp"
+#include "core/base/visible_text.hpp"
+#include "core/primitive/lengths.hpp"
+#include "io/openscad/solids.hpp"
+
+namespace cloud2csg::scad {
+namespace {
+
+using Eigen::Affine3d;
+using Eigen::Vector3d;
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// All numbers of a solid and where it is: those of equal solids are equal.
+std::vector<double> key_of(const Primitive& primitive) {
+  std::vector<double> numbers{static_cast<double>(primitive.shape.index())};
+  const auto add = [&numbers](const auto& vector) { numbers.insert(numbers.end(), vector.begin(), vector.end()); };
+  add(primitive.pose.position);
+  add(primitive.pose.orientation.coeffs());
+  add(lengths_of(primitive.shape));
+  if (const auto* polytope = std::get_if<Polytope>(&primitive.shape)) {
+    for (const Plane& plane : polytope->planes) {
+      add(plane.normal);
+      numbers.push_back(plane.offset);
+    }
+  }
+  return numbers;
+}
+
+/// The first of a name has it, the others have it with a number.
+void number_names(PrimitiveSet& primitives) {
+  std::map<std::string, std::size_t, std::less<>> count;
+  for (const Primitive& primitive : primitives) count.emplace(primitive.id, 0);
+  for (Primitive& primitive : primitives) {
+    const std::string name = primitive.id;
+    if (++count[name] == 1) continue;
+    do {
+      primitive.id = fmt::format("{}_{}", name, count[name]++);
+    } while (count.contains(primitive.id));
+    --count[name];
+    count.emplace(primitive.id, 1);
+  }
+}
+
+/// Solids that are combined, while they are read.
+struct Block {
+  Operation operation;
+  std::size_t begin;      ///< of its nodes in the tree
+  std::size_t count = 0;  ///< of operands so far
+  bool is_solid = false;  ///< whether they make any solid
+};
+
+/// A circle or square, of which tori are turned.
+struct FlatShape {
+  bool is_circle;
+  Vector3d position;
+  Eigen::Vector2d size;  ///< of a circle, its radius twice
+};
+
+/// Whether a square leaves all of a circle but what is next to the axis, where no solid can be without a hole.
+bool leaves_pinhole(const FlatShape& square, const FlatShape& circle) {
+  constexpr double k_widest = 0.1;  // of the circle's radius, more or less; what is missing goes with its power 5/2
+  constexpr double k_rounding = 1e-6;
+  const double radius = circle.size.x();
+  const Vector3d from = (square.position - circle.position) / radius;
+  const Vector3d to = from + Vector3d(square.size.x(), square.size.y(), 0) / radius;
+  return !square.is_circle && from.x() <= k_widest - 1 + k_rounding && from.y() <= k_rounding - 1 &&
+         std::min(to.x(), to.y()) >= 1 - k_rounding;
+}
+
+/// Carries a program out while it reads it: each statement adds the nodes of its solid to the end of the tree, or none.
+/// What is repeated, the turns of loops and modules, is read again.
+class Program {
+ public:
+  explicit Program(std::string_view text) : reader_(text, globals_, locals_) {}
+
+  Model read() {
+    collect();
+    reader_.go_to(0);
+    Block all{.operation = Operation::union_of, .begin = 0};
+    while (reader_.peek().kind != Token::Kind::end) {
+      const Token first = reader_.next();
+      const bool is_collected = first.raw == "module" || reader_.at("=");
+      reader_.go_to(first.offset);
+      if (is_collected) {
+        reader_.skip_statement();
+      } else {
+        add_statement(all, Affine3d::Identity());
+      }
+    }
+    if (!all.is_solid) throw Refusal(0, "expected a solid, found none");
+    number_names(primitives_);
+    return {.primitives = std::move(primitives_), .tree = CsgTree(std::move(postfix_))};
+  }
+
+ private:
+  /// Modules and variables, which may be told behind the place where they are used.
+  void collect() {
+    while (reader_.peek().kind != Token::Kind::end) {
+      const Token first = reader_.next();
+      if (first.raw == "module") {
+        collect_module();
+      } else if (first.kind == Token::Kind::name && reader_.take("=")) {
+        // The last one has its value everywhere in OpenSCAD.
+        if (!globals_.emplace(first.raw, reader_.value()).second) {
+          throw Refusal(first.offset, "expected one value of a variable, found a second");
+        }
+        reader_.expect(";");
+      } else {
+        reader_.go_to(first.offset);
+        reader_.skip_statement();
+      }
+    }
+  }
+
+  void collect_module() {
+    const Token name = reader_.next();
+    reader_.expect("(");
+    if (!reader_.take(")")) reader_.fail("a module without parameters");
+    if (!modules_.emplace(name.raw, reader_.peek().offset).second) {
+      throw Refusal(name.offset, "expected one module of this name, found two");
+    }
+    reader_.skip_statement();
+  }
+
+  void count_calls(std::size_t count) {
+    // Modules that call modules could make any number of solids out of a few lines.
+    constexpr std::size_t k_most = 2'000'000;
+    calls_ += count;
+    if (calls_ > k_most) {
+      throw Refusal(reader_.peek().offset,
+                    fmt::format("expected at most {} calls and turns of loops in all, found more", k_most));
+    }
+  }
+
+  void add_statement(Block& block, const Affine3d& frame) {
+    const Level level(reader_);
+    const Token first = reader_.next();
+    if (first.raw == ";") return;
+    if (first.raw == "*" || first.raw == "%") return reader_.skip_statement();
+    if (first.raw == "#") return add_statement(block, frame);
+    if (first.kind == Token::Kind::name) return join(block, call(first, frame));
+    reader_.go_to(first.offset);
+    if (first.raw != "{") reader_.fail("a solid or an operation");
+    join(block, add_children(Operation::union_of, frame));
+  }
+
+  /// What follows on a call: nothing, one statement, or a block of them. Whether that is a solid.
+  bool add_children(Operation operation, const Affine3d& frame) {
+    Block block{.operation = operation, .begin = postfix_.size()};
+    if (reader_.take("{")) {
+      while (!reader_.take("}")) add_statement(block, frame);
+    } else {
+      add_statement(block, frame);
+    }
+    return block.is_solid;
+  }
+
+  /// Combines a block with the solid whose nodes were added last, if they are any.
+  void join(Block& block, bool is_added) {
+    const bool is_union = block.operation == Operation::union_of;
+    if (is_added && block.is_solid) {
+      const auto length = static_cast<std::uint32_t>(postfix_.size() - block.begin + 1);
+      postfix_.push_back(CsgNode::inner(block.operation, length));
+    } else if (block.count == 0 || is_union) {
+      block.is_solid = block.is_solid || is_added;
+    } else if (!block.is_solid || block.operation == Operation::intersection) {
+      block.is_solid = false;  // nothing less something, nothing and something
+      postfix_.erase(postfix_.begin() + static_cast<std::ptrdiff_t>(block.begin), postfix_.end());
+    }
+    ++block.count;
+  }
+
+  /// Whether it is a solid.
+  bool call(const Token& name, const Affine3d& frame) {
+    count_calls(1);
+    if (const auto module = modules_.find(name.raw); module != modules_.end()) return call_module(*module, frame);
+    if (name.raw == "for" || name.raw == "intersection_for") {
+      reader_.expect("(");
+      return repeat(name.raw == "for" ? Operation::union_of : Operation::intersection, frame);
+    }
+    const bool is_union = is_one_of(name.raw, {"union", "group", "render", "color"});
+    const bool is_known = is_union || is_one_of(name.raw, {"difference", "intersection", "rotate_extrude", "circle",
+                                                           "square", "cube", "sphere", "cylinder", "polyhedron",
+                                                           "translate", "rotate", "scale", "mirror", "multmatrix"});
+    if (!is_known || !reader_.at("(")) {
+      throw Refusal(name.offset, fmt::format("expected a solid, a map or an operation, found '{}'",
+                                             visible_text(name.raw, k_longest_quote)));
+    }
+    const Arguments arguments = reader_.arguments(name);
+    if (name.raw == "difference") return add_children(Operation::difference, frame);
+    if (name.raw == "intersection") return add_children(Operation::intersection, frame);
+    if (is_union) return add_children(Operation::union_of, frame);
+    if (name.raw == "rotate_extrude") return add_torus(arguments, frame);
+    if (const auto map = map_of(arguments)) return add_children(Operation::union_of, frame * *map);
+    reader_.expect(";");
+    const std::optional<LeafSolid> leaf = leaf_solid(arguments);
+    if (!leaf) return add_flat(arguments, frame);
+    add_leaf(leaf->shape, name.raw, frame * leaf->frame, name.offset);
+    return true;
+  }
+
+  bool call_module(const std::pair<const std::string_view, std::size_t>& module, const Affine3d& frame) {
+    for (const char* sign : {"(", ")", ";"}) reader_.expect(sign);
+    const std::size_t back = reader_.peek().offset;
+    const std::size_t before = primitives_.size();
+    const Variables outer = std::exchange(locals_, {});
+    reader_.go_to(module.second);
+    const bool is_solid = add_children(Operation::union_of, frame);
+    locals_ = outer;
+    reader_.go_to(back);
+    if (primitives_.size() == before + 1) primitives_.back().id = module.first;
+    return is_solid;
+  }
+
+  /// The turns of a loop combined, from the variable on that comes next.
+  bool repeat(Operation operation, const Affine3d& frame) {
+    const Level level(reader_);
+    const Token variable = reader_.next();
+    if (variable.kind != Token::Kind::name || !reader_.take("=")) {
+      throw Refusal(variable.offset, "expected a variable and its values, as in for (i = [0 : 3])");
+    }
+    std::vector<Value> turns = reader_.turns();
+    count_calls(turns.size());
+    const bool is_last = !reader_.take(",");
+    if (is_last) reader_.expect(")");
+    const std::size_t rest = reader_.peek().offset;
+    const Variables outer = locals_;
+    Block block{.operation = operation, .begin = postfix_.size()};
+    for (Value& turn : turns) {
+      reader_.go_to(rest);
+      locals_.insert_or_assign(variable.raw, std::move(turn));
+      join(block, is_last ? add_children(Operation::union_of, frame) : repeat(operation, frame));
+    }
+    if (turns.empty()) {
+      if (!is_last) reader_.skip_brackets();
+      reader_.skip_statement();
+    }
+    locals_ = outer;
+    return block.is_solid;
+  }
+
+  /// As a leaf of a tree that is taken away again once it is complete.
+  bool add_flat(const Arguments& call, const Affine3d& frame) {
+    const bool is_circle = call.call.raw == "circle";
+    const bool is_moved_only = frame.linear().isIdentity(1e-9) && frame.translation().z() == 0.0;
+    if (!is_flat_ || !is_moved_only || call.flag("center", 1)) refuse_profile(call.call);
+    const Vector3d size =
+        is_circle ? Vector3d(Vector3d::Constant(round_radius(call))) : vector_or_number(call.need("size", 0), 0);
+    postfix_.push_back(CsgNode::leaf(static_cast<PrimitiveIndex>(flat_.size())));
+    flat_.push_back({.is_circle = is_circle, .position = frame.translation(), .size = size.head<2>()});
+    return true;
+  }
+
+  [[noreturn]] static void refuse_profile(const Token& call) {
+    throw Refusal(call.offset, "expected a torus: a circle that is moved, and turned around wholly");
+  }
+
+  /// A circle beside the axis, turned around it; a square may leave a pinhole.
+  bool add_torus(const Arguments& call, const Affine3d& frame) {
+    if (std::exchange(is_flat_, true) || call.number("angle", 0, 360) != 360) refuse_profile(call.call);
+    const auto begin = static_cast<std::ptrdiff_t>(postfix_.size());
+    flat_.clear();
+    (void)add_children(Operation::union_of, Affine3d::Identity());
+    is_flat_ = false;
+    const std::vector<CsgNode> profile(postfix_.begin() + begin, postfix_.end());
+    postfix_.erase(postfix_.begin() + begin, postfix_.end());
+    const bool is_cut = profile.size() == 3 && profile.back() == CsgNode::inner(Operation::intersection, 3);
+    if (!(profile.size() == 1 || is_cut) || !flat_[0].is_circle) refuse_profile(call.call);
+    if (is_cut && !leaves_pinhole(flat_[1], flat_[0])) refuse_profile(call.call);
+    const Vector3d centre = flat_[0].position;
+    const double radius = flat_[0].size.x();
+    call.require(centre.x() >= radius, "a circle that is wholly to the right of the axis");
+    const Eigen::Translation3d up(0, 0, centre.y());
+    add_leaf(Torus{.major_radius = centre.x(), .minor_radius = radius}, "torus", frame * up, call.call.offset);
+    return true;
+  }
+
+  /// A solid that is there already is the same primitive again.
+  void add_leaf(const Shape& shape, std::string_view name, const Affine3d& frame, std::size_t offset) {
+    if (is_flat_) throw Refusal(offset, fmt::format("expected a circle, found '{}'", name));
+    Primitive primitive = place_solid(shape, frame, offset);
+    primitive.id = name;
+    try {
+      validate(primitive);
+    } catch (const Error& error) {
+      throw Refusal(offset, error.parts().where + ": " + error.parts().expected);
+    }
+    const auto index = static_cast<PrimitiveIndex>(primitives_.size());
+    const auto [known, is_new] = index_of_.emplace(key_of(primitive), index);
+    if (is_new) primitives_.push_back(std::move(primitive));
+    postfix_.push_back(CsgNode::leaf(known->second));
+  }
+
+  Variables globals_ = {};
+  Variables locals_ = {};  ///< of the loops around
+  Reader reader_;
+  std::map<std::string_view, std::size_t> modules_ = {};  ///< where their bodies begin
+  PrimitiveSet primitives_ = {};
+  std::map<std::vector<double>, PrimitiveIndex> index_of_ = {};
+  std::vector<CsgNode> postfix_ = {};
+  bool is_flat_ = false;  ///< within the profile of a torus
+  std::vector<FlatShape> flat_ = {};
+  std::size_t calls_ = 0;
+};
+
+}  // namespace
+
+Model read_program(std::string_view text) {
+  return Program(text).read();
+}
+
+}  // namespace cloud2csg::scad

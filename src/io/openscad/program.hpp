@@ -1,0 +1,11 @@
+#pragma once
+
+#include "cloud2csg/model.hpp"
+#include "io/openscad/terms.hpp"
+
+namespace cloud2csg::scad {
+
+/// The model that a text makes. O(n log n) @throws Refusal
+[[nodiscard]] Model read_program(std::string_view text);
+
+}  // namespace cloud2csg::scad

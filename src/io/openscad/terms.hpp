@@ -1,0 +1,120 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <exception>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The part of OpenSCAD's language that is read here: docs/openscad.md has it.
+namespace cloud2csg::scad {
+
+/// What was expected in a text, and where. Leaves this folder as an Error.
+struct Refusal : std::exception {
+  Refusal(std::size_t at, std::string what_was_expected) : offset(at), expected(std::move(what_was_expected)) {}
+
+  std::size_t offset;
+  std::string expected;
+};
+
+struct Token {
+  enum class Kind { number, name, sign, end };
+  Kind kind = Kind::end;
+  std::size_t offset = 0;
+  std::string_view raw = {};  ///< as it stands in the text
+  double number = 0;
+};
+
+/// A number, a list, or true or false.
+struct Value {
+  std::size_t offset = 0;  ///< of the term that it is of
+  double number = 0;
+  bool is_flag = false;
+  bool is_list = false;
+  std::vector<Value> items = {};
+};
+
+using Variables = std::map<std::string_view, Value>;
+
+// Throw Refusal for any other value.
+[[nodiscard]] double number_of(const Value& value);
+[[nodiscard]] std::vector<double> numbers_of(const Value& value);
+/// A list of one to three numbers, those that are missing being `rest`.
+[[nodiscard]] Eigen::Vector3d vector_of(const Value& value, double rest = 0);
+/// The same, or one number for all three.
+[[nodiscard]] Eigen::Vector3d vector_or_number(const Value& value, double rest);
+
+/// The arguments of a call, by the name or the place, 0 for the first, where the name may be missing.
+struct Arguments {
+  Token call;
+  std::vector<std::pair<std::string_view, Value>> values = {};
+
+  static constexpr std::size_t k_by_name = -1;
+  /// Null where it is not given.
+  [[nodiscard]] const Value* find(std::string_view name, std::size_t place) const;
+  /// @throws Refusal where it is not given
+  [[nodiscard]] const Value& need(std::string_view name, std::size_t place) const;
+  [[nodiscard]] double number(std::string_view name, std::size_t place, double otherwise) const;
+  [[nodiscard]] bool flag(std::string_view name, std::size_t place) const;
+  void require(bool is_right, const std::string& expected) const;
+};
+
+/// Reads a text word by word, without blanks and comments, and its terms: numbers, + - * / and brackets, lists,
+/// variables. All functions throw Refusal.
+class Reader {
+ public:
+  /// All must outlive this.
+  Reader(std::string_view text, const Variables& globals, const Variables& locals);
+
+  [[nodiscard]] const Token& peek() const { return token_; }
+  [[nodiscard]] bool at(std::string_view sign) const { return token_.raw == sign; }
+  Token next();                        ///< moves on
+  bool take(std::string_view sign);    ///< moves on if it is this sign that comes next
+  void expect(std::string_view sign);  ///< moves on, or fails
+  [[noreturn]] void fail(std::string_view expected) const;
+  /// Back or on to the word that begins there.
+  void go_to(std::size_t offset);
+  /// Past a statement: up to a semicolon, or the brace that closes its block.
+  void skip_statement();
+  /// Past the bracket that closes the one that was taken last.
+  void skip_brackets();
+
+  [[nodiscard]] Value value();
+  /// What the variable of a loop is in turn: the items of a list, or a range like [0 : 3] or [0 : 0.5 : 3].
+  [[nodiscard]] std::vector<Value> turns();
+  /// Those of a call, with their brackets, and $fn where a variable gives it.
+  [[nodiscard]] Arguments arguments(const Token& call);
+
+ private:
+  friend struct Level;
+
+  void advance();
+  void skip_blanks();
+  void take_word();
+  Value chain(std::string_view signs, Value (Reader::*operand)());
+  Value product() { return chain("*/", &Reader::factor); }
+  Value factor();
+  Value list();
+  [[nodiscard]] Value variable(const Token& name) const;
+
+  std::string_view text_;
+  const Variables& globals_;
+  const Variables& locals_;
+  std::size_t place_ = 0;
+  std::size_t read_ = 0;  ///< bytes so far, each time that they were read
+  std::size_t level_ = 0;
+  Token token_ = {};
+};
+
+/// Held while something is inside of something: bounds the stack, whatever a text holds.
+struct Level {
+  explicit Level(Reader& reader_of_it);
+  ~Level() { --reader.level_; }
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+  Reader& reader;
+};
+
+}  // namespace cloud2csg::scad
