@@ -3,8 +3,11 @@ PREFIX ?= /usr/local
 
 # make instructions RECORD=1 writes what it counts to bench/instructions.csv.
 RECORD ?=
+# make check STAGE=cells: one stage, a folder of tests/.
+STAGE ?=
+STAGES = $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/*_test.cpp)))))
 
-.PHONY: help demo test bench instructions format lint analyze reference install deb clean dependencies configure
+.PHONY: help demo test check nightly bench instructions format lint analyze reference install deb hooks clean dependencies configure
 .DEFAULT_GOAL := help
 
 help: ## What there is to make
@@ -17,6 +20,16 @@ demo: configure ## Build, and run the main job on a shipped cloud
 test: configure ## Build everything and run all tests
 	@cmake --build --preset release
 	@ctest --preset release
+
+check: ## Build and test one stage: make check STAGE=cells
+	@case " $(STAGES) " in *" $(or $(STAGE),none) "*) ;; \
+	  *) echo "make check STAGE=...: one of $(STAGES)" >&2; exit 2;; esac
+	@$(MAKE) --no-print-directory configure
+	@cmake --build --preset release --target test_$(STAGE)
+	@ctest --preset release -R '^$(STAGE)\.'
+
+nightly: configure ## What takes hours: the analyzer, many cases of every property, mutants, coverage, packages
+	@scripts/nightly.sh
 
 bench: configure ## Print the figures of speed and recovery (docs/performance.md explains them)
 	@cmake --build --preset release
@@ -33,7 +46,7 @@ format: ## Format all sources in place
 	@scripts/install_dependencies.sh lint
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
 
-lint: configure ## clang-format and clang-tidy; any finding is an error
+lint: configure ## clang-format, clang-tidy, sizes of files; any finding is an error
 	@scripts/install_dependencies.sh lint
 	@scripts/lint.sh
 
@@ -49,6 +62,10 @@ install: configure ## Install program, library and headers under PREFIX
 deb: configure ## Packages for Debian: the program, and the library
 	@cmake --build --preset release --target all
 	@cpack --config build/release/CPackConfig.cmake -B build/packages
+
+hooks: ## Let git format the C++ files of each commit (scripts/pre-commit)
+	@scripts/install_dependencies.sh lint
+	@git config core.hooksPath scripts
 
 clean: ## Remove what was built
 	@rm -rf build out

@@ -1,4 +1,4 @@
-#include "cloud2csg/brep.hpp"
+#include "cloud2csg/advanced/brep.hpp"
 
 #include <fmt/format.h>
 

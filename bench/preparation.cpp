@@ -18,7 +18,6 @@
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"
-#include "cloud2csg/scan.hpp"
 #include "core/base/random.hpp"
 
 namespace {

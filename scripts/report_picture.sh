@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes docs/pictures/report.png: a report on model M0, as a browser shows it. Needs a release build with the page, and
+# Makes docs/images/report.png: a report on model M0, as a browser shows it. Needs a release build with the page, and
 # chromium.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,5 +10,5 @@ program=build/release/cloud2csg
 "$program" extract "$folder/m0.ply" --primitives data/models/m0.json \
   -o "$folder/m0.html" -o "$folder/m0.scad" --quiet
 mkdir -p docs/pictures
-node viewer/scripts/picture.mjs build/release/src/viewer "$folder/m0.html" docs/pictures/report.png
-ls -l docs/pictures/report.png
+node viewer/scripts/picture.mjs build/release/src/viewer "$folder/m0.html" docs/images/report.png
+ls -l docs/images/report.png

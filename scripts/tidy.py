@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
 """clang-tidy over sources, on all cores.
 
-Most of its time goes into the headers that sources share, so the sources of a folder are looked at together, as one that
-includes them all; those that cannot be compiled together (names without linkage that meet) are taken apart. What passed
-is not looked at again until something that it is made of changes: any file that its compilation reads, its flags, the
-checks or clang-tidy itself. What passed is kept in ~/.cache/cloud2csg-tidy (or under XDG_CACHE_HOME), a file of size
-zero each.
+Most of its time goes into the headers that sources share. So its checks see our own code only (own_code.cpp, a plugin), and the
+sources of a folder are looked at together, as one that includes them all; those that cannot be compiled together (names
+without linkage that meet) are taken apart. What passed is not looked at again until something that it is made of
+changes: any file that its compilation reads, its flags, the checks or clang-tidy itself. ~/.cache/cloud2csg-tidy (or that folder
+under XDG_CACHE_HOME) has an empty file for each unit that passed.
 
-tidy.py [--each] [--seconds N] BUILD_FOLDER SOURCE...    exit status 1 when anything was found
-  --each       every source by itself, with the checks that follow paths through functions (clang-analyzer-*), which look
-               at nothing but main files: about five times slower
-  --seconds N  begin nothing after so long; what is named first is looked at first
+tidy.py [--each] BUILD_FOLDER SOURCE...    exit status 1 when anything was found
+  --each   every source by itself, with the checks that follow paths through functions (clang-analyzer-*), which look at
+           nothing but main files: about thirty times slower
 """
 import argparse
 import collections
@@ -34,6 +33,17 @@ def run(command, **options):
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False, **options)
 
 
+def build_plugin(folder):
+    """own_code.cpp, compiled against the headers of clang-tidy."""
+    source, plugin = pathlib.Path(__file__).with_name("own_code.cpp"), folder / "own_code.so"
+    if not plugin.exists() or plugin.stat().st_mtime < source.stat().st_mtime:
+        headers = run(["llvm-config", "--includedir"]).stdout.decode().strip()
+        built = run(["c++", "-std=c++17", "-O1", "-fPIC", "-shared", "-fno-rtti", "-isystem", headers, source, "-o", plugin])
+        if built.returncode != 0:
+            sys.exit(f"tidy: {source} does not compile:\n{built.stderr.decode()}")
+    return plugin
+
+
 def flags_of(command):
     """The compiler's arguments without the compiler (or ccache before it), the input and the output."""
     words = shlex.split(command)
@@ -54,6 +64,7 @@ class Lint:
         self.root = os.getcwd()
         self.units = pathlib.Path(build, "tidy").resolve()
         self.units.mkdir(exist_ok=True)
+        self.plugin = build_plugin(self.units)
         self.checks = [] if each else ["-checks=-clang-analyzer-*,-bugprone-suspicious-include,-bugprone-exception-escape"]
         self.most_sources = 1 if each else MOST_SOURCES
         self.passed = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache", "cloud2csg-tidy")
@@ -130,47 +141,36 @@ class Lint:
         if len(unit.sources) > 1:
             flags.append("-Wno-shadow")
         config = f"--config-file={self.root}/.clang-tidy"
-        result = run(["clang-tidy", "-quiet", config, *self.checks, main, "--", *flags], cwd=unit.directory)
+        result = run(["clang-tidy", "-quiet", config, f"--load={self.plugin}", *self.checks, main, "--", *flags],
+                     cwd=unit.directory)
         if result.returncode == 0 and key:
             (self.passed / key).touch()
         return int(result.returncode != 0), 0, (result.stdout + result.stderr).decode()
 
 
-def main(build, sources, each, seconds):
-    wanted = {str(pathlib.Path(source).resolve()): place for place, source in enumerate(sources)}
+def main(build, sources, each):
+    wanted = {str(pathlib.Path(source).resolve()) for source in sources}
     commands = json.loads(pathlib.Path(build, "compile_commands.json").read_text())
     entries = {entry["file"]: entry for entry in commands if entry["file"] in wanted}
-    missing = sorted(wanted.keys() - entries.keys())
+    missing = sorted(wanted - entries.keys())
     for source in missing:
         print(f"tidy: {source} is not compiled in {build}", file=sys.stderr)
     lint = Lint(build, each)
-    units = sorted(lint.units_of(entries.values()), key=lambda unit: min(wanted[source] for source in unit.sources))
-    end = time.monotonic() + seconds
-
-    def check_in_time(unit):
-        return lint.check(unit) if time.monotonic() < end else None
-
-    known, left_out, failed = 0, 0, len(missing)
+    known, failed = 0, len(missing)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for unit, outcome in zip(units, pool.map(check_in_time, units)):
-            if outcome is None:
-                left_out += len(unit.sources)
-                continue
-            with_findings, were_known, words = outcome
+        for with_findings, were_known, words in pool.map(lint.check, lint.units_of(entries.values())):
             known += were_known
             failed += with_findings
             if with_findings:
                 print(words, flush=True)
-    print(f"tidy: {len(entries)} sources, {known} of them known to pass, {left_out} left out for lack of time, "
-          f"{failed} groups with findings")
+    print(f"tidy: {len(entries)} sources, {known} of them known to pass, {failed} groups with findings")
     return 1 if failed else 0
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--each", action="store_true", help="see above")
-    parser.add_argument("--seconds", type=float, default=float("inf"), help="see above")
     parser.add_argument("build")
     parser.add_argument("sources", nargs="+")
     arguments = parser.parse_args()
-    sys.exit(main(arguments.build, arguments.sources, arguments.each, arguments.seconds))
+    sys.exit(main(arguments.build, arguments.sources, arguments.each))

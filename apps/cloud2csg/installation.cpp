@@ -10,8 +10,8 @@
 #include <system_error>
 
 #include "bench/experiment/paper.hpp"
-#include "cloud2csg/brep.hpp"
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/advanced/brep.hpp"
+#include "cloud2csg/view.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/brep.hpp"
+#include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/atomic_file.hpp"
 #include "io/formats/formats.hpp"

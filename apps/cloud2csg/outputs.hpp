@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/export.hpp"
-#include "cloud2csg/picture.hpp"
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "core/base/output_set.hpp"
 
 namespace cloud2csg::app {

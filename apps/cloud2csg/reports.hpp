@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "core/base/output_set.hpp"
 
 namespace cloud2csg::app {

@@ -1,5 +1,3 @@
-#include "cloud2csg/scan.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -7,6 +5,7 @@
 
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/point_cloud.hpp"
+#include "cloud2csg/sample.hpp"
 #include "command.hpp"
 #include "core/base/output_set.hpp"
 #include "io/formats/formats.hpp"

@@ -1,3 +1,5 @@
+#include "cloud2csg/view.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -6,7 +8,6 @@
 
 #include "browser.hpp"
 #include "cloud2csg/input.hpp"
-#include "cloud2csg/report.hpp"
 #include "command.hpp"
 #include "io/formats/formats.hpp"
 #include "page_server.hpp"

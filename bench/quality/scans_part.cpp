@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "cloud2csg/scan.hpp"
+#include "cloud2csg/sample.hpp"
 #include "quality/parts.hpp"
 #include "quality/random_model.hpp"
 

@@ -1,8 +1,5 @@
 // From a cloud to an OpenSCAD file, and to any other that cloud2csg writes.
-#include <cloud2csg/error.hpp>
-#include <cloud2csg/export.hpp>
-#include <cloud2csg/input.hpp>
-#include <cloud2csg/reconstruct.hpp>
+#include <cloud2csg/cloud2csg.hpp>
 #include <iostream>
 
 int main(int argc, char** argv) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "cloud2csg/brep.hpp"
+#include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/model.hpp"

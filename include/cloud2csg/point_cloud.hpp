@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "cloud2csg/colour.hpp"
+#include "cloud2csg/advanced/colour.hpp"
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/run_context.hpp"
 

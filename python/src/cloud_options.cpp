@@ -6,7 +6,6 @@
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/sample.hpp"
-#include "cloud2csg/scan.hpp"
 #include "option_class.hpp"
 
 namespace cloud2csg::python {

@@ -7,7 +7,7 @@
 
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/model.hpp"
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "run_work.hpp"
 
 namespace cloud2csg::python {

@@ -11,7 +11,7 @@
 #include "cloud2csg/advanced/simplify.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
-#include "cloud2csg/picture.hpp"
+#include "cloud2csg/view.hpp"
 #include "field_arrays.hpp"
 #include "io/formats/formats.hpp"
 #include "model.hpp"

@@ -1,7 +1,6 @@
 #include "bindings.hpp"
 #include "cloud2csg/export.hpp"
-#include "cloud2csg/picture.hpp"
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "option_class.hpp"
 
 namespace cloud2csg::python {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "run_work.hpp"
 
 namespace cloud2csg::python {

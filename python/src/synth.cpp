@@ -7,7 +7,6 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/sample.hpp"
-#include "cloud2csg/scan.hpp"
 #include "model.hpp"
 #include "option_class.hpp"
 

@@ -37,11 +37,6 @@ class Known : public ProgramTest {
     EXPECT_EQ(run({"sample", truth, "-n", "12000", "--noise", "0.004", "-o", path("c.ply")}).status, 0);
     return path("c.ply");
   }
-  double iou(const std::string& truth, const std::string& result) {
-    const Outcome compared = run({"compare", truth, result, "--json", "--resolution", "96", "--samples", "2000"});
-    EXPECT_EQ(compared.status, 0) << compared.err;
-    return json::parse(compared.out)["intersection_over_union"].get<double>();
-  }
 };
 
 TEST_F(Known, DetectWritesHowManyPointsLieOnEachSolid) {

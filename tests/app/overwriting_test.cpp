@@ -1,9 +1,8 @@
 #include "app/program.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
-#include "cloud2csg/picture.hpp"
 #include "cloud2csg/point_cloud.hpp"
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "io/formats/formats.hpp"
 
 namespace cloud2csg::test {

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 extern char** environ;
@@ -102,6 +103,12 @@ RunningProgram ProgramTest::start(const std::vector<std::string>& arguments, con
 
 Outcome ProgramTest::run(const std::vector<std::string>& arguments, const std::string& shell_setup) {
   return start(arguments, shell_setup).wait();
+}
+
+double ProgramTest::iou(const std::string& truth, const std::string& result) {
+  const Outcome compared = run({"compare", truth, result, "--json", "--resolution", "96", "--samples", "2000"});
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  return nlohmann::json::parse(compared.out)["intersection_over_union"].get<double>();
 }
 
 std::vector<std::string> ProgramTest::files() const {

@@ -54,6 +54,9 @@ class ProgramTest : public ::testing::Test {
                                      const std::string& error_file = "");
   [[nodiscard]] Outcome run(const std::vector<std::string>& arguments, const std::string& shell_setup = "true");
 
+  /// Intersection over union of two model files, by `compare`.
+  [[nodiscard]] double iou(const std::string& truth, const std::string& result);
+
   /// Names of the files in the test's folder, ascending, without those of the test itself.
   [[nodiscard]] std::vector<std::string> files() const;
 

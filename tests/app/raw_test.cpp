@@ -24,11 +24,6 @@ class Raw : public ProgramTest {
       "tree": {"op": "difference", "children": [
         {"op": "union", "children": [{"primitive": "block"}, {"primitive": "boss"}]}, {"primitive": "bore"}]}})");
   }
-  double iou(const std::string& truth, const std::string& result) {
-    const Outcome compared = run({"compare", truth, result, "--json", "--resolution", "96", "--samples", "2000"});
-    EXPECT_EQ(compared.status, 0) << compared.err;
-    return json::parse(compared.out)["intersection_over_union"].get<double>();
-  }
 };
 
 TEST_F(Raw, ExtractFindsThePrimitivesOfACloud) {

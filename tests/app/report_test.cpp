@@ -1,5 +1,3 @@
-#include "cloud2csg/report.hpp"
-
 #include <arpa/inet.h>
 #include <httplib.h>
 #include <sys/socket.h>
@@ -11,6 +9,7 @@
 #include <thread>
 
 #include "app/program.hpp"
+#include "cloud2csg/view.hpp"
 
 namespace cloud2csg::test {
 namespace {

@@ -71,7 +71,7 @@ RC_GTEST_PROP(CountLines, IsThePlainRuleAtEachPlaceOfAnyScene, (std::uint64_t se
   const ReachingPrimitives reaching = reaching_primitives(scene.primitives, box, options);
   const SightLines lines = find_sight_lines(cloud, spatial_order(cloud.positions, box), reaching, options, {});
   RC_ASSERT(lines.count <= options.sight_lines);
-  if (lines.count == 0) return;
+  RC_PRE(lines.count > 0U);
   for (const int threads : {1, 2, 3}) {
     std::map<Cell, std::uint64_t> counts;
     for (const Crossings& share : count_lines(lines, reaching, options.tolerances, {.threads = threads})) {

@@ -69,14 +69,16 @@ TEST(Read, EveryTruncationIsRefusedOrStillACloud) {
 TEST(Read, EveryFlippedByteIsRefusedOrStillACloud) {
   const TemporaryFolder folder;
   for (const auto& [name, bytes] : valid_files()) {
+    std::size_t refused = 0;
     for (std::size_t at = 0; at < bytes.size(); ++at) {
       for (const char replacement : {'9', '\xff'}) {
         std::string changed = bytes;
         changed[at] = replacement;
         put_file(folder / name, changed);
-        (void)survives(folder / name);
+        if (!survives(folder / name)) ++refused;
       }
     }
+    EXPECT_GT(refused, 0U) << name;
   }
 }
 

@@ -101,7 +101,7 @@ RC_GTEST_PROP(MinimalSurfaces, FindTheConeOfThreePoints, ()) {
   RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
   const Surface cone = random_surface(SurfaceType::cone, random);
   const auto points = points_on<3>(cone, random);
-  if (!are_spread(points) || !rulings_are_spread(cone, points)) return;
+  RC_PRE(are_spread(points) && rulings_are_spread(cone, points));
   expect_through(cone_through(points), cone, random);
 }
 

@@ -83,6 +83,7 @@ TEST(DetectSurfaces, TakesSlenderConesForOneSurfaceEach) {
 TEST(DetectSurfaces, SaysHowSureTheDirectionOfAShortPieceIs) {
   const test::Part plate = test::plate_with_holes();
   const Detection detection = detect(cloud_of(plate, 0.02, 20'000), 0.02);
+  ASSERT_EQ(detection.surfaces.size(), 9U);  // six faces, three bores
   for (const DetectedSurface& found : detection.surfaces) {
     const double sine = found.surface.axis.cwiseAbs().maxCoeff();
     const double off_deg = std::acos(std::min(sine, 1.0)) * 180 / std::numbers::pi;

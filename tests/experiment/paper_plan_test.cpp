@@ -23,6 +23,7 @@ TEST(PaperPlan, HasEachRunOnce) {
 
 TEST(PaperPlan, ModesTakeTurns) {
   const std::vector<RunName> plan = plan_runs({.models = {"a"}, .repeats = 2});
+  ASSERT_EQ(plan.size(), 2U * 2 * 6);
   for (std::size_t i = 0; i < plan.size(); ++i) EXPECT_EQ(plan[i].mode, paper_modes()[i % 6].name) << i;
 }
 

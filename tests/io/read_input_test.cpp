@@ -10,6 +10,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/input.hpp"
 #include "io/meshes/mesh_faults.hpp"
+#include "support/warnings.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -38,10 +39,6 @@ TriangleMesh both(TriangleMesh mesh, const TriangleMesh& other, const Vector3d& 
   for (std::size_t i = 0; i < other.vertices.size(); ++i) mesh.vertices.push_back(other.vertices[i] + offset);
   for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
   return mesh;
-}
-
-bool mentions(const std::vector<std::string>& warnings, std::string_view words) {
-  return std::ranges::any_of(warnings, [&](const std::string& w) { return w.find(words) != std::string::npos; });
 }
 
 /// How many points have a normal that leads away from the middle of the unit cube, along an axis.
@@ -79,7 +76,7 @@ TEST(MendMesh, LeavesASoundMeshAlone) {
 
 TEST(MendMesh, TurnsAMeshThatIsInsideOut) {
   const MendedMesh mended = mend_mesh(turned(cube()));
-  EXPECT_TRUE(mentions(mended.warnings, "inside out"));
+  EXPECT_TRUE(test::mentions(mended.warnings, "inside out"));
   EXPECT_DOUBLE_EQ(volume_of(mended.mesh), 1.0);
 }
 
@@ -93,7 +90,7 @@ TEST(MendMesh, TellsWhereItIsOpen) {
   TriangleMesh mesh = cube();
   mesh.triangles.erase(mesh.triangles.begin() + 2, mesh.triangles.begin() + 4);
   const MendedMesh mended = mend_mesh(mesh);
-  EXPECT_TRUE(mentions(mended.warnings, "open: 4 edges"));
+  EXPECT_TRUE(test::mentions(mended.warnings, "open: 4 edges"));
   EXPECT_EQ(find_edge_faults(mesh).open.place.z(), 1.0);
 }
 
@@ -104,8 +101,8 @@ TEST(MendMesh, TurnsTrianglesThatDisagree) {
       std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
     }
     const MendedMesh mended = mend_mesh(mesh);
-    EXPECT_TRUE(mentions(mended.warnings, "disagreed with their neighbours")) << every;
-    EXPECT_FALSE(mentions(mended.warnings, "which side is outside at")) << every;
+    EXPECT_TRUE(test::mentions(mended.warnings, "disagreed with their neighbours")) << every;
+    EXPECT_FALSE(test::mentions(mended.warnings, "which side is outside at")) << every;
     EXPECT_DOUBLE_EQ(volume_of(mended.mesh), 1.0) << every;
     EXPECT_TRUE(is_watertight(mended.mesh)) << every;
   }
@@ -113,7 +110,7 @@ TEST(MendMesh, TurnsTrianglesThatDisagree) {
 
 TEST(MendMesh, TurnsPiecesThatAreInsideOut) {
   const MendedMesh crossing = mend_mesh(both(cube(3.0), turned(cube()), {2.5, 1.0, 1.0}));
-  EXPECT_TRUE(mentions(crossing.warnings, "inside out, and not within others, were turned: 1"));
+  EXPECT_TRUE(test::mentions(crossing.warnings, "inside out, and not within others, were turned: 1"));
   EXPECT_DOUBLE_EQ(volume_of(crossing.mesh), 28.0);
   const MendedMesh hollow = mend_mesh(turned(both(cube(3.0), turned(cube()), Vector3d::Ones())));
   EXPECT_DOUBLE_EQ(volume_of(hollow.mesh), 26.0) << "a cavity stays one when all is turned";
@@ -134,7 +131,7 @@ TEST(MendMesh, LeavesOpenPiecesAsTheyAre) {
 TEST(MendMesh, TellsOfSelfIntersectionsButNotOfTouching) {
   const TriangleMesh crossing = both(cube(), cube(), {0.3, 0.2, 0.6});
   EXPECT_GT(find_self_intersections(crossing).count, 0U);
-  EXPECT_TRUE(mentions(mend_mesh(crossing).warnings, "intersects itself"));
+  EXPECT_TRUE(test::mentions(mend_mesh(crossing).warnings, "intersects itself"));
   EXPECT_EQ(find_self_intersections(both(cube(), cube(), {1.0, 0.0, 0.0})).count, 0U);
   EXPECT_EQ(find_self_intersections(both(cube(), cube(), {0.25, 0.25, 1.0})).count, 0U);
 }
@@ -145,8 +142,8 @@ TEST(MendMesh, LeavesOutRepeatedAndFlatTriangles) {
   mesh.triangles.push_back({0, 1, 1});
   const MendedMesh mended = mend_mesh(mesh);
   EXPECT_EQ(mended.mesh.triangles, cube().triangles);
-  EXPECT_TRUE(mentions(mended.warnings, "1 triangles of the mesh have no area"));
-  EXPECT_TRUE(mentions(mended.warnings, "1 triangles of the mesh lie on others"));
+  EXPECT_TRUE(test::mentions(mended.warnings, "1 triangles of the mesh have no area"));
+  EXPECT_TRUE(test::mentions(mended.warnings, "1 triangles of the mesh lie on others"));
 }
 
 TEST(MendMesh, UnderstandsSurfacesGivenFromBothSides) {
@@ -190,7 +187,7 @@ TEST(ReadCloudOrMesh, WarnsOfMeshesThatAreTooFarAway) {
     for (const auto& [a, b, c] : mesh.triangles) text << "3 " << a << ' ' << b << ' ' << c << '\n';
     text.close();
     const Input input = read_cloud_or_mesh(folder / "far.off", {.mesh_points = 100});
-    EXPECT_EQ(mentions(input.warnings, "read in steps of 0.12"), distance == 1e6) << distance;
+    EXPECT_EQ(test::mentions(input.warnings, "read in steps of 0.12"), distance == 1e6) << distance;
   }
 }
 
@@ -208,7 +205,7 @@ TEST(ReadCloudOrMesh, TellsPlyMeshesFromPlyClouds) {
   const Input mesh = read_cloud_or_mesh(folder / "mesh.ply", {.mesh_points = 10});
   EXPECT_TRUE(mesh.mesh.has_value());
   EXPECT_EQ(mesh.cloud.size(), 10U);
-  EXPECT_TRUE(mentions(mesh.warnings, "open: 3 edges"));
+  EXPECT_TRUE(test::mentions(mesh.warnings, "open: 3 edges"));
 }
 
 /// A .glb with one triangle in a part that is moved by (10, 0, 0).
@@ -245,7 +242,7 @@ TEST(ReadCloudOrMesh, LeavesInvalidPointsOutAndCountsThem) {
   const Input input = read_cloud_or_mesh(folder / "a.xyz");
   EXPECT_EQ(input.cloud.positions.x, (std::vector<double>{1, 7, 2}));
   EXPECT_EQ(input.cloud.normals.z, (std::vector<double>{1, 0, 0}));
-  EXPECT_TRUE(mentions(input.warnings, "3 of 6 points are left out"));
+  EXPECT_TRUE(test::mentions(input.warnings, "3 of 6 points are left out"));
 }
 
 TEST(ReadCloudOrMesh, LeavesNormalsOutThatAreMostlyInvalid) {
@@ -254,7 +251,7 @@ TEST(ReadCloudOrMesh, LeavesNormalsOutThatAreMostlyInvalid) {
   const Input input = read_cloud_or_mesh(folder / "a.xyz");
   EXPECT_EQ(input.cloud.size(), 3U);
   EXPECT_FALSE(input.cloud.has_normals());
-  EXPECT_TRUE(mentions(input.warnings, "2 normals"));
+  EXPECT_TRUE(test::mentions(input.warnings, "2 normals"));
 }
 
 TEST(ReadCloudOrMesh, RefusesWhatHasNoValidPointsOrAnotherEnding) {

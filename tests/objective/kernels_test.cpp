@@ -8,16 +8,14 @@
 #include <string>
 
 #include "paper/objective/rank_kernels.hpp"
+#include "support/field_block.hpp"
 #include "support/forced_target.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {
 namespace {
 
-template <class Real>
-struct alignas(64) Column {
-  std::array<Real, k_block_points> values;
-};
+using test::Column;
 
 /// Few different magnitudes, so that there are ties; zeros of both signs, tiny and huge ones.
 template <class Real>
@@ -174,24 +172,8 @@ TEST(KeyLayout, HasRoomForEveryRank) {
 
 /// A field, normals and the true angle between them.
 template <class Real>
-struct Block {
-  BlockField<Real> field;
-  std::array<Column<Real>, 3> normal_columns;
+struct Block : test::FieldBlock<Real> {
   std::array<double, k_block_points> angles;
-
-  [[nodiscard]] BlockNormals<Real> normals() const {
-    return {normal_columns[0].values.data(), normal_columns[1].values.data(), normal_columns[2].values.data()};
-  }
-  void set_normal(std::size_t i, const Eigen::Vector3d& normal) {
-    for (int axis = 0; axis < 3; ++axis) {
-      normal_columns[static_cast<std::size_t>(axis)].values[i] = static_cast<Real>(normal[axis]);
-    }
-  }
-  void set_gradient(std::size_t i, const Eigen::Vector3d& slope) {
-    field.gradient_x[i] = static_cast<Real>(slope.x());
-    field.gradient_y[i] = static_cast<Real>(slope.y());
-    field.gradient_z[i] = static_cast<Real>(slope.z());
-  }
 };
 
 double log_uniform(double low, double high, RandomStream& random) {

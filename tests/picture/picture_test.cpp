@@ -1,5 +1,3 @@
-#include "cloud2csg/picture.hpp"
-
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -9,6 +7,7 @@
 #include <string>
 
 #include "cloud2csg/error.hpp"
+#include "cloud2csg/view.hpp"
 #include "core/base/atomic_file.hpp"
 
 namespace cloud2csg {

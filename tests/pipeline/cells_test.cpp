@@ -12,6 +12,7 @@
 #include "cloud2csg/extract.hpp"
 #include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"
+#include "support/warnings.hpp"
 
 /// Extraction by cells: on its own, and as what is tried first.
 namespace cloud2csg {
@@ -138,19 +139,13 @@ class MissingPrimitive : public ::testing::TestWithParam<Incomplete> {
 INSTANTIATE_TEST_SUITE_P(Models, MissingPrimitive,
                          ::testing::Values(Incomplete{"m1", "Box_0", true}, Incomplete{"m3", "housing", true}));
 
-bool warns_of_merge(const Extraction& result) {
-  return std::ranges::any_of(result.statistics.warnings, [](const std::string& warning) {
-    return warning.find("did not merge well") != std::string::npos;
-  });
-}
-
 TEST_P(MissingPrimitive, LeadsToTheSearchAndTheTreeThatIsNoWorse) {
   const Extraction cells = extract({.strategy = Strategy::cells});
   const Extraction search = extract({.cell_trust = test::k_never_by_cells});
   const Extraction automatic = extract({});
   ASSERT_TRUE(cells.statistics.cells.has_value());
   EXPECT_FALSE(search.statistics.cells.has_value());
-  EXPECT_TRUE(warns_of_merge(search));
+  EXPECT_TRUE(test::mentions(search.statistics.warnings, "did not merge well"));
   EXPECT_GT(cells.statistics.cells->contradicted_points, 0.03 * cells.statistics.cells->speaking_points);
   EXPECT_EQ(cells.statistics.fit.objective >= search.statistics.fit.objective, GetParam().cells_are_taken);
   const Extraction& better = GetParam().cells_are_taken ? cells : search;

@@ -11,6 +11,7 @@
 #include "cloud2csg/reconstruct.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/append.hpp"
+#include "pipeline/reconstructed.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
 
@@ -62,19 +63,6 @@ Model box_and(const Primitive& other) {
           .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
 }
 
-double iou(const Extraction& result, const Model& truth) {
-  const Points places = test::lattice(test::bounds_of_all(truth.primitives), 50);
-  const std::vector<double> in_truth = implicit_value(*truth.tree, truth.primitives, places);
-  const std::vector<double> in_result = implicit_value(result.tree(), result.model.primitives, places);
-  std::size_t both = 0;
-  std::size_t either = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    both += in_truth[i] < 0 && in_result[i] < 0 ? 1U : 0U;
-    either += in_truth[i] < 0 || in_result[i] < 0 ? 1U : 0U;
-  }
-  return static_cast<double>(both) / static_cast<double>(either);
-}
-
 TEST(DoubtfulClouds, APlaneIsRefusedOrDoubted) {
   EXPECT_TRUE(ending_of(sheet([](double, double) { return 0.0; })).is_doubted());
 }
@@ -94,7 +82,7 @@ TEST(DoubtfulClouds, TwoObjectsAreBothFound) {
   const Model truth = box_and(test::placed("ball", Sphere{0.7}, {3.5, 0, 0}));
   const Ending ending = ending_of(points_of(truth, 12'000));
   ASSERT_EQ(ending.refusal, "");
-  EXPECT_GT(iou(ending.result, truth), 0.98);
+  EXPECT_GT(test::iou(ending.result, truth), 0.98);
   EXPECT_EQ(leaf_count(ending.result.tree()), 2U);
 }
 
@@ -105,7 +93,7 @@ TEST(DoubtfulClouds, HalfOfThePointsMayBeOutliers) {
   for (int i = 0; i < 12'000; ++i) cloud.positions.push_back(test::random_within(2, random));
   const Ending ending = ending_of(cloud);
   ASSERT_EQ(ending.refusal, "");
-  EXPECT_GT(iou(ending.result, truth), 0.95);
+  EXPECT_GT(test::iou(ending.result, truth), 0.95);
   EXPECT_FALSE(ending.warnings.empty());
 }
 
@@ -115,14 +103,14 @@ TEST(DoubtfulClouds, CoordinatesMayBeGeoreferenced) {
   for (Primitive& primitive : truth.primitives) primitive.pose.position += place;
   const Ending ending = ending_of(points_of(truth, 12'000));
   ASSERT_EQ(ending.refusal, "");
-  EXPECT_GT(iou(ending.result, truth), 0.98);
+  EXPECT_GT(test::iou(ending.result, truth), 0.98);
   EXPECT_EQ(leaf_count(ending.result.tree()), 2U);
 }
 
 TEST(DoubtfulClouds, AHundredPointsGiveABoxOrARefusal) {
   const Model truth{.primitives = {test::placed("box", Box{{2, 1.5, 1}}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
   const Ending ending = ending_of(points_of(truth, 100));
-  EXPECT_TRUE(ending.is_doubted() || iou(ending.result, truth) > 0.9);
+  EXPECT_TRUE(ending.is_doubted() || test::iou(ending.result, truth) > 0.9);
 }
 
 TEST(DoubtfulClouds, AHoleLargerThanAFaceIsToldOf) {

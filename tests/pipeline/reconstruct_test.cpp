@@ -12,10 +12,12 @@
 
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/scan.hpp"
+#include "cloud2csg/sample.hpp"
 #include "paper/objective/fit.hpp"
+#include "pipeline/reconstructed.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
+#include "support/warnings.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -34,25 +36,11 @@ PointCloud raw_cloud(const Model& model, double noise, std::size_t count = 20'00
   return sample_surface(*model.tree, model.primitives, {.count = count, .noise = noise, .seed = 5});
 }
 
-/// Intersection over union by membership on a lattice.
-double iou(const Extraction& result, const Model& truth) {
-  const Points places = test::lattice(test::bounds_of_all(truth.primitives), 50);
-  const std::vector<double> in_truth = implicit_value(*truth.tree, truth.primitives, places);
-  const std::vector<double> in_result = implicit_value(result.tree(), result.model.primitives, places);
-  std::size_t both = 0;
-  std::size_t either = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    both += in_truth[i] < 0 && in_result[i] < 0 ? 1U : 0U;
-    either += in_truth[i] < 0 || in_result[i] < 0 ? 1U : 0U;
-  }
-  return static_cast<double>(both) / static_cast<double>(either);
-}
-
 TEST(Reconstruct, FindsThePlateWithItsHolesAndBoss) {
   const Model truth = plate();
   for (const double noise : {0.0, 0.008}) {
     const Extraction result = reconstruct(raw_cloud(truth, noise));
-    EXPECT_GT(iou(result, truth), 0.99);
+    EXPECT_GT(test::iou(result, truth), 0.99);
     EXPECT_EQ(leaf_count(result.tree()), 4U);
     ASSERT_TRUE(result.statistics.finding);
     EXPECT_EQ(std::ranges::count(result.statistics.finding->surfaces, SurfaceType::plane), 7);
@@ -78,16 +66,11 @@ TEST(Reconstruct, ItsStatisticsListWhatWasMadeRegular) {
   EXPECT_EQ(shift, json["largest_shift"].get<double>());
 }
 
-bool has_warning(const Extraction& result, const std::string& part) {
-  return std::ranges::any_of(result.statistics.warnings,
-                             [&part](const std::string& warning) { return warning.find(part) != std::string::npos; });
-}
-
 /// A hole in the cloud that is as large as a face: the user is told of it.
 TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
   const Model truth{.primitives = {test::placed("block", Box{{4, 3, 3}}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
   const PointCloud whole = raw_cloud(truth, 0.0);
-  EXPECT_FALSE(has_warning(reconstruct(whole), "no points near"));
+  EXPECT_FALSE(test::mentions(reconstruct(whole).statistics.warnings, "no points near"));
   PointCloud open;
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (whole.positions.z[i] > 1.499) continue;  // the top
@@ -95,13 +78,13 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
     open.normals.push_back(whole.normals[i]);
   }
   const Extraction result = reconstruct(open, {.close_unseen = false});
-  EXPECT_GT(iou(result, truth), 0.9);
-  EXPECT_TRUE(has_warning(result, "no points near"));
-  EXPECT_FALSE(has_warning(result, "closed by a plane"));
+  EXPECT_GT(test::iou(result, truth), 0.9);
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "no points near"));
+  EXPECT_FALSE(test::mentions(result.statistics.warnings, "closed by a plane"));
   const Extraction closed = reconstruct(open);
-  EXPECT_GT(iou(closed, truth), 0.99);
-  EXPECT_TRUE(has_warning(closed, "closed by a plane"));
-  EXPECT_FALSE(has_warning(closed, "no points near"));
+  EXPECT_GT(test::iou(closed, truth), 0.99);
+  EXPECT_TRUE(test::mentions(closed.statistics.warnings, "closed by a plane"));
+  EXPECT_FALSE(test::mentions(closed.statistics.warnings, "no points near"));
 }
 
 /// Its ground is not seen, nor are parts of its holes.
@@ -109,8 +92,8 @@ TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
   const Model truth = plate();
   const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.on_table = true, .count = 60'000});
   const Extraction result = reconstruct(scan);
-  EXPECT_GT(iou(result, truth), 0.97);
-  EXPECT_TRUE(has_warning(result, "closed by a plane"));
+  EXPECT_GT(test::iou(result, truth), 0.97);
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "closed by a plane"));
   EXPECT_GT(result.statistics.finding->added_points, 5000U);
 }
 
@@ -122,10 +105,10 @@ TEST(Reconstruct, TakesTheWallsOfADeepBoreToGoOn) {
   const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.count = 60'000});
   const Extraction result = reconstruct(scan);
   EXPECT_EQ(leaf_count(result.tree()), 2U);
-  EXPECT_GT(iou(result, truth), 0.97);
-  EXPECT_TRUE(has_warning(result, "no sensor saw far into 1 of the holes"));
+  EXPECT_GT(test::iou(result, truth), 0.97);
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "no sensor saw far into 1 of the holes"));
   EXPECT_GT(result.statistics.finding->added_points, 500U);
-  EXPECT_LT(iou(reconstruct(scan, {.close_unseen = false}), truth), 0.95);
+  EXPECT_LT(test::iou(reconstruct(scan, {.close_unseen = false}), truth), 0.95);
 }
 
 /// Coaxial holes with air between them, which sensors saw through.
@@ -138,8 +121,8 @@ TEST(Reconstruct, TakesHolesOfTwoEarsForNoBore) {
   truth.primitives[3].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
   truth.tree = parse_tree("(base | ear | other) - pin", truth.primitives);
   const Extraction result = reconstruct(scan_model(*truth.tree, truth.primitives, {.count = 60'000}));
-  EXPECT_GT(iou(result, truth), 0.98);
-  EXPECT_FALSE(has_warning(result, "no sensor saw"));
+  EXPECT_GT(test::iou(result, truth), 0.98);
+  EXPECT_FALSE(test::mentions(result.statistics.warnings, "no sensor saw"));
   EXPECT_EQ(result.statistics.finding->added_points, 0U);
 }
 
@@ -155,8 +138,8 @@ TEST(Reconstruct, NamesWhatItLeavesOut) {
   }
   const Extraction result = reconstruct(cloud);
   EXPECT_EQ(leaf_count(result.tree()), 1U);
-  EXPECT_TRUE(has_warning(result, "1 are not on the result, the largest a sphere of"));
-  EXPECT_FALSE(has_warning(reconstruct(raw_cloud(plate(), 0.008)), "not on the result"));
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "1 are not on the result, the largest a sphere of"));
+  EXPECT_FALSE(test::mentions(reconstruct(raw_cloud(plate(), 0.008)).statistics.warnings, "not on the result"));
 }
 
 TEST(Reconstruct, RefusesAToleranceAsLargeAsTheCloud) {
@@ -175,7 +158,7 @@ TEST(Reconstruct, NeedsNoNormals) {
   cloud.normals = {};
   const Extraction result = reconstruct(cloud);
   EXPECT_TRUE(result.statistics.finding->normals_estimated);
-  EXPECT_GT(iou(result, truth), 0.97);
+  EXPECT_GT(test::iou(result, truth), 0.97);
 }
 
 TEST(Reconstruct, DoesNotDependOnThreads) {
@@ -278,9 +261,7 @@ TEST(FindPrimitives, WarnsOfAToleranceInWhichPartsAreLost) {
   const auto says_so = [](double tolerance) {
     const Extraction found =
         find_primitives(raw_cloud(plate(), 0.0, 5000), {.detection = {.distance_tolerance = tolerance}});
-    return std::ranges::any_of(found.statistics.warnings, [](const std::string& warning) {
-      return warning.find("parts are lost") < warning.size();
-    });
+    return test::mentions(found.statistics.warnings, "parts are lost");
   };
   EXPECT_FALSE(says_so(0.02));
   EXPECT_TRUE(says_so(0.4));
@@ -310,16 +291,16 @@ TEST(ReconstructBesideKnown, GetsAModelWithAFreeFormRight) {
   const Model truth = test::paper_model("m1");
   const PointCloud cloud = raw_cloud(truth, 0.005, 50'000);
   const Extraction result = reconstruct(cloud, {.known = {truth.primitives[0]}});
-  EXPECT_GT(iou(result, truth), 0.998);
+  EXPECT_GT(test::iou(result, truth), 0.998);
   EXPECT_EQ(leaf_count(result.tree()), 4U) << to_text(result.tree(), result.model.primitives);
   EXPECT_EQ(result.model.primitives[0].id, "Box_0");
   EXPECT_EQ(result.model.primitives[0].displacement->frequency, truth.primitives[0].displacement->frequency);
   EXPECT_EQ(result.statistics.finding->known, 1U);
   EXPECT_GT(result.statistics.finding->known_points, 10'000U);
-  EXPECT_LT(iou(reconstruct(cloud), truth), 0.97) << "what is known makes the difference";
+  EXPECT_LT(test::iou(reconstruct(cloud), truth), 0.97) << "what is known makes the difference";
   // The end of the cylinder sticks out by less than twice the tolerance, which is not worth two leaves any more.
   const PointCloud noisy = raw_cloud(truth, 0.01, 50'000);
-  EXPECT_GT(iou(reconstruct(noisy, {.known = {truth.primitives[0]}}), truth), 0.99);
+  EXPECT_GT(test::iou(reconstruct(noisy, {.known = {truth.primitives[0]}}), truth), 0.99);
 }
 
 TEST(ReconstructBesideKnown, KeepsWhatIsKnownToTheLastBit) {
@@ -328,7 +309,7 @@ TEST(ReconstructBesideKnown, KeepsWhatIsKnownToTheLastBit) {
   for (const PrimitiveSet& known : {PrimitiveSet{truth.primitives[0]}, PrimitiveSet{truth.primitives[2]},
                                     PrimitiveSet{truth.primitives[1], truth.primitives[3]}, truth.primitives}) {
     const Extraction result = reconstruct(cloud, {.known = known});
-    EXPECT_GT(iou(result, truth), 0.99) << known[0].id;
+    EXPECT_GT(test::iou(result, truth), 0.99) << known[0].id;
     EXPECT_EQ(leaf_count(result.tree()), 4U) << to_text(result.tree(), result.model.primitives);
     const std::vector<PrimitiveIndex> used = primitives_of(result.tree());
     for (PrimitiveIndex p = 0; p < known.size(); ++p) {
@@ -345,14 +326,12 @@ TEST(ReconstructBesideKnown, WarnsOfWhatThePointsDoNotBearOut) {
   const Model truth = plate();
   const PrimitiveSet known{truth.primitives[0], test::placed("ghost", Sphere{0.4}, {0, 1, 1.5})};
   const Extraction result = reconstruct(raw_cloud(truth, 0.005), {.known = known});
-  EXPECT_TRUE(has_warning(result, "'ghost'"));
-  EXPECT_FALSE(has_warning(result, "'plate'"));
-  EXPECT_GT(iou(result, truth), 0.99);
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "'ghost'"));
+  EXPECT_FALSE(test::mentions(result.statistics.warnings, "'plate'"));
+  EXPECT_GT(test::iou(result, truth), 0.99);
   EXPECT_EQ(result.model.primitives[1].id, "ghost") << "it stays in the list";
   const Extraction found = find_primitives(raw_cloud(truth, 0.005), {.known = known});
-  EXPECT_TRUE(std::ranges::any_of(found.statistics.warnings, [](const std::string& warning) {
-    return warning.find("known primitive 'ghost': 0 of") != std::string::npos;
-  }));
+  EXPECT_TRUE(test::mentions(found.statistics.warnings, "known primitive 'ghost': 0 of"));
 }
 
 TEST(ReconstructBesideKnown, RefusesKnownPrimitivesThatAreNone) {

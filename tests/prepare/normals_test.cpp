@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <numbers>
-#include <string_view>
 
 #include "cloud2csg/advanced/prepare.hpp"
 #include "prepare/clouds.hpp"
 #include "raw/prepare/orientation.hpp"
 #include "raw/prepare/patches.hpp"
 #include "raw/prepare/signed_sets.hpp"
+#include "support/warnings.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -17,11 +17,6 @@ using namespace testing_support;
 
 double orientation_found(const PointCloud& cloud) {
   return rightly_oriented(estimate_normals(without_normals(cloud), estimate_scale(cloud)).normals, cloud.normals);
-}
-
-bool mentions(const PreparedCloud& prepared, std::string_view words) {
-  return std::ranges::any_of(prepared.warnings,
-                             [&](const std::string& w) { return w.find(words) != std::string::npos; });
 }
 
 TEST(Agreement, HoldsOnPlanesAroundEdgesAndAcrossWalls) {
@@ -114,8 +109,8 @@ TEST(PrepareCloud, WarnsWhereTheSideIsDoubtful) {
   PointCloud sheet;
   RandomStream random(6);
   for (int i = 0; i < 3000; ++i) sheet.positions.push_back({random.uniform(), random.uniform(), 0.0});
-  EXPECT_TRUE(mentions(prepare_cloud(sheet), "orientation of the normals is doubtful"));
-  EXPECT_FALSE(mentions(prepare_cloud(without_normals(sphere_cloud(3000, 1.0, 0.002))), "doubtful"));
+  EXPECT_TRUE(test::mentions(prepare_cloud(sheet).warnings, "orientation of the normals is doubtful"));
+  EXPECT_FALSE(test::mentions(prepare_cloud(without_normals(sphere_cloud(3000, 1.0, 0.002))).warnings, "doubtful"));
 }
 
 TEST(GrowPatches, DoNotCrossThinWalls) {
@@ -229,7 +224,7 @@ TEST(PrepareCloud, TurnsInwardNormals) {
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.normals.set(i, -cloud.normals[i]);
   const PreparedCloud prepared = prepare_cloud(cloud);
   EXPECT_FALSE(prepared.normals_estimated);
-  EXPECT_TRUE(mentions(prepared, "turned"));
+  EXPECT_TRUE(test::mentions(prepared.warnings, "turned"));
   EXPECT_EQ(rightly_oriented(prepared.cloud.normals, prepared.cloud.positions), 1.0);
 }
 
@@ -288,7 +283,7 @@ TEST(PrepareCloud, EstimatesRandomNormalsAnew) {
   }
   const PreparedCloud prepared = prepare_cloud(cloud);
   EXPECT_TRUE(prepared.normals_estimated);
-  EXPECT_TRUE(mentions(prepared, "estimated anew"));
+  EXPECT_TRUE(test::mentions(prepared.warnings, "estimated anew"));
   EXPECT_EQ(rightly_oriented(prepared.cloud.normals, prepared.cloud.positions), 1.0);
   // Signs alone by chance are of no use, either.
   for (std::size_t i = 0; i < cloud.size(); ++i) {

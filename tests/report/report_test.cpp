@@ -1,5 +1,3 @@
-#include "cloud2csg/report.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -9,6 +7,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/sample.hpp"
+#include "cloud2csg/view.hpp"
 #include "paper/objective/fit.hpp"
 #include "report/decoded.hpp"
 #include "view/report/deviation.hpp"
@@ -59,9 +58,7 @@ std::vector<double> distances_of(const test::Decoded& data) {
 TEST(Report, FiguresAreThoseOfTheFit) {
   const Report report = report_of(shipped("m1.json"), 5000, 0.01);
   const auto all = gathered(report).text["deviation"]["all"];
-  const FitStatistics fit =
-      measure_fit(*report.model.tree, report.model.primitives, *report.cloud, {.alpha = 1, .beta = 1, .gamma = 1},
-                  {.noise = 0.01, .tolerances = segmentation_tolerances({}, 0.01)}, {});
+  const FitStatistics fit = measure_fit(*report.model.tree, report.model.primitives, *report.cloud, 0.01, {}, {});
   EXPECT_EQ(all["points"], 5000);
   EXPECT_DOUBLE_EQ(all["rms"].get<double>(), fit.rms_distance);
   EXPECT_DOUBLE_EQ(all["p95"].get<double>(), fit.p95_distance);

@@ -1,5 +1,3 @@
-#include "cloud2csg/scan.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <stop_token>
 
 #include "cloud2csg/error.hpp"
+#include "cloud2csg/sample.hpp"
 #include "sample/solids.hpp"
 
 namespace cloud2csg {
@@ -102,6 +101,7 @@ TEST(Scan, WhatIsFarFromTheOriginIsAsExact) {
   TriangleMesh mesh = square();
   for (double& z : mesh.vertices.z) z = 1e6;
   const PointCloud cloud = scan_mesh(mesh, perfect());
+  ASSERT_EQ(cloud.size(), 2000U);
   for (const double z : cloud.positions.z) EXPECT_NEAR(z, 1e6, 1e-6);
 }
 
@@ -194,6 +194,7 @@ TEST(Scan, ANarrowFieldOfViewSeesTheMiddleOnly) {
   ScanOptions options = perfect();
   options.field_of_view_deg = 10;
   const PointCloud cloud = scan_mesh(square(), options);
+  ASSERT_GT(cloud.size(), 100U);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vector3d sensor = cloud.sensor_positions[i];
     const double cosine = (cloud.positions[i] - sensor).normalized().dot(-sensor.normalized());

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "cloud2csg/brep.hpp"
+#include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "core/base/atomic_file.hpp"

@@ -227,7 +227,10 @@ TEST(DealPoints, IsTheSameOnAnyNumberOfThreads) {
   const SegmentationTolerances tolerances{.distance = 0.03, .cosine = 0.9};
   const auto one = deal_points(cloud, primitives, tolerances, {.threads = 1});
   const auto two = deal_points(cloud, primitives, tolerances, {.threads = 2});
+  ASSERT_EQ(one.size(), primitives.size());
+  ASSERT_EQ(two.size(), primitives.size());
   for (std::size_t p = 0; p < primitives.size(); ++p) {
+    EXPECT_GT(one[p].points, 0U);
     EXPECT_EQ(one[p].points, two[p].points);
     EXPECT_EQ(one[p].rms, two[p].rms);
   }

@@ -200,7 +200,7 @@ RC_GTEST_PROP(TermSearch, ANetIsWhatTheMembersGain, ()) {
   const TermSpace& space = scene().space;
   const std::vector<double> gains = any_gains();
   const PricedTerm best = best_term(space, gains, k_costs);
-  if (best.term.parts.empty()) return;
+  RC_PRE(!best.term.parts.empty());
   const std::vector<std::uint8_t> members = members_of(space, best.term);
   double net = -cost_of(best.term, k_costs);
   for (std::size_t i = 0; i < gains.size(); ++i) net += members[i] != 0 ? gains[i] : 0.0;

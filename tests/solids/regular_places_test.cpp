@@ -158,7 +158,7 @@ TEST(RegularPlaces, DifferentKindsAreNotOfOneArrangement) {
   const Places given = grid({0, 0}, {1, 0}, {0, 0}, 4, 1);
   const std::vector<double> weights(4, 1.0);
   const RegularPlaces regular = regular_places(given, std::vector<int>{0, 1, 0, 1}, weights, {}, k_reach);
-  for (const Arrangement arrangement : regular.arrangements) EXPECT_EQ(arrangement, Arrangement::none);
+  EXPECT_EQ(regular.arrangements, std::vector<Arrangement>(4, Arrangement::none));
 }
 
 TEST(RegularPlaces, LeavesAloneWhatIsNotRegular) {

@@ -3,25 +3,19 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 
-#include "cloud2csg/brep.hpp"
+#include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "step_module/read_back.hpp"
 #include "support/known_solids.hpp"
+#include "support/outside_program.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-
-std::string content_of(const std::filesystem::path& file) {
-  std::stringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 /// A folder for the files of a test.
 class WriteBrep : public ::testing::Test {
@@ -208,7 +202,7 @@ TEST_F(WriteBrep, NamesArePartAndFaces) {
   primitives[2].id = "Größe 漢字";
   const CsgTree tree = subtract(CsgTree::leaf(0), unite(CsgTree::leaf(1), CsgTree::leaf(2)));
   step(tree, primitives, {.name = "Teil 'Ä'"});
-  for (const char byte : content_of(path("x.step"))) ASSERT_TRUE(byte == '\n' || (byte >= 0x20 && byte < 0x7F));
+  for (const char byte : test::content_of(path("x.step"))) ASSERT_TRUE(byte == '\n' || (byte >= 0x20 && byte < 0x7F));
   // As the reader gives them: it undoes quotes and what is beyond ASCII.
   EXPECT_EQ(read_.products, std::set<std::string>{"Teil 'Ä'"});
   EXPECT_EQ(read_.faces, (std::set<std::string>{primitives[0].id, primitives[1].id, primitives[2].id}));
@@ -238,7 +232,7 @@ TEST_F(WriteBrep, BrepFilesHoldTheSameSolid) {
 
 /// The part of a STEP file that does not say when it was written.
 std::string data_of(const std::filesystem::path& file) {
-  const std::string text = content_of(file);
+  const std::string text = test::content_of(file);
   return text.substr(text.find("DATA;"));
 }
 
@@ -255,7 +249,7 @@ TEST_F(WriteBrep, EmptySolidsAreRefusedAndOlderFilesStay) {
   const CsgTree nothing = parse_tree("ball & rod", primitives);
   EXPECT_THROW(write_step(path("x.step"), nothing, primitives), Error);
   EXPECT_THROW(write_step(path("x.step"), CsgTree::empty(), primitives), Error);
-  EXPECT_EQ(content_of(path("x.step")), "older");
+  EXPECT_EQ(test::content_of(path("x.step")), "older");
 }
 
 TEST_F(WriteBrep, OptionsOutOfRangeAreNamed) {

@@ -42,19 +42,25 @@ inline Points lattice(const AlignedBox& box, int points_a_side) {
   return points;
 }
 
-/// Intersection over union of two solids, by membership on a lattice over their primitives. 1 for two empty ones.
-inline double membership_iou(const CsgTree& a, const CsgTree& b, const PrimitiveSet& primitives,
-                             int points_a_side = 40) {
-  const Points points = lattice(bounds_of_all(primitives), points_a_side);
-  const std::vector<double> in_a = implicit_value(a, primitives, points);
-  const std::vector<double> in_b = implicit_value(b, primitives, points);
+/// Intersection over union of a solid and the true one, by membership on a lattice over the true one's primitives. 1
+/// for two empty ones.
+inline double membership_iou(const Model& result, const Model& truth, int points_a_side = 40) {
+  const Points points = lattice(bounds_of_all(truth.primitives), points_a_side);
+  const std::vector<double> in_result = implicit_value(result.tree.value(), result.primitives, points);
+  const std::vector<double> in_truth = implicit_value(truth.tree.value(), truth.primitives, points);
   std::size_t both = 0;
   std::size_t either = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    both += in_a[i] < 0 && in_b[i] < 0 ? 1 : 0;
-    either += in_a[i] < 0 || in_b[i] < 0 ? 1 : 0;
+    both += in_result[i] < 0 && in_truth[i] < 0 ? 1 : 0;
+    either += in_result[i] < 0 || in_truth[i] < 0 ? 1 : 0;
   }
   return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
+}
+
+/// The same of two trees over the same primitives.
+inline double membership_iou(const CsgTree& a, const CsgTree& b, const PrimitiveSet& primitives,
+                             int points_a_side = 40) {
+  return membership_iou({.primitives = primitives, .tree = a}, {.primitives = primitives, .tree = b}, points_a_side);
 }
 
 }  // namespace cloud2csg::test

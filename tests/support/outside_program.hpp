@@ -59,7 +59,7 @@ inline Run run_in(const ScratchFolder& folder, const std::string& command) {
 /// Runs a Python script of ours against modules that stand for the CAD program's: see fake_cad/judge.py.
 inline Run judge(const ScratchFolder& folder, const std::string& script, const std::string& points) {
   const std::filesystem::path judge =
-      std::filesystem::path(CLOUD2CSG_DATA_DIR).parent_path() / "tests" / "export" / "fake_cad" / "judge.py";
+      std::filesystem::path(CLOUD2CSG_DATA_DIR).parent_path() / "tests" / "scripts" / "fake_cad" / "judge.py";
   return run_in(folder, "PYTHONDONTWRITEBYTECODE=1 python3 '" + judge.string() + "' " + script + " " + points);
 }
 

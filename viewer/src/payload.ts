@@ -1,4 +1,4 @@
-/** What a report holds: the C++ side writes it (src/report/payload.hpp), as a JSON text and arrays of numbers. */
+/** What a report holds: the C++ side writes it (src/view/report/payload.hpp), as a JSON text and arrays of numbers. */
 
 /** Where in the bytes an array is, and how it was written. */
 export interface Section {

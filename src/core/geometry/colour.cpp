@@ -1,4 +1,4 @@
-#include "cloud2csg/colour.hpp"
+#include "cloud2csg/advanced/colour.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cloud2csg/brep.hpp"
+#include "cloud2csg/advanced/brep.hpp"
 #include "io/step/kernel.hpp"
 
 namespace cloud2csg::brep {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "cloud2csg/brep.hpp"
+#include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/atomic_file.hpp"
 #include "core/base/scratch_file.hpp"

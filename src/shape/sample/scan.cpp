@@ -1,5 +1,3 @@
-#include "cloud2csg/scan.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/error.hpp"
+#include "cloud2csg/sample.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/append.hpp"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "cloud2csg/scan.hpp"
+#include "cloud2csg/sample.hpp"
 #include "shape/sample/ray_caster.hpp"
 
 namespace cloud2csg {

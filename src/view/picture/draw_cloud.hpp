@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "cloud2csg/colour.hpp"
+#include "cloud2csg/advanced/colour.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "view/picture/view.hpp"
 

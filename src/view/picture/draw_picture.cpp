@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/picture.hpp"
+#include "cloud2csg/view.hpp"
 #include "core/base/atomic_file.hpp"
 #include "core/base/parallel.hpp"
 #include "shape/mesh/model_extent.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cloud2csg/colour.hpp"
+#include "cloud2csg/advanced/colour.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/model.hpp"
 #include "view/picture/view.hpp"

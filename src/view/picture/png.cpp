@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/picture.hpp"
+#include "cloud2csg/view.hpp"
 
 namespace cloud2csg {
 namespace {

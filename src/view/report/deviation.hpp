@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "core/fields/point_fit.hpp"
 
 namespace cloud2csg {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 
 namespace cloud2csg {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "view/report/payload.hpp"
 
 namespace cloud2csg {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cloud2csg/error.hpp"
-#include "cloud2csg/report.hpp"
+#include "cloud2csg/view.hpp"
 #include "core/base/atomic_file.hpp"
 #include "view/report/gather.hpp"
 #include "view/report/page_template.hpp"
