@@ -264,6 +264,8 @@ Primitive polytope_solid(const TermSpace& space, const TermPart& part, const Ali
         points, [&](const Eigen::Vector3d& point) { return plane.normal.dot(point) > plane.offset - tolerance; });
     if (held >= 3) needed.planes.push_back({.normal = plane.normal, .offset = plane.offset - plane.normal.dot(middle)});
   }
+  // So far from the origin that rounding hides the corners: a solid without planes is none.
+  if (needed.planes.size() < 4) return {.id = {}, .shape = std::move(all), .pose = {}};
   return {.id = {}, .shape = std::move(needed), .pose = {.position = middle}};
 }
 
