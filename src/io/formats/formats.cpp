@@ -7,6 +7,7 @@
 #include <regex>
 #include <system_error>
 
+#include "core/base/lower_case.hpp"
 #include "core/base/visible_text.hpp"
 
 namespace cloud2csg {
@@ -16,13 +17,6 @@ using Kinds = std::initializer_list<FileKind>;
 
 bool is_one_of(FileKind kind, Kinds kinds) {
   return std::ranges::find(kinds, kind) != kinds.end();
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return lower;
 }
 
 FileStart start_of(const std::filesystem::path& file, std::size_t size = 4096) {

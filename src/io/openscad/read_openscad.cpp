@@ -35,7 +35,7 @@ Error::Parts parts_of(const scad::Refusal& refusal, std::string_view text, const
   return {.file = name,
           .where = place_of(text, refusal.offset),
           .expected = refusal.expected,
-          .remedy = "let OpenSCAD flatten it (-o part.csg), or make a mesh of it (-o part.stl) to extract a tree from"};
+          .remedy = "let OpenSCAD flatten it (-o part.csg), or extract a tree from its mesh (-o part.stl)"};
 }
 
 /// What OpenSCAD said that begins with this word.

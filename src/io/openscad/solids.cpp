@@ -258,10 +258,10 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
                  [&](Torus& torus) { return torus.major_radius *= across, torus.minor_radius *= across, is_even; },
                  [](auto&) { return false; }};
   if (!std::visit(scaled, placed.shape)) {
-    throw Refusal(offset,
-                  fmt::format("expected a scaling that keeps spheres and tori in proportion, cylinders and cones round "
-                              "and upright, found one by {:.6g}, {:.6g}, {:.6g}",
-                              across, scale.y(), along));
+    throw Refusal(
+        offset,
+        fmt::format("expected a scaling that keeps what is round so, and upright, found one by {:.6g}, {:.6g}, {:.6g}",
+                    across, scale.y(), along));
   }
   // All of these are their own mirror images along x. The rotation that is nearest: digits are missing.
   if (axes.determinant() < 0) axes.col(0) *= -1;
