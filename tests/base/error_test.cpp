@@ -18,6 +18,17 @@ TEST(Error, EmptyPartsLeaveNoSeparators) {
   EXPECT_STREQ(Error({.file = {}, .where = "radius", .expected = "no", .remedy = "yes"}).what(), "radius: no; yes");
 }
 
+TEST(Error, MessagesAreShortWhateverTheyQuote) {
+  const std::string word(1000, 'x');
+  const Error error({.file = "f", .where = "/a" + word + "/z", .expected = "found " + word, .remedy = "fix it"});
+  const std::string message = error.what();
+  EXPECT_EQ(message.size(), 201U) << "200 beside the file";
+  EXPECT_TRUE(message.starts_with("f: /axxx")) << message;
+  EXPECT_NE(message.find("xx/z: found xxx"), std::string::npos) << message;
+  EXPECT_TRUE(message.ends_with("xxx...; fix it")) << message;
+  EXPECT_EQ(error.parts().expected.size(), 1006U);
+}
+
 TEST(Error, KeepsItsParts) {
   const Error error({.file = "f", .where = "w", .expected = "e", .remedy = "r"});
   EXPECT_EQ(error.parts().file, "f");

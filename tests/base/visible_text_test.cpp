@@ -22,6 +22,13 @@ TEST(VisibleText, EscapesWhatATerminalObeys) {
   EXPECT_EQ(visible_text("a\xFF\xC3"), "a\\xff\\xc3");  // no UTF-8
 }
 
+TEST(VisibleText, CutsLongOnesBetweenCharacters) {
+  EXPECT_EQ(visible_text("abcd", 4), "abcd");
+  EXPECT_EQ(visible_text("abcde", 4), "abcd...");
+  EXPECT_EQ(visible_text("a\x1b\x1b", 6), "a\\x1b...");
+  EXPECT_EQ(visible_text("ab⌀c", 4), "ab...");
+}
+
 TEST(VisibleText, TwiceIsOnce) {
   const std::string once = visible_text("a\x1b\n\xFF");
   EXPECT_EQ(visible_text(once), once);

@@ -342,6 +342,16 @@ RC_GTEST_PROP(WriteModel, ReadsBackToTheLastBit, ()) {
   }
 }
 
+TEST(ReadModel, ReadsALongListOfChildren) {
+  constexpr std::size_t k_children = 200'000;
+  std::string children = R"({"primitive": "a"})";
+  for (std::size_t i = 1; i < k_children; ++i) children += R"(, {"primitive": "b"})";
+  const Model model = parse_model(with_tree(R"({"op": "union", "children": [)" + children + "]}"));
+  EXPECT_EQ(leaf_count(*model.tree), k_children);
+  EXPECT_EQ(refusal(with_tree(R"({"op": "union", "children": [)" + children + ", {}]}")).where,
+            "/tree/children/200000");
+}
+
 RC_GTEST_PROP(ReadModel, DamagedTextNeverCrashes, ()) {
   std::string text = with_tree(R"({"op": "union", "children": [{"primitive": "a"}, {"primitive": "b"}]})");
   const auto damages = *rc::gen::inRange(1, 4);

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace cloud2csg {
 
 PlyRecords::PlyRecords(const FileContent& content, const PlyHeader& header)
@@ -68,15 +66,7 @@ bool PlyRecords::take(ScalarType type, std::size_t count) {
 std::size_t PlyRecords::skip(const PlyElement& element) {
   if (element.properties.empty()) return element.count;
   std::size_t found = 0;
-  if (is_text_) {
-    while (found < element.count && rows_.next_line()) ++found;
-  } else if (element.has_lists()) {
-    while (found < element.count && next_bytes(element)) ++found;
-  } else {
-    const std::size_t stride = element.stride();
-    found = std::min(element.count, (content_.bytes().size() - offset_) / stride);
-    offset_ += found * stride;
-  }
+  while (found < element.count && (is_text_ ? rows_.next_line().has_value() : next_bytes(element))) ++found;
   return found;
 }
 

@@ -18,8 +18,7 @@ class PlyRecords {
   /// Steps to the next record. False when the file ends before its end.
   /// @throws Error for a line of text that does not have what the element wants.
   [[nodiscard]] bool next(const PlyElement& element);
-  /// Steps over all records of an element. @returns how many there are, at most element.count. In binary O(1) when
-  /// they have no lists.
+  /// Steps over all records of an element. @returns how many there are, at most element.count.
   std::size_t skip(const PlyElement& element);
 
   /// A property of the record that was stepped to: the number, or those of a list. Valid until the next step.

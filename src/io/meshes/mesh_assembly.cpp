@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,25 +11,38 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_most_vertices = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t k_most_repeated = 10'000'000;
 /// A few seconds. Polygons of people's files, cogwheels with thousands of teeth too, take a thousandth of it.
 constexpr std::size_t k_most_looks = 1'000'000'000;
 
 }  // namespace
 
-void check_coordinates(const FileContent& content, const Vector3d& position, FilePosition where) {
-  if (position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= std::numeric_limits<float>::max()) return;
-  content.fail(where, fmt::format("expected finite coordinates of at most 3.4e38, found ({}, {}, {})", position.x(),
-                                  position.y(), position.z()));
+void MeshAssembly::start_part(const Eigen::Affine3d& motion) {
+  motion_ = motion;
+  mirrors_ = motion.linear().determinant() < 0.0;
+  part_begin_ = mesh_.vertices.size();
+  constexpr std::size_t k_like_vertices = 16;  // the time it takes, more or less
+  grow(k_like_vertices);
+}
+
+void MeshAssembly::grow(std::size_t things) {
+  size_ += things;
+  if (size_ > k_most_repeated + content_.bytes().size() || size_ > std::numeric_limits<std::uint32_t>::max()) {
+    content_.fail("the mesh is too large: parts are repeated too often", "write each of them to a file");
+  }
 }
 
 void MeshAssembly::add_vertex(std::span<const double> numbers, FilePosition where) {
   if (numbers.size() < 3) {
     content_.fail(where, fmt::format("expected coordinates x, y, z, found {} numbers", numbers.size()));
   }
-  const Vector3d position(numbers[0], numbers[1], numbers[2]);
-  check_coordinates(content_, position, where);
-  if (vertex_count() == k_most_vertices) content_.fail(where, "expected fewer than 2^32 vertices, found more");
+  const Vector3d position = motion_ * Vector3d(numbers[0], numbers[1], numbers[2]);
+  // Squares of larger ones may not be finite.
+  if (!(position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= std::numeric_limits<float>::max())) {
+    content_.fail(where, fmt::format("expected finite coordinates of at most 3.4e38, found ({}, {}, {})", numbers[0],
+                                     numbers[1], numbers[2]));
+  }
+  grow(1);
   mesh_.vertices.push_back(position);
 }
 
@@ -42,10 +54,16 @@ void MeshAssembly::add_polygon(std::span<const double> corners, FilePosition whe
       content_.fail(where, fmt::format("expected one of the {} vertices before, counted from {}, found {}",
                                        vertex_count(), first, corner));
     }
-    ring_.push_back(static_cast<std::uint32_t>(index));
+    ring_.push_back(static_cast<std::uint32_t>(part_begin_ + static_cast<std::size_t>(index)));
   }
-  if (ring_.size() == 3) mesh_.triangles.push_back({ring_[0], ring_[1], ring_[2]});
+  if (ring_.size() == 3) add_triangle({ring_[0], ring_[1], ring_[2]});
   if (ring_.size() > 3) cut_ring(where);
+}
+
+void MeshAssembly::add_triangle(const Corners& corners) {
+  const auto& [a, b, c] = corners;
+  grow(1);
+  mesh_.triangles.push_back(mirrors_ ? Corners{a, c, b} : corners);
 }
 
 /// Takes one ear after the other off, until three corners are left.
@@ -62,7 +80,7 @@ void MeshAssembly::cut_ring(FilePosition where) {
     before[i] = (i + count - 1) % count;
     after[i] = (i + 1) % count;
   }
-  const auto ear_at = [&](std::size_t tip) { return std::array{ring_[before[tip]], ring_[tip], ring_[after[tip]]}; };
+  const auto ear_at = [&](std::size_t tip) { return Corners{ring_[before[tip]], ring_[tip], ring_[after[tip]]}; };
   // Only these corners can lie in an ear. There are none in a convex polygon, which becomes a fan.
   std::vector<std::uint32_t> inward;
   for (std::size_t i = 0; i < count; ++i) {
@@ -71,7 +89,7 @@ void MeshAssembly::cut_ring(FilePosition where) {
   std::size_t tip = 1;
   std::size_t failures = 0;
   for (std::size_t left = count; left > 3;) {
-    const std::array ear = ear_at(tip);
+    const Corners ear = ear_at(tip);
     looked_at_ += 1 + inward.size();
     if (looked_at_ > k_most_looks) {
       content_.fail(where, "the polygons have too many corners to cut them into triangles",
@@ -83,7 +101,7 @@ void MeshAssembly::cut_ring(FilePosition where) {
                       std::ranges::any_of(inward, [&](std::uint32_t vertex) { return is_in(vertex, ear, normal); }))) {
       ++failures;
     } else {
-      mesh_.triangles.push_back(ear);
+      add_triangle(ear);
       after[before[tip]] = after[tip];
       before[after[tip]] = before[tip];
       --left;
@@ -91,15 +109,15 @@ void MeshAssembly::cut_ring(FilePosition where) {
     }
     tip = after[tip];
   }
-  mesh_.triangles.push_back(ear_at(tip));
+  add_triangle(ear_at(tip));
 }
 
-double MeshAssembly::area(const std::array<std::uint32_t, 3>& corners, const Vector3d& normal) const {
+double MeshAssembly::area(const Corners& corners, const Vector3d& normal) const {
   const Vector3d a = mesh_.vertices[corners[0]];
   return normal.dot((mesh_.vertices[corners[1]] - a).cross(mesh_.vertices[corners[2]] - a));
 }
 
-bool MeshAssembly::is_in(std::uint32_t vertex, const std::array<std::uint32_t, 3>& ear, const Vector3d& normal) const {
+bool MeshAssembly::is_in(std::uint32_t vertex, const Corners& ear, const Vector3d& normal) const {
   const Points& points = mesh_.vertices;
   // Where a hole is joined to the outside, two corners are at one place.
   if (std::ranges::any_of(ear, [&](std::uint32_t corner) { return points[corner] == points[vertex]; })) return false;

@@ -12,7 +12,6 @@
 #include "io/clouds/text_rows.hpp"
 #include "io/meshes/formats.hpp"
 #include "io/meshes/mesh_assembly.hpp"
-#include "io/meshes/placed_parts.hpp"
 #include "io/meshes/zip_archive.hpp"
 
 namespace cloud2csg {
@@ -30,22 +29,16 @@ constexpr std::array<std::pair<std::string_view, double>, 6> k_units{
 
 class ThreeMfReader {
  public:
-  explicit ThreeMfReader(const FileContent& content) : content_(content) {}
+  explicit ThreeMfReader(const FileContent& content) : content_(content), assembly_(content) {}
 
   TriangleMesh read() {
     const pugi::xml_document document = load(model_name());
     const pugi::xml_node model = document.child("model");
-    // Objects may only consist of objects before them.
     for (const pugi::xml_node object : model.child("resources").children("object")) {
-      MeshPart part{.mesh = read_mesh_of(object), .children = children(object.child("components"), "component")};
-      if (!index_of_id_.emplace(object.attribute("id").value(), parts_.size()).second) {
-        fail(object, "id", "an id of its own");
-      }
-      parts_.push_back(std::move(part));
+      if (!objects_.emplace(object.attribute("id").value(), object).second) fail(object, "id", "an id of its own");
     }
-    std::vector<MeshPart::Child> items = children(model.child("build"), "item");
-    for (MeshPart::Child& item : items) item.motion.prescale(unit_of(model));
-    return place_parts(content_, parts_, items);
+    place(model.child("build"), "item", Eigen::Affine3d(Eigen::Scaling(unit_of(model))), 0);
+    return std::move(assembly_).finish();
   }
 
  private:
@@ -89,29 +82,29 @@ class ThreeMfReader {
     return *number;
   }
 
-  [[nodiscard]] TriangleMesh read_mesh_of(const pugi::xml_node& object) const {
-    MeshAssembly assembly(content_);
-    const pugi::xml_node mesh = object.child("mesh");
+  /// The objects that items or components name.
+  void place(const pugi::xml_node& parent, const char* name, const Eigen::Affine3d& outer, std::size_t level) {
+    for (const pugi::xml_node node : parent.children(name)) {
+      const auto object = objects_.find(node.attribute("objectid").value());
+      if (object == objects_.end()) fail(node, "objectid", "the id of an object");
+      if (level == k_most_levels) fail(node, "objectid", "an object that is not within itself");
+      const Eigen::Affine3d motion = outer * motion_of(node);
+      assembly_.start_part(motion);
+      add_mesh(object->second.child("mesh"));
+      place(object->second.child("components"), "component", motion, level + 1);
+    }
+  }
+
+  void add_mesh(const pugi::xml_node& mesh) {
     for (const pugi::xml_node v : mesh.child("vertices").children("vertex")) {
-      assembly.add_vertex(std::array{number(v, "x"), number(v, "y"), number(v, "z")},
-                          {FilePosition::Unit::vertex, assembly.vertex_count()});
+      assembly_.add_vertex(std::array{number(v, "x"), number(v, "y"), number(v, "z")},
+                           {FilePosition::Unit::vertex, assembly_.vertex_count()});
     }
     std::size_t count = 0;
     for (const pugi::xml_node t : mesh.child("triangles").children("triangle")) {
-      assembly.add_polygon(std::array{number(t, "v1"), number(t, "v2"), number(t, "v3")},
-                           {FilePosition::Unit::triangle, count++});
+      assembly_.add_polygon(std::array{number(t, "v1"), number(t, "v2"), number(t, "v3")},
+                            {FilePosition::Unit::triangle, count++});
     }
-    return std::move(assembly).finish();
-  }
-
-  [[nodiscard]] std::vector<MeshPart::Child> children(const pugi::xml_node& parent, const char* name) const {
-    std::vector<MeshPart::Child> children;
-    for (const pugi::xml_node node : parent.children(name)) {
-      const auto object = index_of_id_.find(node.attribute("objectid").value());
-      if (object == index_of_id_.end()) fail(node, "objectid", "the id of an object before");
-      children.push_back({.part = object->second, .motion = motion_of(node)});
-    }
-    return children;
   }
 
   /// Twelve numbers: the columns of the motion, the last of them where the origin goes.
@@ -130,8 +123,8 @@ class ThreeMfReader {
   }
 
   const FileContent& content_;
-  std::vector<MeshPart> parts_ = {};
-  std::map<std::string, std::size_t, std::less<>> index_of_id_ = {};
+  MeshAssembly assembly_;
+  std::map<std::string_view, pugi::xml_node> objects_ = {};  ///< by id
 };
 
 }  // namespace

@@ -48,6 +48,7 @@ TriangleMesh read_ply_mesh(const FileContent& content) {
     } else if (element.name == "face") {
       const std::size_t corners = find_property(content, element, "vertex_indices", "vertex_index", true);
       step_through(element, [&] { assembly.add_polygon(records.list(corners), records.where()); });
+      break;  // all that is needed was there
     } else if (records.skip(element) < element.count) {
       content.fail_truncated(records.where(), element.count, 0, "records");
     }
