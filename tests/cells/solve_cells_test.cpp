@@ -7,6 +7,7 @@
 #include <set>
 
 #include "bench/families/family.hpp"
+#include "cells/labelled.hpp"
 #include "cloud2csg/advanced/cells.hpp"
 #include "cloud2csg/advanced/simplify.hpp"
 #include "core/base/random.hpp"
@@ -16,59 +17,12 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_noise = 0.01;
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
-
-/// Cells and what they are.
-struct Labelled {
-  CellComplex complex;
-  CellLabels labels;
-
-  [[nodiscard]] std::optional<CellSolution> solve(const CellSolveOptions& options = {}) const {
-    return solve_cells(complex, labels, options);
-  }
-};
-
-Labelled label(const PointCloud& cloud, const PrimitiveSet& primitives) {
-  Labelled result{find_cells(cloud, primitives, {.tolerances = segmentation_tolerances({}, k_noise), .noise = k_noise}),
-                  {}};
-  result.labels = label_cells(result.complex);
-  return result;
-}
-
-bool is_in(const CsgTree& tree, const Cell& cell, std::size_t primitives) {
-  std::vector<bool> inside(primitives);
-  for (const PrimitiveIndex p : cell) inside[p] = true;
-  return contains(tree, inside);
-}
-
-/// Cells by hand, the one outside of all among them, with the labels of a tree, all of them sure.
-Labelled labelled_by(const CsgTree& truth, const std::set<Cell>& cells, std::size_t primitives) {
-  Labelled result;
-  result.complex.cells.assign(cells.begin(), cells.end());
-  result.complex.points_of_primitive.assign(primitives, 1);
-  for (const Cell& cell : cells) {
-    result.labels.is_in.push_back(is_in(truth, cell, primitives));
-    result.labels.evidence.push_back(cell.empty() ? k_infinity : 100.0);
-  }
-  return result;
-}
-
 Cell random_cell(std::size_t primitives, RandomStream& random) {
   Cell cell;
   for (PrimitiveIndex p = 0; p < primitives; ++p) {
     if (random.chance(0.4)) cell.push_back(p);
   }
   return cell;
-}
-
-bool has_labels(const CsgTree& tree, const Labelled& labelled, double least_evidence) {
-  for (std::size_t c = 0; c < labelled.complex.cells.size(); ++c) {
-    if (labelled.labels.evidence[c] < least_evidence) continue;
-    const bool in_tree = is_in(tree, labelled.complex.cells[c], labelled.complex.points_of_primitive.size());
-    if (in_tree != labelled.labels.is_in[c]) return false;
-  }
-  return true;
 }
 
 class PaperModels : public ::testing::TestWithParam<const char*> {};
@@ -371,34 +325,6 @@ TEST(SolveCells, TreatsUnsureCellsAsItLikes) {
   ASSERT_TRUE(exact.has_value());
   EXPECT_EQ(exact->tree, truth);
   EXPECT_TRUE(exact->open_cells.empty());
-}
-
-/// Clusters of twelve solids, more than 64 in all, and the same cluster by cluster.
-TEST(SolveCells, ClimbsCoreByCoreInLargeModels) {
-  const CellSolveOptions options;
-  CellSolveOptions without = options;
-  without.climb.work_limit = 0;
-  const auto total = [&](const CellSolution& of) {
-    return of.cost + options.leaf_cost * static_cast<double>(leaf_count(of.tree));
-  };
-  std::size_t better = 0;
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    const Model model = make_family(Family::random, {.primitives = 72, .clique_size = 12, .seed = seed});
-    const PointCloud cloud =
-        sample_surface(*model.tree, model.primitives, {.count = 9000, .noise = k_noise, .seed = seed});
-    const Labelled labelled = label(cloud, model.primitives);
-    const std::optional<CellSolution> climbed = labelled.solve(options);
-    const std::optional<CellSolution> start = labelled.solve(without);
-    ASSERT_TRUE(climbed && start);
-    EXPECT_LE(total(*climbed), total(*start)) << seed;
-    EXPECT_TRUE(has_labels(climbed->tree, labelled, options.least_evidence.front())) << seed;
-    EXPECT_LE(climbed->least_leaves.value_or(0), leaf_count(climbed->tree)) << seed;
-    better += total(*climbed) < total(*start) ? 1 : 0;
-    ASSERT_FALSE(climbed->steps.empty());
-    EXPECT_EQ(climbed->steps.front().size, start->steps.front().size);
-    EXPECT_EQ(climbed->steps.back().size, climbed->tree.size());
-  }
-  EXPECT_GT(better, 0U);
 }
 
 TEST(SolveCells, OfNothingIsEmpty) {
