@@ -230,7 +230,7 @@ TEST(DealPoints, IsTheSameOnAnyNumberOfThreads) {
   ASSERT_EQ(one.size(), primitives.size());
   ASSERT_EQ(two.size(), primitives.size());
   for (std::size_t p = 0; p < primitives.size(); ++p) {
-    EXPECT_GT(one[p].points, 0U);
+    EXPECT_GT(one[p].points.size(), 0U);
     EXPECT_EQ(one[p].points, two[p].points);
     EXPECT_EQ(one[p].rms, two[p].rms);
   }
