@@ -1,10 +1,5 @@
-# Read by ctest, after the tests of a program were discovered: gives each test of STAGE its label.
-#   slow      takes seconds: left out with sanitizers
-#   external  needs a program that is not ours (OpenSCAD, FreeCAD, a browser, Python, gnuplot): run once, in release
-#   fast      all others
-#   threads   besides: works on several threads, or is stopped while it does; what the thread sanitizer is for. THREADS says
-#             whether the stage has such tests; their names tell of threads, stops, interruptions or progress.
-# SLOW and EXTERNAL have suites, or tests as in Suite.Test; one that names nothing is an error.
+# Read by ctest, after the tests of a program were discovered: gives each its labels, as cmake/test.cmake explains. A name
+# of a slow or external test that names nothing is an error.
 function(cloud2csg_label_tests stage threads tests)
   cmake_parse_arguments(arg "" "" "SLOW;EXTERNAL" ${ARGN})
   set(unused ${arg_SLOW} ${arg_EXTERNAL})

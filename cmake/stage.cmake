@@ -33,26 +33,3 @@ function(cloud2csg_stage folder)
   endforeach()
   target_link_libraries(${target} PRIVATE ${arg_LINK})
 endfunction()
-
-# cloud2csg_test(stage [THREADS] [SLOW tests...] [EXTERNAL tests...] [LINK stages and libraries...])
-#
-# One test program a stage, from tests/<stage>/*.cpp. cmake/label_tests.cmake explains the labels of its tests.
-function(cloud2csg_test stage)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "" "SLOW;EXTERNAL;LINK")
-  cloud2csg_sources(sources ${stage})
-  set(target test_${stage})
-  add_executable(${target} ${sources})
-  target_link_libraries(${target} PRIVATE cloud2csg_compiler ${arg_LINK} GTest::gtest_main rapidcheck rapidcheck_gtest)
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(${target} PRIVATE ${CLOUD2CSG_BRIEFLY_OPTIMISED})
-  target_compile_definitions(${target} PRIVATE CLOUD2CSG_DATA_DIR="${PROJECT_SOURCE_DIR}/data")
-  gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_PREFIX "${stage}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
-  file(
-    WRITE ${CMAKE_CURRENT_BINARY_DIR}/${target}_labels.cmake
-    "include(${PROJECT_SOURCE_DIR}/cmake/label_tests.cmake)\n"
-    "cloud2csg_label_tests(${stage} ${arg_THREADS} \"\${${target}_TESTS}\" SLOW ${arg_SLOW} EXTERNAL ${arg_EXTERNAL})\n")
-  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/${target}_labels.cmake)
-  if(arg_THREADS)
-    add_dependencies(tests_of_threads ${target})
-  endif()
-endfunction()

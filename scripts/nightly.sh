@@ -34,7 +34,7 @@ if [ -x build/release/tests/fuzz_files ]; then
   step "mutants" build/release/tests/fuzz_files --mutants 20000
 fi
 step "asan build" build asan
-step "asan, slow tests too ($new_cases)" tests asan "$new_cases max_success=500" -LE external
+step "asan, slow tests too ($new_cases)" tests asan "$new_cases max_success=500" -L 'fast|slow'
 step "tsan build" build tsan
 step "tsan, slow tests too" tests tsan "$new_cases max_success=100" -L threads
 step "clang build" build clang

@@ -6,7 +6,7 @@ if(NOT CLOUD2CSG_HAS_VIEWER OR NOT CLOUD2CSG_CHROMIUM)
     set(viewer_tests_miss "chromium")
   endif()
   add_test(NAME viewer.page COMMAND ${CMAKE_COMMAND} -E echo "skipped: ${viewer_tests_miss} not found")
-  set_tests_properties(viewer.page PROPERTIES LABELS viewer SKIP_REGULAR_EXPRESSION "skipped:")
+  set_tests_properties(viewer.page PROPERTIES LABELS "external;viewer" SKIP_REGULAR_EXPRESSION "skipped:")
   return()
 endif()
 
@@ -32,4 +32,4 @@ set_tests_properties(
              ENVIRONMENT
              "REPORT=${viewer_reports}/m0.html;RAW=${viewer_reports}/raw.html;HOSTILE=${viewer_reports}/hostile.html;CHROMIUM=${CLOUD2CSG_CHROMIUM};VIEWER_FOLDER=${CLOUD2CSG_VIEWER_FOLDER}"
 )
-set_tests_properties(viewer.sample viewer.report viewer.raw viewer.hostile viewer.page PROPERTIES LABELS viewer)
+set_tests_properties(viewer.sample viewer.report viewer.raw viewer.hostile viewer.page PROPERTIES LABELS "external;viewer")
