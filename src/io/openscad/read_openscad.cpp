@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <algorithm>
 #include <filesystem>
-#include <ranges>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -80,8 +80,9 @@ Model read_flattened(const std::filesystem::path& file, Error::Parts refused) {
       fmt::format("OpenSCAD flattened {}: names, and digits beyond six, are lost. It has at {}: {}.",
                   file.filename().string(), refused.where, refused.expected));
   constexpr std::size_t k_most = 5;
-  for (const std::string& doubt : lines_after("WARNING: ", answer) | std::views::take(k_most)) {
-    model.warnings.push_back("OpenSCAD says: " + doubt);
+  const std::vector<std::string> doubts = lines_after("WARNING: ", answer);
+  for (std::size_t i = 0; i < std::min(k_most, doubts.size()); ++i) {
+    model.warnings.push_back("OpenSCAD says: " + doubts[i]);
   }
   return model;
 }
