@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <string>
