@@ -18,7 +18,7 @@ LEFT_OUT_FIELDS = {("CloudWriteOptions", "colours")}
 
 def structs(root):
     """Name and fields of each options struct in the public headers."""
-    for header in sorted((root / "include/cloud2csg").glob("*.hpp")):
+    for header in sorted((root / "include/cloud2csg").rglob("*.hpp")):
         text = re.sub(r"//[^\n]*", "", header.read_text(encoding="utf-8"))
         for name, body in re.findall(r"struct (\w+Options|SampleCounts) \{(.*?)\n\};", text, flags=re.DOTALL):
             # A member: type, name, maybe a value, to the semicolon; those side by side share the type.

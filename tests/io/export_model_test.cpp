@@ -284,8 +284,7 @@ TEST(ExportModel, RefusesUnknownEndingsAndMissingTrees) {
     }
     return "no error";
   };
-  EXPECT_NE(message_for("model.docx")
-                .find(".json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj, .3mf or .dot"),
+  EXPECT_NE(message_for("model.docx").find(".json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .3mf .dot"),
             std::string::npos);
   model.tree.reset();
   EXPECT_NE(message_for("model.scad").find("a model with a tree"), std::string::npos);

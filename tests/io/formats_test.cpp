@@ -1,6 +1,7 @@
 #include "io/formats/formats.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <set>
@@ -13,7 +14,8 @@ namespace {
 
 class Formats : public ::testing::Test {
  protected:
-  Formats() : folder_(std::filesystem::temp_directory_path() / "cloud2csg_formats_test") {
+  Formats()
+      : folder_(std::filesystem::temp_directory_path() / ("cloud2csg_formats_test_" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(folder_);
   }
   ~Formats() override { std::filesystem::remove_all(folder_); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rapidcheck.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -65,7 +66,7 @@ inline CsgTree any_tree(std::size_t leaves) {
 }
 
 inline std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::temp_directory_path() / ("cloud2csg_mesh_test_" + name);
+  return std::filesystem::temp_directory_path() / ("cloud2csg_mesh_test_" + std::to_string(::getpid()) + "_" + name);
 }
 
 }  // namespace cloud2csg::shapes

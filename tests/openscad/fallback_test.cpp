@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -16,7 +17,8 @@ namespace {
 /// Files for OpenSCAD, and what becomes of them.
 class OpenScadFallback : public ::testing::Test {
  protected:
-  OpenScadFallback() : folder_(std::filesystem::temp_directory_path() / "cloud2csg scad fallback") {
+  OpenScadFallback()
+      : folder_(std::filesystem::temp_directory_path() / ("cloud2csg scad fallback " + std::to_string(::getpid()))) {
     std::filesystem::create_directories(folder_);
   }
   ~OpenScadFallback() override { std::filesystem::remove_all(folder_); }

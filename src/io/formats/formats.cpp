@@ -114,7 +114,7 @@ InputFile format_to_read(const std::filesystem::path& file, Kinds kinds) {
   if (found == nullptr) {
     parts.expected = fmt::format("expected {}, found the ending '{}'", names_of(kinds, true),
                                  visible_text(file.extension().string(), k_longest_quote));
-    parts.remedy = "rename or convert the file";
+    parts.remedy = "rename or convert it";
     throw Error(std::move(parts));
   }
   const FileKind kind = found->id == FileFormat::Id::ply && has_faces(file) ? FileKind::mesh : found->kind;
