@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "bench/experiment/paper.hpp"
 #include "bench/command/bench_command.hpp"
+#include "bench/experiment/paper.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg::app {

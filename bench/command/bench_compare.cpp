@@ -5,8 +5,8 @@
 #include <memory>
 #include <span>
 
-#include "bench/experiment/paper.hpp"
 #include "bench/command/bench_command.hpp"
+#include "bench/experiment/paper.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg::app {

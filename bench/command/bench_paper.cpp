@@ -6,8 +6,8 @@
 #include <optional>
 #include <system_error>
 
-#include "bench/experiment/paper.hpp"
 #include "bench/command/bench_command.hpp"
+#include "bench/experiment/paper.hpp"
 #include "cloud2csg/error.hpp"
 #include "installation.hpp"
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "bench/experiment/scaling.hpp"
 #include "bench/command/bench_command.hpp"
+#include "bench/experiment/scaling.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg::app {

@@ -15,9 +15,8 @@ namespace {
 
 constexpr double k_noise = 0.01;
 constexpr double k_most_degrees = 30;
-const ExtractOptions k_options{
-    .segmentation = {.distance_tolerance = k_noise, .angle_tolerance_deg = k_most_degrees},
-    .objective = {.alpha = 5, .beta = 1 / k_noise, .gamma = 18 / std::numbers::pi}};
+const ExtractOptions k_options{.segmentation = {.distance_tolerance = k_noise, .angle_tolerance_deg = k_most_degrees},
+                               .objective = {.alpha = 5, .beta = 1 / k_noise, .gamma = 18 / std::numbers::pi}};
 const Objective k_objective = resolve(k_options.objective, 0, k_noise);
 
 double root_mean_square(const std::vector<double>& values) {

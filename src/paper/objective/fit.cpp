@@ -39,9 +39,8 @@ std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const Primiti
   return unexplained;
 }
 
-FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                          double noise, const ExtractOptions& options, const RunContext& run,
-                          std::span<const std::uint32_t> order) {
+FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud, double noise,
+                          const ExtractOptions& options, const RunContext& run, std::span<const std::uint32_t> order) {
   const Objective objective = resolve(options.objective, cloud.size(), noise);
   PointFit points = measure_points(tree, primitives, cloud, noise, {.order = order}, run);
   FitStatistics fit;
