@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/tree/join.hpp"
+
 namespace cloud2csg {
 namespace {
 
