@@ -182,15 +182,17 @@ void Reader::skip_brackets() {
 }
 
 void Reader::advance() {
-  // Loops in each other read few words any number of times: reading so much takes seconds.
-  constexpr std::size_t k_most_bytes = 1'000'000'000;
+  // Loops in each other read few words any number of times. Reading so much more than the text takes seconds.
+  constexpr std::size_t k_most_again = 200'000'000;
   const std::size_t before = place_;
   skip_blanks();
   token_ = {.kind = Token::Kind::end, .offset = place_};
   if (place_ < text_.size()) take_word();
   token_.raw = text_.substr(token_.offset, place_ - token_.offset);
   read_ += place_ - before;
-  if (read_ > k_most_bytes) throw Refusal(place_, "expected loops of fewer turns in all, or of fewer words");
+  if (read_ > 3 * text_.size() + k_most_again) {
+    throw Refusal(place_, "expected loops of fewer turns in all, or of fewer words");
+  }
 }
 
 void Reader::skip_blanks() {
