@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <exception>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -51,7 +52,7 @@ struct Arguments {
   Token call;
   std::vector<std::pair<std::string_view, Value>> values = {};
 
-  static constexpr std::size_t k_by_name = -1;
+  static constexpr std::size_t k_by_name = std::numeric_limits<std::size_t>::max();
   /// Null where it is not given.
   [[nodiscard]] const Value* find(std::string_view name, std::size_t place) const;
   /// @throws Refusal where it is not given
