@@ -49,7 +49,8 @@ class ThreeMfReader {
 
   /// The file in the archive that holds the model.
   [[nodiscard]] std::string model_name() const {
-    for (const pugi::xml_node relation : load("_rels/.rels").child("Relationships").children("Relationship")) {
+    const pugi::xml_document relations = load("_rels/.rels");
+    for (const pugi::xml_node relation : relations.child("Relationships").children("Relationship")) {
       const std::string_view type = relation.attribute("Type").value();
       const std::string_view target = relation.attribute("Target").value();
       if (type.ends_with("/3dmodel")) return std::string(target.substr(target.starts_with('/') ? 1 : 0));
@@ -58,7 +59,7 @@ class ThreeMfReader {
   }
 
   [[nodiscard]] pugi::xml_document load(const std::string& name) const {
-    std::string text =
+    const std::string text =
         unzip_entry(content_, name, std::min(k_most_text, k_least_limit + k_most_packing * content_.bytes().size()));
     pugi::xml_document document;
     const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
