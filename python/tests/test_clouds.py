@@ -147,3 +147,51 @@ def test_meshes(tmp_path, plate):
     assert drawn.is_exact and len(drawn) == 2000
     with pytest.raises(ValueError, match="indices of vertices, found 9"):
         cloud2csg.TriangleMesh(POINTS[:3], [[0, 1, 9]])
+
+
+CORNERS = "0 0 0\n1 0 0\n0 1 0\n"
+PLY = (
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + CORNERS
+)
+
+
+@pytest.mark.parametrize(
+    "name, content",
+    [
+        ("index.off", "OFF\n3 1 0\n" + CORNERS + "3 0 1 3\n"),
+        ("negative.off", "OFF\n3 1 0\n" + CORNERS + "3 0 1 -1\n"),
+        ("cut.off", "OFF\n3 1 0\n0 0 0\n1 0"),
+        ("count.off", "OFF\n4294967295 4294967295 0\n"),
+        ("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9\n"),
+        ("index.ply", PLY + "3 0 1 3\n"),
+        ("negative.ply", PLY + "3 0 1 -1\n"),
+        ("cut.ply", PLY[:-9]),
+        ("count.stl", " " * 80 + "\xff\xff\xff\xff"),
+        ("nothing.3mf", ""),
+        ("zip.3mf", "PK\x03\x04"),
+        ("head.glb", "glTF\x02\x00\x00\x00\xff\xff\xff\xff\xff\xff\xff\xffJSON{}"),
+    ],
+)
+def test_damaged_meshes_raise(tmp_path, name, content):
+    file = tmp_path / name
+    file.write_bytes(content.encode("latin-1"))
+    for read in (cloud2csg.read_mesh, cloud2csg.read_cloud):
+        with pytest.raises(cloud2csg.Error) as raised:
+            read(file)
+        assert str(file) in str(raised.value) and "\n" not in str(raised.value)
+
+
+def test_any_cut_raises_or_reads(tmp_path, plate):
+    for ending in (".stl", ".off", ".obj", ".3mf"):
+        file = tmp_path / f"plate{ending}"
+        plate.mesh(resolution=8).write(file)
+        whole = file.read_bytes()
+        refused = 0
+        for share in range(100):
+            file.write_bytes(whole[: len(whole) * share // 100])
+            try:
+                cloud2csg.read_mesh(file)
+            except cloud2csg.Error:
+                refused += 1
+        assert refused >= (1 if ending == ".obj" else 100), ending  # a part of an .obj may be one, too
