@@ -105,7 +105,8 @@ RC_GTEST_PROP(MortonCurve, NestsItsCells, (std::uint64_t seed)) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::uint32_t cell = fine.cell_of(points.x[i], points.y[i], points.z[i]);
       const std::uint32_t around = coarse.cell_of(points.x[i], points.y[i], points.z[i]);
-      RC_ASSERT(cell >> static_cast<unsigned>(3 * (fine.bits() - bits)) == around);
+      const std::uint32_t coarsened = cell >> static_cast<unsigned>(3 * (fine.bits() - bits));
+      RC_ASSERT(coarsened == around);
     }
   }
 }
