@@ -15,7 +15,7 @@ constexpr std::size_t k_longest_message = 200;
 std::string brief_place(const std::string& where) {
   constexpr std::size_t k_longest = 60;
   constexpr std::size_t k_end = 28;
-  const std::string visible = visible_text(where);
+  std::string visible = visible_text(where);
   if (visible.size() <= k_longest) return visible;
   return visible.substr(0, k_end) + "..." + visible.substr(visible.size() - k_end);
 }
