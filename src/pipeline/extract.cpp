@@ -131,7 +131,7 @@ class Extractor {
     statistics_.partitions = by_partitions_->partitions;
     statistics_.merge = by_partitions_->merge;
     if (!by_cells_ || !by_cells_->tree) return take_partitions();
-    const CsgTree start = better_start();
+    CsgTree start = better_start();
     if (!options_.polish) return start;
     CsgTree climbed = climb(start);
     if (climbed == start || objective_of(climbed) <= objective_of(start)) return start;
@@ -141,7 +141,7 @@ class Extractor {
   }
 
   CsgTree better_start() {
-    const CsgTree merged = simplify(by_partitions_->tree);
+    CsgTree merged = simplify(by_partitions_->tree);
     const CsgTree& of_cells = *by_cells_->tree;
     const bool only_cells_are_bounded =
         by_cells_->is_unbounded(merged) && !is_constant(of_cells) && !by_cells_->is_unbounded(of_cells);
