@@ -107,7 +107,7 @@ class GlbReader {
   [[nodiscard]] Eigen::Affine3d motion_of(const json& node) const {
     const auto numbers = [&](const char* field, std::vector<double> none) {
       const std::size_t count = none.size();
-      const std::vector<double> found = node.value(field, std::move(none));
+      std::vector<double> found = node.value(field, std::move(none));
       if (found.size() != count) content_.fail(fmt::format("expected {} numbers as \"{}\"", count, field));
       return found;
     };
