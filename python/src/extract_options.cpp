@@ -125,7 +125,7 @@ void bind_extraction(py::module_& module) {
       .finish();
 }
 
-void bind_finding(py::module_& module) {
+void bind_detecting(py::module_& module) {
   OptionClass<DetectOptions>(module, "DetectOptions", "How surfaces are detected: see detect().")
       .field("distance_tolerance", &DetectOptions::distance_tolerance,
              "How far a point may be from its surface, in the cloud's units. None: three times the noise, and at least "
@@ -147,6 +147,9 @@ void bind_finding(py::module_& module) {
       .field("margin", &PlaceOptions::margin, "Share of the diagonal.")
       .field("seed", &PlaceOptions::seed, "Of the places.")
       .finish();
+}
+
+void bind_choosing(py::module_& module) {
   OptionClass<RegularityOptions>(module, "RegularityOptions", "What of the surfaces is made regular.")
       .field("snap", &RegularityOptions::snap,
              "False: surfaces are not made like each other. What is given holds all the same.")
@@ -200,7 +203,8 @@ void bind_extract_options(py::module_& module) {
   bind_judgement(module);
   bind_search(module);
   bind_extraction(module);
-  bind_finding(module);
+  bind_detecting(module);
+  bind_choosing(module);
 }
 
 }  // namespace cloud2csg::python

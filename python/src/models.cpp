@@ -249,7 +249,11 @@ void bind_outputs(ModelClass& model) {
           py::arg("cloud") = py::none(), py::kw_only(), py::arg("options") = py::none(), py::arg("threads") = 0,
           py::arg("progress") = py::none(),
           "The solid in the colours of its primitives, with a cloud (PointCloud, or positions of shape (n, 3)) on its "
-          "left: red, green and blue, shape (height, width, 3), uint8. Further keywords are fields of PictureOptions.")
+          "left: red, green and blue, shape (height, width, 3), uint8. Further keywords are fields of PictureOptions.");
+}
+
+void bind_pages(ModelClass& model) {
+  model
       .def(
           "report",
           [](const Model& self, const py::object& cloud, const std::string& title,
@@ -284,6 +288,7 @@ void bind_models(py::module_& module) {
   bind_texts(model);
   bind_fields(model);
   bind_outputs(model);
+  bind_pages(model);
   module.def("has_viewer", &has_report_page, "Whether this build has the page of reports.");
   module.def("has_brep", &has_brep, "Whether this build writes .step and .brep files.");
 }

@@ -19,7 +19,7 @@ struct Result {
 };
 
 /// `given`: the cloud that the result speaks of, unless it brings one of its own.
-[[nodiscard]] inline Result result_of(Extraction found, std::shared_ptr<Cloud> given) {
+[[nodiscard]] inline Result result_of(Extraction found, const std::shared_ptr<Cloud>& given) {
   Result result{.cloud = given,
                 .model = std::make_shared<Model>(std::move(found.model)),
                 .surfaces = {},
