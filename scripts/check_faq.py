@@ -31,7 +31,7 @@ def main():
     faults = []
     quoted = re.findall(r"\*\*`([^`]+)`\*\*", faq)
     for message in quoted:
-        faults += [f"no message of the program has '{piece}'" for piece in pieces(message, r"\.\.\.") if piece not in said]
+        faults += [f"no message of the program has '{piece}'" for piece in pieces(message, r"\.\.\.|--[a-z-]+") if piece not in said]
     warnings = 0
     for storey in STOREYS:
         for file in sorted(ROOT.glob(f"src/{storey}/**/*.cpp")):

@@ -11,7 +11,7 @@
 namespace cloud2csg::app {
 void add_run_options(CLI::App& options, RunOptions& values) {
   options.add_option("--threads", values.threads, "Threads to use; 0 = all cores")
-      ->transform(whole_number(0, 1024))
+      ->transform(number_in<int>(from_to(0, 1024)))
       ->type_name("N")
       ->group("Running")
       ->capture_default_str();

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
-#include "values.hpp"
+#include "field_arguments.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -69,26 +67,11 @@ void CompareCommand::run(std::stop_token stop) const {
   }
 }
 
-void add_options(CLI::App& app, CompareCommand& command) {
+void add_options(CLI::App& app, CompareCommand& command, FieldArguments& fields) {
   add_file(app, "truth", command.truth, "Model, mesh or cloud to compare with")->type_name("TRUTH");
   add_file(app, "result", command.result, "Model, mesh or cloud to judge")->type_name("RESULT");
   app.add_flag("--json", command.is_json, "JSON instead of a table; what cannot be had is null")->group("Output");
-  app.add_option("--resolution", command.comparing.resolution, "Volumes: columns along the longest side")
-      ->transform(whole_number(2, 8192))
-      ->type_name("N")
-      ->group("Accuracy")
-      ->capture_default_str();
-  app.add_option("--samples", command.comparing.surface_samples, "Distances: points on each surface")
-      ->transform(whole_number_from(1))
-      ->type_name("COUNT")
-      ->group("Accuracy")
-      ->capture_default_str();
-  app.add_option("--seed", command.comparing.seed, "Same seed, same result")
-      ->transform(whole_number_from(0))
-      ->type_name("S")
-      ->group("Accuracy")
-      ->capture_default_str();
-  add_run_options(app, command.running);
+  fields.add(command.comparing, {.group = "Accuracy"});
 }
 
 }  // namespace
@@ -96,9 +79,7 @@ void add_options(CLI::App& app, CompareCommand& command) {
 Command add_compare(CLI::App& program) {
   CLI::App* app = program.add_subcommand("compare", "Says how alike two of model, mesh or cloud are");
   app->footer(example("  cloud2csg compare true.off extracted.json --json"));
-  auto command = std::make_shared<CompareCommand>();
-  add_options(*app, *command);
-  return {.options = app, .run = [command](std::stop_token stop) { command->run(std::move(stop)); }};
+  return make_command<CompareCommand>(*app, add_options);
 }
 
 }  // namespace cloud2csg::app

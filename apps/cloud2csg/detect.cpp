@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <numbers>
 #include <optional>
 
@@ -11,11 +10,10 @@
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
-#include "command.hpp"
 #include "core/base/output_set.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
-#include "raw_arguments.hpp"
+#include "raw_options.hpp"
 #include "values.hpp"
 
 namespace cloud2csg::app {
@@ -28,14 +26,14 @@ struct DetectCommand {
   std::string primitives;  // that are known; empty: none
   bool detect_rest = false;
   std::vector<std::string> outputs;
-  RawArguments raw;
-  std::uint64_t seed = 1;
-  std::optional<double> time_limit_seconds;
+  ReconstructOptions options;
+  InputOptions reading;
   PictureOptions drawing;
   RunOptions running;
 
   void run(std::stop_token stop) const;
   void check_files() const;
+  void settle(const CLI::App& /*app*/) { share_values(options, reading); }
 };
 
 std::string vector_text(const Eigen::Vector3d& v) {
@@ -84,7 +82,6 @@ void DetectCommand::check_files() const {
   files.push_back(cloud);
   if (!primitives.empty() && primitives != cloud) files.push_back(primitives);
   check_distinct(files);
-  check_pictures(drawing);
 }
 
 void DetectCommand::run(std::stop_token stop) const {
@@ -93,9 +90,8 @@ void DetectCommand::run(std::stop_token stop) const {
 
   Model known;
   if (!primitives.empty()) known = read_model(primitives);
-  const ExtractOptions options{.time_limit_seconds = time_limit_seconds, .seed = seed};
-  const Input input = read_cloud_or_mesh(cloud, raw.input(options), session.run());
-  ReconstructOptions from_raw = raw.options(options, input);
+  const Input input = read_cloud_or_mesh(cloud, reading, session.run());
+  ReconstructOptions from_raw = options_for(input, options);
   from_raw.known = known.primitives;
   const Extraction found = naming(primitives.empty() ? cloud : cloud + " with " + primitives,
                                   [&] { return find_primitives(input.cloud, from_raw, session.run()); });
@@ -131,7 +127,7 @@ void DetectCommand::run(std::stop_token stop) const {
       largest.turn_deg, found.model.primitives.size(), finding.noise, finding.tolerance));
 }
 
-void add_options(CLI::App& app, DetectCommand& command) {
+void add_options(CLI::App& app, DetectCommand& command, FieldArguments& fields) {
   add_file(app, "cloud", command.cloud,
            fmt::format("Point cloud: {}, or mesh: {}", endings_read({FileKind::cloud}), endings_read({FileKind::mesh})))
       ->type_name("CLOUD|MESH");
@@ -147,19 +143,10 @@ void add_options(CLI::App& app, DetectCommand& command) {
       ->needs(primitives)
       ->group("Input");
   add_outputs(app, command.outputs, "the solids (.json), or the points in the colours of their solids (.ply, .png)");
-  app.add_option("--seed", command.seed, "Same seed, same primitives, whatever the threads")
-      ->transform(whole_number_from(0))
-      ->type_name("S")
-      ->group("Finding primitives")
-      ->capture_default_str();
-  app.add_option("--time-limit", command.time_limit_seconds,
-                 "Then take the best solids so far; reading and writing are not counted (default: none)")
-      ->check(number_positive())
-      ->type_name("SECONDS")
-      ->group("Finding primitives");
-  add_raw_arguments(app, command.raw, "Finding primitives");
-  add_picture_options(app, command.drawing);
-  add_run_options(app, command.running);
+  fields.add(command.options.extraction,
+             {.group = "Finding primitives", .path = "extraction.", .only = {"seed", "time_limit_seconds"}});
+  add_raw_options(fields, command.options, command.reading);
+  fields.add(command.drawing, {.group = "Pictures"});
 }
 
 }  // namespace
@@ -170,10 +157,7 @@ Command add_detect(CLI::App& program) {
       "Prints the surfaces that the points lie on; the output has the solids that these bound, without a tree, and how "
       "many points lie on each. Points on none are grey in a .ply.\n\n" +
       example("  cloud2csg detect scan.ply -o primitives.json -o points.ply"));
-  auto command = std::make_shared<DetectCommand>();
-  add_options(*app, *command);
-  app->final_callback([command] { check_arguments(command->raw); });
-  return {.options = app, .run = [command](std::stop_token stop) { command->run(std::move(stop)); }};
+  return make_command<DetectCommand>(*app, add_options);
 }
 
 }  // namespace cloud2csg::app

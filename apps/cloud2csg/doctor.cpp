@@ -30,7 +30,7 @@ void examine() {
   const auto broken = std::find_if(findings.begin(), findings.end(),
                                    [](const Finding& finding) { return finding.state == Finding::State::broken; });
   if (broken == findings.end()) return;
-  throw Error({.file = {}, .where = broken->part, .expected = broken->text, .remedy = broken->remedy});
+  throw Error({.where = broken->part, .expected = broken->text, .remedy = broken->remedy});
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include "cloud2csg/error.hpp"
@@ -12,15 +11,14 @@
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
-#include "command.hpp"
 #include "core/base/atomic_file.hpp"
 #include "core/base/output_set.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/base/without_stop.hpp"
-#include "extract_arguments.hpp"
+#include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
-#include "raw_arguments.hpp"
+#include "raw_options.hpp"
 #include "reports.hpp"
 #include "summary.hpp"
 #include "values.hpp"
@@ -36,13 +34,16 @@ struct ExtractCommand {
   std::optional<std::string> statistics;
   std::optional<std::string> unexplained;
   bool refine = false;
-  ExtractArguments arguments;
-  RawArguments raw;
+  std::string preset = "default";
+  ReconstructOptions options;
+  InputOptions reading;
   ExportOptions exporting;
   PictureOptions drawing;
   RunOptions running;
   std::vector<ReportParameter> parameters;  // options, for reports
 
+  void prepare();
+  void settle(const CLI::App& app);
   void run(const std::stop_token& stop) const;
   /// `given` is empty when all primitives are to be found.
   [[nodiscard]] Extraction extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
@@ -57,11 +58,19 @@ struct ExtractCommand {
               OutputSet& written) const;
 };
 
+void ExtractCommand::prepare() {
+  if (preset == "paper") options.extraction = paper_options();
+}
+
+void ExtractCommand::settle(const CLI::App& app) {
+  share_values(options, reading);
+  parameters = parameters_of(app);
+}
+
 void check_normals(const PointCloud& cloud, const std::string& file) {
   if (cloud.has_normals()) return;
   throw Error(
       {.file = file,
-       .where = {},
        .expected = "the points have no normals, which extract needs to combine given primitives",
        .remedy = "estimate outward normals and save them with the points, add --detect-rest, or leave out --primitives "
                  "to find them anew"});
@@ -70,7 +79,7 @@ void check_normals(const PointCloud& cloud, const std::string& file) {
 /// The points that the tree contradicts.
 PointCloud ExtractCommand::unexplained_part(const Extraction& result, int threads) const {
   const SegmentationTolerances tolerances =
-      segmentation_tolerances(arguments.options().segmentation, result.statistics.noise);
+      segmentation_tolerances(options.extraction.segmentation, result.statistics.noise);
   const std::vector<std::uint32_t> indices =
       unexplained_points(result.tree(), result.model.primitives, result.cloud, tolerances, {.threads = threads});
   return select_points(result.cloud, indices);
@@ -89,11 +98,11 @@ AddedModels ExtractCommand::write(const Extraction& result, const RunContext& ru
   const std::string comment = headline(result.statistics, cloud);
   Model model = result.model;
   model.description = comment;
-  ExportOptions options = exporting;
-  options.openscad.comment = options.script.comment = comment;
+  ExportOptions commented = exporting;
+  commented.openscad.comment = commented.script.comment = comment;
   // Not to be stopped: what has been found is written also after an interrupt.
   return naming(primitives.empty() ? cloud : primitives,
-                [&] { return add_models(written, outputs, model, options, without_stop(run)); });
+                [&] { return add_models(written, outputs, model, commented, without_stop(run)); });
 }
 
 void ExtractCommand::draw(const Extraction& result, const RunContext& run, OutputSet& written) const {
@@ -113,19 +122,16 @@ void ExtractCommand::report(Extraction result, std::vector<ReportDownload> downl
                 .statistics = outcome,
                 .parameters = parameters,
                 .downloads = std::move(downloads)};
-  const std::vector<ReportParameter> in_force = parameters_of(arguments.options());
-  report.parameters.insert(report.parameters.end(), in_force.begin(), in_force.end());
   naming(cloud, [&] { add_reports(written, outputs, report, without_stop(run)); });
 }
 
 RefineOptions ExtractCommand::refine_options() const {
-  return {.angle_tolerance_deg = arguments.options().segmentation.angle_tolerance_deg};
+  return {.angle_tolerance_deg = options.extraction.segmentation.angle_tolerance_deg};
 }
 
 Extraction ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const {
-  const ExtractOptions options = arguments.options();
-  Extraction result = refine ? extract_refined_csg(points, solids, options, refine_options(), run)
-                             : extract_csg(points, solids, options, run);
+  Extraction result = refine ? extract_refined_csg(points, solids, options.extraction, refine_options(), run)
+                             : extract_csg(points, solids, options.extraction, run);
   result.cloud = std::move(points);
   return result;
 }
@@ -136,7 +142,7 @@ Extraction ExtractCommand::extract(Input input, const PrimitiveSet& given, const
     check_normals(input.cloud, cloud);
     return naming(files, [&] { return extract_over(std::move(input.cloud), given, run); });
   }
-  ReconstructOptions from_raw = raw.options(arguments.options(), input);
+  ReconstructOptions from_raw = options_for(input, options);
   from_raw.known = given;
   if (refine) from_raw.refine = refine_options();
   return naming(files, [&] { return reconstruct(input.cloud, from_raw, run); });
@@ -153,7 +159,6 @@ std::vector<std::string> ExtractCommand::check_files() const {
   all.push_back(cloud);
   if (!primitives.empty() && primitives != cloud) all.push_back(primitives);
   check_distinct(all);
-  check_pictures(drawing);
   return written;
 }
 
@@ -164,7 +169,7 @@ void ExtractCommand::run(const std::stop_token& stop) const {
 
   Model given;
   if (!primitives.empty()) given = read_model(primitives);
-  Input input = read_cloud_or_mesh(cloud, raw.input(arguments.options()), session.run());
+  Input input = read_cloud_or_mesh(cloud, reading, session.run());
   std::vector<std::string> doubts = std::move(given.warnings);
   doubts.insert(doubts.end(), input.warnings.begin(), input.warnings.end());
   const double read_seconds = total.seconds();
@@ -196,11 +201,11 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   session.warn(summary.warnings);
   for (const std::string& line : summary_of(summary, to_write)) session.display().note(line);
   if (stop.stop_requested() && !summary.complete) {
-    throw Error({.file = {}, .where = "interrupted", .expected = "the best tree so far was written", .remedy = {}});
+    throw Error({.where = "interrupted", .expected = "the best tree so far was written"});
   }
 }
 
-void add_options(CLI::App& app, ExtractCommand& command) {
+void add_options(CLI::App& app, ExtractCommand& command, FieldArguments& fields) {
   add_file(app, "cloud", command.cloud,
            fmt::format("Point cloud: {}, or mesh: {}", endings_read({FileKind::cloud}), endings_read({FileKind::mesh})))
       ->type_name("CLOUD|MESH");
@@ -217,7 +222,7 @@ void add_options(CLI::App& app, ExtractCommand& command) {
           ->needs(primitives)
           ->group("Input");
   add_outputs(app, command.outputs, model_endings());
-  add_mesh_options(app, command.exporting);
+  fields.add(command.exporting, {.group = "Output"});
   app.add_option("--stats", command.statistics, "Statistics: times, search, merge, fit")
       ->check(file_name())
       ->type_name("STATS.json")
@@ -232,10 +237,14 @@ void add_options(CLI::App& app, ExtractCommand& command) {
                "again")
       ->excludes(detect_rest)
       ->group("Fit");
-  add_raw_arguments(app, command.raw, "Finding primitives");
-  add_extract_arguments(app, command.arguments);
-  add_picture_options(app, command.drawing);
-  add_run_options(app, command.running);
+  add_raw_options(fields, command.options, command.reading);
+  app.add_option("--preset", command.preset, "default, or paper: the paper's weights and search, nothing added")
+      ->check(one_of({"default", "paper"}))
+      ->type_name("NAME")
+      ->group("Search")
+      ->capture_default_str();
+  fields.add(command.options.extraction, {.group = "Search", .path = "extraction.", .paper = paper_options()});
+  fields.add(command.drawing, {.group = "Pictures"});
 }
 
 }  // namespace
@@ -248,14 +257,7 @@ Command add_extract(CLI::App& program) {
       example("  cloud2csg extract scan.ply -o bracket.scad\n"
               "  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json\n"
               "  cloud2csg extract scan.ply --primitives known.json --detect-rest --radii 2.5,3 -o bracket.scad"));
-  auto command = std::make_shared<ExtractCommand>();
-  add_options(*app, *command);
-  app->final_callback([app, command] {
-    check_arguments(*app, command->arguments);
-    check_arguments(command->raw);
-    command->parameters = parameters_of(*app);
-  });
-  return {.options = app, .run = [command](const std::stop_token& stop) { command->run(stop); }};
+  return make_command<ExtractCommand>(*app, add_options);
 }
 
 }  // namespace cloud2csg::app

@@ -66,13 +66,12 @@ std::string model_endings() {
 
 void check_output(const std::filesystem::path& file, const std::string& endings, bool is_statistics) {
   const auto refuse = [&file](std::string expected, std::string remedy) {
-    throw Error({.file = file.string(), .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
+    throw Error({.file = file.string(), .expected = std::move(expected), .remedy = std::move(remedy)});
   };
   const FileFormat* const format = format_by_ending(file);
   if (format == nullptr || (endings + ' ').find(fmt::format("{} ", format->endings[0])) == std::string::npos) {
     const std::string ending = file.extension().string();
     throw WrongUsage({.file = file.string(),
-                      .where = {},
                       .expected = ending.empty() ? std::string("the name has no ending")
                                   : format == nullptr
                                       ? fmt::format("unknown ending '{}'", ending)
@@ -110,43 +109,6 @@ void add_pictures(OutputSet& set, std::span<const std::string> files, const Scen
   }
 }
 
-void add_picture_options(CLI::App& app, PictureOptions& options) {
-  const auto add = [&app](const char* name, auto& value, const char* type, const char* help) {
-    return app.add_option(name, value, help)->type_name(type)->group("Pictures")->capture_default_str();
-  };
-  add("--picture-width", options.width, "PIXELS", "Width of a .png; 0: a square for the cloud, one for the solid")
-      ->transform(whole_number_or_0(16, 4096));
-  add("--picture-height", options.height, "PIXELS", "Height of a .png")->transform(whole_number(16, 4096));
-  add("--azimuth", options.azimuth_deg, "DEG", "Where the camera of a .png stands: turned from the x axis towards y")
-      ->check(number_from_to(-360, 360));
-  add("--elevation", options.elevation_deg, "DEG", "... and raised over the xy plane")->check(number_from_to(-90, 90));
-}
-
-void add_mesh_options(CLI::App& app, ExportOptions& options) {
-  app.add_option("--resolution", options.meshing.resolution,
-                 fmt::format("Meshes ({}): cells along the longest side; of exact solids, to a fiftieth of these",
-                             endings_written({FileKind::mesh})))
-      ->transform(whole_number(4, 4096))
-      ->type_name("N")
-      ->group("Output")
-      ->capture_default_str();
-  app.add_flag_callback(
-         "--contour", [&options] { options.exact_meshes = false; },
-         "Meshes by contouring in cells, also where OpenCASCADE could make the exact solid: faster for many primitives")
-      ->group("Output");
-}
-
-void check_pictures(const PictureOptions& options) {
-  try {
-    validate(options);
-  } catch (const Error& error) {
-    throw WrongUsage({.file = {},
-                      .where = "--picture-" + error.parts().where,
-                      .expected = error.parts().expected,
-                      .remedy = error.parts().remedy});
-  }
-}
-
 bool needs_tree(const std::filesystem::path& file) {
   const FileFormat* const format = format_by_ending(file);
   return format == nullptr || format->id != FileFormat::Id::json;
@@ -178,7 +140,6 @@ void check_distinct(std::span<const std::string> files) {
     std::filesystem::path path = std::filesystem::weakly_canonical(file, ignored);
     if (std::find(seen.begin(), seen.end(), path) != seen.end()) {
       throw WrongUsage({.file = file,
-                        .where = {},
                         .expected = "is named twice: one would overwrite the other",
                         .remedy = "give each file a name of its own"});
     }

@@ -41,15 +41,6 @@ struct AddedModels {
 void add_pictures(OutputSet& set, std::span<const std::string> files, const Scene& scene, const PictureOptions& options,
                   const RunContext& run);
 
-/// Size and view of pictures, as a group of a subcommand's help.
-void add_picture_options(CLI::App& app, PictureOptions& options);
-
-/// @throws WrongUsage naming the option
-void check_pictures(const PictureOptions& options);
-
-/// How meshes of solids are made, in the group of outputs.
-void add_mesh_options(CLI::App& app, ExportOptions& options);
-
 /// Refuses a list of inputs and outputs in which two name the same file. @throws WrongUsage
 void check_distinct(std::span<const std::string> files);
 

@@ -63,8 +63,7 @@ void prepare(httplib::Server& server, const std::string& page) {
 int bind(httplib::Server& server, int port) {
   const int bound = port == 0 ? server.bind_to_any_port(k_loopback) : server.bind_to_port(k_loopback, port) ? port : -1;
   if (bound > 0) return bound;
-  throw Error({.file = {},
-               .where = fmt::format("--port {}", port),
+  throw Error({.where = fmt::format("--port {}", port),
                .expected = "the port cannot be listened on",
                .remedy = "choose another, or leave it out for any that is free"});
 }

@@ -16,9 +16,6 @@ void check_report_page(const std::string& file);
 /// The options of a subcommand that have a value: given, or by default. No switches that were not given.
 [[nodiscard]] std::vector<ReportParameter> parameters_of(const CLI::App& command);
 
-/// What the extraction works with, whether given or not.
-[[nodiscard]] std::vector<ReportParameter> parameters_of(const ExtractOptions& options);
-
 /// Writes the reports among `files`. @throws Error, Cancelled
 void add_reports(OutputSet& set, std::span<const std::string> files, const Report& report, const RunContext& run);
 

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -29,16 +27,6 @@ std::vector<std::string> validator_names(CLI::Option& option) {
   }
 }
 
-/// The text's number, when that is all there is in it and it fits.
-template <typename Number>
-std::optional<Number> parsed(const std::string& text) {
-  Number value{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, failure] = std::from_chars(text.data(), end, value);
-  if (failure != std::errc{} || stop != end) return std::nullopt;
-  return value;
-}
-
 std::string refusal(const std::string& expected, const std::string& found) {
   return fmt::format("expected {}, found '{}'", expected, found);
 }
@@ -52,57 +40,24 @@ CLI::Validator validator(std::string expected, IsRight is_right) {
           ""};
 }
 
-/// Whether it is a whole number in that range; brings it into the form that CLI11, which takes leading zeros for the
-/// mark of octal numbers, reads as the same.
-bool make_whole(std::string& text, std::uint64_t least, std::uint64_t most) {
-  const std::optional<std::uint64_t> value = parsed<std::uint64_t>(text);
-  if (!value || *value < least || *value > most) return false;
-  text = std::to_string(*value);
-  return true;
-}
-
-CLI::Validator number_between(const std::string& expected, double least, double most) {
-  return validator(expected, [least, most](const std::string& text) {
-    const std::optional<double> value = parsed<double>(text);
-    return value && std::isfinite(*value) && *value >= least && *value <= most;
-  });
-}
-
 }  // namespace
 
-CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
-  return validator(fmt::format("a whole number from {} to {}", least, most),
-                   [least, most](std::string& text) { return make_whole(text, least, most); });
+template <typename Number>
+CLI::Validator number_in(const OptionRange& range) {
+  constexpr bool k_is_whole = std::is_integral_v<Number>;
+  return {[range](std::string& text) {
+            const std::optional<Number> value = parsed<Number>(text);
+            if (!value || !std::isfinite(static_cast<double>(*value))) {
+              return refusal(range_text(range, k_is_whole), text);
+            }
+            text = fmt::format("{}", *value);
+            return range_fault(range, static_cast<double>(*value), k_is_whole);
+          },
+          ""};
 }
-
-CLI::Validator whole_number_from(std::uint64_t least) {
-  return validator(fmt::format("a whole number of {} or more that fits 64 bits", least), [least](std::string& text) {
-    return make_whole(text, least, std::numeric_limits<std::uint64_t>::max());
-  });
-}
-
-CLI::Validator whole_number_or_0(std::uint64_t least, std::uint64_t most) {
-  return validator(fmt::format("0, or a whole number from {} to {}", least, most), [least, most](std::string& text) {
-    return make_whole(text, 0, 0) || make_whole(text, least, most);
-  });
-}
-
-CLI::Validator number_not_negative() {
-  return number_between("a finite number of 0 or more", 0, std::numeric_limits<double>::max());
-}
-
-CLI::Validator number_positive() {
-  return number_between("a finite number above 0", std::numeric_limits<double>::min(),
-                        std::numeric_limits<double>::max());
-}
-
-CLI::Validator number_from_to(double least, double most) {
-  return number_between(fmt::format("a number from {} to {}", least, most), least, most);
-}
-
-CLI::Validator share() {
-  return number_from_to(0, 1);
-}
+template CLI::Validator number_in<int>(const OptionRange& range);
+template CLI::Validator number_in<std::size_t>(const OptionRange& range);
+template CLI::Validator number_in<double>(const OptionRange& range);
 
 CLI::Validator one_of(std::vector<std::string> names) {
   const std::string expected = fmt::format("one of {}", fmt::join(names, ", "));
@@ -140,6 +95,19 @@ std::optional<std::vector<Eigen::Vector3d>> parse_directions(const std::string& 
     found.push_back(vector.normalized());
   }
   return found.empty() ? std::nullopt : std::optional(found);
+}
+
+void ValueReader<std::vector<Eigen::Vector3d>>::check(CLI::Option& option, const OptionRange& /*range*/) {
+  option.check(directions())->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
+}
+
+void ValueReader<std::vector<Eigen::Vector3d>>::read(const std::vector<std::string>& texts,
+                                                     std::vector<Eigen::Vector3d>& values) {
+  values.clear();
+  for (const std::string& text : texts) {
+    const std::vector<Eigen::Vector3d> given = parse_directions(text).value();
+    values.insert(values.end(), given.begin(), given.end());
+  }
 }
 
 CLI::Validator file_name() {

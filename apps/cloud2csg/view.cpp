@@ -66,7 +66,7 @@ void add_options(CLI::App& app, ViewCommand& command) {
       ->check(file_name())
       ->type_name("CLOUD|MESH");
   app.add_option("--port", command.port, "Port on 127.0.0.1; 0 = any that is free")
-      ->transform(whole_number(0, 65'535))
+      ->transform(number_in<int>(from_to(0, 65'535)))
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--no-browser", command.no_browser, "Print the address only");

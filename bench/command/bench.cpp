@@ -13,10 +13,8 @@ void make_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, failure);
   if (!std::filesystem::is_directory(folder)) {
     throw Error({.file = folder.string(),
-                 .where = {},
                  .expected = "the folder cannot be made: " +
-                             (failure ? failure.message() : std::string("there is a file of this name")),
-                 .remedy = {}});
+                             (failure ? failure.message() : std::string("there is a file of this name"))});
   }
 }
 

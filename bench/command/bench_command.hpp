@@ -34,14 +34,4 @@ auto resumable(const std::string& folder, Session& session, const Work& work) {
   }
 }
 
-template <typename Value>
-CLI::Option* add_whole_number(CLI::App& app, const std::string& name, Value& value, std::uint64_t least,
-                              const std::string& help) {
-  return app.add_option(name, value, help)
-      ->transform(whole_number_from(least))
-      ->type_name("N")
-      ->group("Experiment")
-      ->capture_default_str();
-}
-
 }  // namespace cloud2csg::app

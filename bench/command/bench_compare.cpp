@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 #include <span>
 
 #include "bench/command/bench_command.hpp"
 #include "bench/experiment/paper.hpp"
 #include "cloud2csg/error.hpp"
+#include "field_arguments.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -18,7 +18,7 @@ struct CompareResultsCommand {
   ResultComparisonOptions comparing;
   bool is_all = false;
 
-  void run() const;
+  void run(const std::stop_token& stop) const;
 };
 
 std::size_t count_of(std::span<const Change> changes, Verdict verdict) {
@@ -26,7 +26,7 @@ std::size_t count_of(std::span<const Change> changes, Verdict verdict) {
                                                 [verdict](const Change& change) { return change.verdict == verdict; }));
 }
 
-void CompareResultsCommand::run() const {
+void CompareResultsCommand::run(const std::stop_token& /*stop*/) const {
   const PaperResults results_before = read_paper_results(before);
   const PaperResults results_after = read_paper_results(after);
   const std::vector<Change> changes = naming(
@@ -45,8 +45,14 @@ void CompareResultsCommand::run() const {
   fmt::print("{} measures: {} worse, {} better, {} the same within the noise, {} unknown\n", changes.size(), worse,
              count_of(changes, Verdict::better), count_of(changes, Verdict::same), count_of(changes, Verdict::unknown));
   if (worse == 0) return;
-  throw Error(
-      {.file = after, .where = {}, .expected = fmt::format("{} of its measures got worse", worse), .remedy = {}});
+  throw Error({.file = after, .expected = fmt::format("{} of its measures got worse", worse)});
+}
+
+void add_options(CLI::App& app, CompareResultsCommand& command, FieldArguments& fields) {
+  add_file(app, "before", command.before, "The paper.json to compare with")->type_name("BEFORE.json");
+  add_file(app, "after", command.after, "The paper.json to judge")->type_name("AFTER.json");
+  app.add_flag("--all", command.is_all, "Show what stayed the same too")->group("Output");
+  fields.add(command.comparing, {.group = "Judgement"});
 }
 
 }  // namespace
@@ -57,17 +63,7 @@ Command add_bench_compare(CLI::App& bench) {
       "A measure is better or worse when Welch's t-test over the repeats says so and the change is large enough.\n"
       "Exit status 1 when one got worse.\n\n" +
       example("  cloud2csg bench compare before/paper.json after/paper.json"));
-  auto command = std::make_shared<CompareResultsCommand>();
-  add_file(*app, "before", command->before, "The paper.json to compare with")->type_name("BEFORE.json");
-  add_file(*app, "after", command->after, "The paper.json to judge")->type_name("AFTER.json");
-  app->add_flag("--all", command->is_all, "Show what stayed the same too")->group("Output");
-  const auto add_share = [app](const std::string& name, double& value, const std::string& help) {
-    app->add_option(name, value, help)->check(share())->type_name("SHARE")->group("Judgement")->capture_default_str();
-  };
-  add_share("--least-time-change", command->comparing.least_time_change, "Durations that differ by less are the same");
-  add_share("--least-change", command->comparing.least_change, "... and nodes, distances and evaluations");
-  add_share("--error-rate", command->comparing.error_rate, "Chance of any wrong verdict at all");
-  return {.options = app, .run = [command](const std::stop_token&) { command->run(); }};
+  return make_command<CompareResultsCommand>(*app, add_options);
 }
 
 }  // namespace cloud2csg::app

@@ -6,6 +6,7 @@
 
 #include "bench/experiment/paper.hpp"
 #include "bench/experiment/paper_tables.hpp"
+#include "bench/experiment/resume_check.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg {
@@ -23,23 +24,15 @@ constexpr std::array<ComparedMeasure, 4> k_measures{
      {"rms distance", [](const PaperRun& run) { return run.fit.rms_distance; }, false},
      {"evaluations", [](const PaperRun& run) { return static_cast<double>(run.evaluations); }, false}}};
 
-template <typename Value>
-void require_same(const char* option, const Value& before, const Value& after) {
-  if (before == after) return;
-  throw Error({.file = {},
-               .where = option,
-               .expected = fmt::format("the results cannot be compared: {} and {}", before, after),
-               .remedy = "compare results of the same options"});
-}
-
+/// All but repeats and their seeds.
 void check_comparable(const PaperOptions& a, const PaperOptions& b) {
-  require_same("models", fmt::format("{}", fmt::join(a.models, ", ")), fmt::format("{}", fmt::join(b.models, ", ")));
-  require_same("low points", a.low_points, b.low_points);
-  require_same("high points", a.high_points, b.high_points);
-  require_same("noise", a.noise, b.noise);
-  require_same("preset", a.preset, b.preset);
-  require_same("evaluator", a.evaluator, b.evaluator);
-  require_same("threads", a.threads, b.threads);
+  for_each_field<PaperOptions>([&](auto member, const OptionField& field) {
+    if (field.name == "repeats" || field.name == "seed" || a.*member == b.*member) return;
+    throw Error({.where = spaced(field.name),
+                 .expected = fmt::format("the results cannot be compared: {} and {}", value_text(a.*member),
+                                         value_text(b.*member)),
+                 .remedy = "compare results of the same options"});
+  });
 }
 
 Verdict judge(const Change& change, double least_change, double error_rate) {
@@ -79,20 +72,6 @@ std::vector<Change> measured_changes(const PaperResults& before, const PaperResu
 }
 
 }  // namespace
-
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::same:
-      return "same";
-    case Verdict::better:
-      return "better";
-    case Verdict::worse:
-      return "worse";
-    case Verdict::unknown:
-      return "unknown";
-  }
-  return "";
-}
 
 std::vector<Change> compare_paper_results(const PaperResults& before, const PaperResults& after,
                                           const ResultComparisonOptions& options) {

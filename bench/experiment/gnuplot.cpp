@@ -28,10 +28,8 @@ bool run_gnuplot(const std::filesystem::path& script, const std::filesystem::pat
   const RunEnd end = run_program({"gnuplot", script.string()}, picture, complaint.path(), k_limit);
   if (end == RunEnd::not_installed) return false;
   if (end != RunEnd::done) {
-    throw Error({.file = script.string(),
-                 .where = {},
-                 .expected = "gnuplot failed: " + last_line(read_text_file(complaint.path())),
-                 .remedy = {}});
+    throw Error(
+        {.file = script.string(), .expected = "gnuplot failed: " + last_line(read_text_file(complaint.path()))});
   }
   return true;
 }

@@ -45,7 +45,7 @@ Environment environment_from(const Json& json) {
 }
 
 void refuse_results(const std::filesystem::path& file, const ResultsFormat& format, const std::string& expected) {
-  throw Error({.file = file.string(), .where = {}, .expected = expected, .remedy = std::string(format.remedy)});
+  throw Error({.file = file.string(), .expected = expected, .remedy = std::string(format.remedy)});
 }
 
 Json read_results_json(const std::filesystem::path& file, const ResultsFormat& format) {

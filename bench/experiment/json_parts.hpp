@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bench/experiment/paper.hpp"
 
@@ -21,6 +23,52 @@ using Json = nlohmann::ordered_json;
 
 [[nodiscard]] Json environment_json(const Environment& environment);
 [[nodiscard]] Environment environment_from(const Json& json);
+
+template <typename Value>
+[[nodiscard]] Json value_json(const Value& value) {
+  if constexpr (HasNames<Value>) {
+    return to_string(value);
+  } else {
+    return value;
+  }
+}
+template <typename Value>
+[[nodiscard]] Json value_json(const std::vector<Value>& values) {
+  Json list = Json::array();
+  for (const Value& value : values) list.push_back(value_json(value));
+  return list;
+}
+template <typename Value>
+void read_value(const Json& json, Value& value) {
+  if constexpr (HasNames<Value>) {
+    const std::optional<Value> named = enum_named<Value>(json.get<std::string>());
+    if (!named) throw invalid_option("options", "there is none of the name " + json.get<std::string>());
+    value = *named;
+  } else {
+    json.get_to(value);
+  }
+}
+template <typename Value>
+void read_value(const Json& json, std::vector<Value>& values) {
+  values.clear();
+  for (const Json& item : json) read_value(item, values.emplace_back());
+}
+
+/// The fields of an experiment's options, by their names.
+template <HasOptionTable Options>
+[[nodiscard]] Json options_json(const Options& options) {
+  Json json;
+  for_each_field<Options>(
+      [&](auto member, const OptionField& field) { json[std::string(field.name)] = value_json(options.*member); });
+  return json;
+}
+template <HasOptionTable Options>
+[[nodiscard]] Options options_from(const Json& json) {
+  Options options;
+  for_each_field<Options>(
+      [&](auto member, const OptionField& field) { read_value(json.at(std::string(field.name)), options.*member); });
+  return options;
+}
 
 /// A kind of results file.
 struct ResultsFormat {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,26 +28,56 @@ struct PaperMode {
 [[nodiscard]] const PaperMode& paper_mode(std::string_view name);
 
 enum class Sampling { low, high };
-/// "low", "high"
-[[nodiscard]] std::string_view to_string(Sampling sampling);
+constexpr auto names_of(Sampling /*any*/) {
+  return std::to_array<EnumName<Sampling>>({{"low", Sampling::low}, {"high", Sampling::high}});
+}
+
+enum class PaperPreset {
+  paper,    ///< its weights and search, nothing added
+  standard  ///< "default"
+};
+constexpr auto names_of(PaperPreset /*any*/) {
+  return std::to_array<EnumName<PaperPreset>>({{"paper", PaperPreset::paper}, {"default", PaperPreset::standard}});
+}
+
+enum class PaperEvaluator {
+  classes,   ///< extract_csg()
+  reference  ///< the paper's steps alone, each tree evaluated at each point as its program does
+};
+constexpr auto names_of(PaperEvaluator /*any*/) {
+  return std::to_array<EnumName<PaperEvaluator>>(
+      {{"classes", PaperEvaluator::classes}, {"reference", PaperEvaluator::reference}});
+}
 
 struct PaperOptions {
-  std::vector<std::string> models = {};  ///< NAME for the file NAME.json of the folder of models
-  std::size_t low_points = 10'000;       ///< of a cloud of low sampling
-  std::size_t high_points = 150'000;     ///< ... and of high sampling
-  double noise = 0.01;                   ///< standard deviation of each coordinate (paper)
-  std::size_t repeats = 5;               ///< runs a mode, each with a seed of its own for the search
-  std::uint64_t seed = 1;                ///< of the clouds, and of the search of the first repeat
-  std::string preset = "paper";          ///< "paper": its weights and search, nothing added; or "default"
-  /// "classes": extract_csg(); or "reference": the paper's steps alone, each tree evaluated at each point as its
-  /// program does, which is thousands of times slower. The latter needs preset "paper".
-  std::string evaluator = "classes";
-  int threads = 1;  ///< of the modes that are parallel; no more than the machine has cores
+  std::vector<std::string> models = {};
+  std::size_t low_points = 10'000;
+  std::size_t high_points = 150'000;
+  double noise = 0.01;
+  std::size_t repeats = 5;
+  std::uint64_t seed = 1;
+  PaperPreset preset = PaperPreset::paper;
+  PaperEvaluator evaluator = PaperEvaluator::classes;
+  int threads = 1;
 
   friend bool operator==(const PaperOptions&, const PaperOptions&) = default;
 };
-/// @throws Error naming the field
-void validate(const PaperOptions& options);
+void option_table(OptionsOf<PaperOptions>, auto&& field) {
+  using O = PaperOptions;
+  field(&O::models, "models", "NAME for the file NAME.json of the folder of models", k_library);
+  field(&O::low_points, "low_points", "Points of a cloud, low sampling", at_least(1));
+  field(&O::high_points, "high_points", "Points of a cloud, high sampling", at_least(2));
+  field(&O::noise, "noise", "Standard deviation by which each coordinate is moved", at_least(0), {.unit = "SIGMA"});
+  field(&O::repeats, "repeats", "Runs of each mode, with a seed each for the search", at_least(1));
+  field(&O::seed, "seed", "Of the clouds and of the first repeat's search");
+  field(&O::preset, "preset", "paper: the paper's weights and search, nothing added");
+  field(&O::evaluator, "evaluator",
+        "reference: the paper's steps alone, each tree at each point, thousands of times slower");
+  field(&O::threads, "threads", "Of the modes that are parallel; no more than the machine has cores", at_least(1),
+        k_library);
+}
+/// No models, or one twice; as many points for both samplings; the reference with the preset `default`.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const PaperOptions& options);
 
 /// Where and with what numbers were measured.
 struct Environment {
@@ -147,7 +179,10 @@ enum class Verdict {
   unknown,  ///< fewer than two repeats on one side
 };
 /// "same", "better", "worse", "unknown"
-[[nodiscard]] std::string_view to_string(Verdict verdict);
+constexpr auto names_of(Verdict /*any*/) {
+  return std::to_array<EnumName<Verdict>>(
+      {{"same", Verdict::same}, {"better", Verdict::better}, {"worse", Verdict::worse}, {"unknown", Verdict::unknown}});
+}
 
 /// One measure of one model, sampling and mode in two results.
 struct Change {
@@ -161,13 +196,21 @@ struct Change {
 };
 
 struct ResultComparisonOptions {
-  /// A duration that differs by less than this share is the same: between two experiments on a machine, means move by
-  /// more than the spread within one tells.
   double least_time_change = 0.1;
-  double least_change = 0.02;  ///< the same for what does not depend on the machine: nodes, distance, evaluations
-  /// Chance that any of all the changes is called better or worse by accident (Bonferroni's correction).
+  double least_change = 0.02;
   double error_rate = 0.05;
 };
+void option_table(OptionsOf<ResultComparisonOptions>, auto&& field) {
+  using O = ResultComparisonOptions;
+  field(&O::least_time_change, "least_time_change",
+        "Durations that differ by less than this share are the same. Between two experiments on a machine, means move "
+        "by more than the spread within one tells.",
+        k_share, {.unit = "SHARE"});
+  field(&O::least_change, "least_change", "... and nodes, distances and evaluations", k_share, {.unit = "SHARE"});
+  field(&O::error_rate, "error_rate",
+        "Chance that any of all the changes is called better or worse by accident (Bonferroni's correction)", k_share,
+        {.unit = "P"});
+}
 
 /// The measures of `after` against those of `before`: durations of all modes, the rest of BST and SST. One is better or
 /// worse when Welch's t-test says that the means differ, and they do by enough to matter.

@@ -9,24 +9,6 @@ constexpr ResultsFormat k_format{.name = "cloud2csg-paper",
                                  .what = "results of the paper's experiment",
                                  .remedy = "give the paper.json that 'cloud2csg bench paper' wrote"};
 
-Json options_json(const PaperOptions& o) {
-  return {{"models", o.models}, {"low_points", o.low_points}, {"high_points", o.high_points},
-          {"noise", o.noise},   {"repeats", o.repeats},       {"seed", o.seed},
-          {"preset", o.preset}, {"evaluator", o.evaluator},   {"threads", o.threads}};
-}
-
-PaperOptions options_from(const Json& json) {
-  return {.models = json.at("models"),
-          .low_points = json.at("low_points"),
-          .high_points = json.at("high_points"),
-          .noise = json.at("noise"),
-          .repeats = json.at("repeats"),
-          .seed = json.at("seed"),
-          .preset = json.at("preset"),
-          .evaluator = json.at("evaluator"),
-          .threads = json.at("threads")};
-}
-
 Json run_json(const PaperRun& run) {
   return {{"model", run.name.model},
           {"sampling", to_string(run.name.sampling)},
@@ -72,7 +54,7 @@ PaperRun run_from(const Json& json) {
 }
 
 PaperResults results_from(const Json& json) {
-  PaperResults results{.options = options_from(json.at("options")),
+  PaperResults results{.options = options_from<PaperOptions>(json.at("options")),
                        .environment = environment_from(json.at("environment"))};
   for (const Json& model : json.at("models")) {
     results.models.push_back({.name = model.at("name"),

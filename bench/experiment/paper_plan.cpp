@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "bench/experiment/paper.hpp"
-#include "bench/experiment/require.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -28,33 +26,26 @@ std::span<const PaperMode> paper_modes() {
 const PaperMode& paper_mode(std::string_view name) {
   const auto* const found =
       std::find_if(k_modes.begin(), k_modes.end(), [name](const PaperMode& mode) { return mode.name == name; });
-  require(found != k_modes.end(), "mode", fmt::format("expected a mode of the paper, found '{}'", name));
+  if (found == k_modes.end()) {
+    throw invalid_option("mode", fmt::format("expected a mode of the paper, found '{}'", name));
+  }
   return *found;
 }
 
-std::string_view to_string(Sampling sampling) {
-  return sampling == Sampling::low ? "low" : "high";
-}
-
-void validate(const PaperOptions& options) {
-  require(!options.models.empty(), "models", "expected one at least, found none");
+std::optional<OptionConflict> conflict_in(const PaperOptions& options) {
+  if (options.models.empty()) return OptionConflict{"models", "expected one at least, found none"};
   for (auto name = options.models.begin(); name != options.models.end(); ++name) {
-    require(std::find(options.models.begin(), name, *name) == name, "models",
-            fmt::format("'{}' is named twice", *name));
+    if (std::find(options.models.begin(), name, *name) == name) continue;
+    return OptionConflict{"models", fmt::format("'{}' is named twice", *name)};
   }
-  require(options.low_points >= 1, "low_points", "expected 1 or more, found 0");
-  require(options.high_points > options.low_points, "high_points",
-          fmt::format("expected more than low_points ({}), found {}", options.low_points, options.high_points));
-  require(std::isfinite(options.noise) && options.noise >= 0, "noise",
-          fmt::format("expected a number of 0 or more, found {}", options.noise));
-  require(options.repeats >= 1, "repeats", "expected 1 or more, found 0");
-  require(options.preset == "paper" || options.preset == "default", "preset",
-          fmt::format("expected paper or default, found '{}'", options.preset));
-  require(options.evaluator == "classes" || options.evaluator == "reference", "evaluator",
-          fmt::format("expected classes or reference, found '{}'", options.evaluator));
-  require(options.evaluator == "classes" || options.preset == "paper", "evaluator",
-          "expected classes, since reference goes with the preset paper only");
-  require(options.threads >= 1, "threads", fmt::format("expected 1 or more, found {}", options.threads));
+  if (options.high_points <= options.low_points) {
+    return OptionConflict{"high_points", fmt::format("expected more than `low_points` ({}), found {}",
+                                                     options.low_points, options.high_points)};
+  }
+  if (options.evaluator == PaperEvaluator::reference && options.preset != PaperPreset::paper) {
+    return OptionConflict{"evaluator", "expected classes, since reference goes with `preset` paper only"};
+  }
+  return std::nullopt;
 }
 
 std::vector<RunName> plan_runs(const PaperOptions& options) {

@@ -22,8 +22,9 @@ std::string setting(const PaperResults& results) {
       "Preset {}, evaluator {}, noise {}, {} repeats with seeds {} to {} for the search, one cloud a model and "
       "sampling (seed {}).\n"
       "Parallel modes use {} threads. Mean ± standard deviation over the repeats.\n",
-      describe(results.environment), first->finished, last->finished, options.preset, options.evaluator, options.noise,
-      options.repeats, options.seed, options.seed + options.repeats - 1, options.seed, options.threads);
+      describe(results.environment), first->finished, last->finished, to_string(options.preset),
+      to_string(options.evaluator), options.noise, options.repeats, options.seed, options.seed + options.repeats - 1,
+      options.seed, options.threads);
 }
 
 std::string mode_check(const PaperResults& results) {

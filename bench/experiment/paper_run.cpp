@@ -14,7 +14,7 @@ namespace cloud2csg {
 namespace {
 
 ExtractOptions extract_options(const PaperOptions& options, const PaperMode& mode, std::uint64_t seed) {
-  ExtractOptions extract = options.preset == "paper" ? paper_options() : ExtractOptions{};
+  ExtractOptions extract = options.preset == PaperPreset::paper ? paper_options() : ExtractOptions{};
   extract.strategy = mode.strategy;
   extract.parallel = mode.parallel;
   extract.seed = seed;
@@ -55,7 +55,7 @@ class CloudRuns {
                                .seed = options.seed},
                               run_)) {
     // Not measured: threads are started and memory is got from the system once. What takes long is not worth it.
-    if (options.evaluator == "classes") (void)extraction(paper_mode("SMTPGA"), options.seed);
+    if (options.evaluator == PaperEvaluator::classes) (void)extraction(paper_mode("SMTPGA"), options.seed);
   }
 
   [[nodiscard]] PaperRun make(const RunName& name) const {
@@ -65,7 +65,7 @@ class CloudRuns {
  private:
   [[nodiscard]] Extraction extraction(const PaperMode& mode, std::uint64_t seed) const {
     const ExtractOptions extract = extract_options(options_, mode, seed);
-    Extraction result = options_.evaluator == "reference"
+    Extraction result = options_.evaluator == PaperEvaluator::reference
                             ? extract_as_in_paper(cloud_, model_.primitives, extract, run_)
                             : extract_csg(cloud_, model_.primitives, extract, run_);
     // The best tree so far is no result of the mode.

@@ -39,17 +39,7 @@ ModelDetails details_of(const std::string& name, const Model& model) {
 
 void check_same_experiment(const std::filesystem::path& file, const PaperResults& there, const PaperResults& now) {
   const ResumeCheck check(file);
-  const PaperOptions& a = there.options;
-  const PaperOptions& b = now.options;
-  check.same("models", fmt::format("{}", fmt::join(a.models, ", ")), fmt::format("{}", fmt::join(b.models, ", ")));
-  check.same("low points", a.low_points, b.low_points);
-  check.same("high points", a.high_points, b.high_points);
-  check.same("noise", a.noise, b.noise);
-  check.same("repeats", a.repeats, b.repeats);
-  check.same("seed", a.seed, b.seed);
-  check.same("preset", a.preset, b.preset);
-  check.same("evaluator", a.evaluator, b.evaluator);
-  check.same("threads", a.threads, b.threads);
+  check.same_options(there.options, now.options);
   check.same_environment(there.environment, now.environment);
   const auto same_model = [](const ModelDetails& x, const ModelDetails& y) { return x.fingerprint == y.fingerprint; };
   if (!std::equal(there.models.begin(), there.models.end(), now.models.begin(), now.models.end(), same_model)) {

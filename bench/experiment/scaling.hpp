@@ -18,25 +18,42 @@ namespace cloud2csg {
 
 struct ScalingOptions {
   std::vector<Family> families = {Family::chain, Family::grid, Family::plate, Family::random, Family::nest};
-  /// Sizes of the models. Each is extracted from points_per_primitive points a primitive, and from at_points.
   std::vector<std::size_t> primitives = {10, 30, 100, 300, 1000};
   std::size_t points_per_primitive = 500;
   std::size_t at_points = 100'000;
-  /// Sizes of the clouds of the model with at_primitives primitives.
   std::vector<std::size_t> points = {10'000, 30'000, 100'000, 300'000, 1'000'000};
   std::size_t at_primitives = 100;
-  /// Sizes of the cliques of family random with at_primitives primitives and at_points points.
   std::vector<std::size_t> cliques = {2, 4, 6, 8, 10, 12};
-  double noise = 0.005;           ///< standard deviation of each coordinate; features are of about unit size
-  std::size_t repeats = 3;        ///< of each size, each with a seed of its own for model, cloud and search
-  std::uint64_t seed = 1;         ///< of the first repeat
-  int threads = 1;                ///< the largest of each family is also run on one thread
-  double time_limit_seconds = 0;  ///< for the search of a single run, which is then not complete; 0: none
+  double noise = 0.005;
+  std::size_t repeats = 3;
+  std::uint64_t seed = 1;
+  int threads = 1;
+  double time_limit_seconds = 0;
 
   friend bool operator==(const ScalingOptions&, const ScalingOptions&) = default;
 };
-/// @throws Error naming the field
-void validate(const ScalingOptions& options);
+void option_table(OptionsOf<ScalingOptions>, auto&& field) {
+  using O = ScalingOptions;
+  field(&O::families, "families", "Models of these families", {.option = "family"});
+  field(&O::primitives, "primitives",
+        "Sizes of models; each is extracted from `points_per_primitive` points a primitive, and from `at_points`",
+        k_family_sizes);
+  field(&O::points_per_primitive, "points_per_primitive", "Points of these, by primitive", at_least(1));
+  field(&O::at_points, "at_points", "Points of these in all, measured as well", at_least(1));
+  field(&O::points, "points", "Sizes of clouds of the model with `at_primitives`", from_to(1, 1e9));
+  field(&O::at_primitives, "at_primitives", "Primitives of their model", k_family_sizes);
+  field(&O::cliques, "cliques", "Sizes of cliques, of family random with `at_primitives` and `at_points`",
+        k_clique_sizes);
+  field(&O::noise, "noise", "Standard deviation by which each coordinate is moved. Features are of about unit size.",
+        at_least(0), {.unit = "SIGMA"});
+  field(&O::repeats, "repeats", "Runs of each size, with a seed each", at_least(1));
+  field(&O::seed, "seed", "Of model, cloud and search of the first repeat");
+  field(&O::threads, "threads", "The largest of each family is also run on one thread", at_least(1), k_library);
+  field(&O::time_limit_seconds, "time_limit_seconds",
+        "Seconds for the search of a run, which is then not complete; 0: no limit", at_least(0), {.unit = "SECONDS"});
+}
+/// No families or sizes, or one twice.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const ScalingOptions& options);
 
 /// A size of the task.
 struct ScalingCase {
@@ -57,8 +74,13 @@ enum class Sweep {
   cliques,
 };
 [[nodiscard]] std::span<const Sweep> all_sweeps();
-/// "primitives", "primitives_at_points", "points", "cliques": as in the names of files.
-[[nodiscard]] std::string_view to_string(Sweep sweep);
+/// As in the names of files.
+constexpr auto names_of(Sweep /*any*/) {
+  return std::to_array<EnumName<Sweep>>({{"primitives", Sweep::primitives},
+                                         {"primitives_at_points", Sweep::primitives_at_points},
+                                         {"points", Sweep::points},
+                                         {"cliques", Sweep::cliques}});
+}
 
 /// The cases of a sweep for a family, smallest first; none for cliques of other families than random.
 [[nodiscard]] std::vector<ScalingCase> cases_of(const ScalingOptions& options, Sweep sweep, Family family);

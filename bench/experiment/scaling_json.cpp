@@ -9,40 +9,6 @@ constexpr ResultsFormat k_format{.name = "cloud2csg-scaling",
                                  .what = "results of the scaling experiment",
                                  .remedy = "give the scaling.json that 'cloud2csg bench scaling' wrote"};
 
-Json options_json(const ScalingOptions& o) {
-  Json families = Json::array();
-  for (const Family family : o.families) families.push_back(to_string(family));
-  return {{"families", std::move(families)},
-          {"primitives", o.primitives},
-          {"points_per_primitive", o.points_per_primitive},
-          {"at_points", o.at_points},
-          {"points", o.points},
-          {"at_primitives", o.at_primitives},
-          {"cliques", o.cliques},
-          {"noise", o.noise},
-          {"repeats", o.repeats},
-          {"seed", o.seed},
-          {"threads", o.threads},
-          {"time_limit_seconds", o.time_limit_seconds}};
-}
-
-ScalingOptions options_from(const Json& json) {
-  std::vector<Family> families;
-  for (const Json& family : json.at("families")) families.push_back(family_of(family.get<std::string>()));
-  return {.families = std::move(families),
-          .primitives = json.at("primitives"),
-          .points_per_primitive = json.at("points_per_primitive"),
-          .at_points = json.at("at_points"),
-          .points = json.at("points"),
-          .at_primitives = json.at("at_primitives"),
-          .cliques = json.at("cliques"),
-          .noise = json.at("noise"),
-          .repeats = json.at("repeats"),
-          .seed = json.at("seed"),
-          .threads = json.at("threads"),
-          .time_limit_seconds = json.at("time_limit_seconds")};
-}
-
 Json run_json(const ScalingRun& run) {
   const ScalingCase& one = run.scaling_case;
   return {{"family", to_string(one.family)},
@@ -91,7 +57,7 @@ ScalingRun run_from(const Json& json) {
 }
 
 ScalingResults results_from(const Json& json) {
-  ScalingResults results{.options = options_from(json.at("options")),
+  ScalingResults results{.options = options_from<ScalingOptions>(json.at("options")),
                          .environment = environment_from(json.at("environment"))};
   for (const Json& run : json.at("runs")) results.runs.push_back(run_from(run));
   return results;

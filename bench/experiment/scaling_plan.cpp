@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "bench/experiment/require.hpp"
 #include "bench/experiment/scaling.hpp"
 
 namespace cloud2csg {
@@ -13,12 +11,14 @@ namespace {
 constexpr std::array k_sweeps{Sweep::primitives, Sweep::primitives_at_points, Sweep::points, Sweep::cliques};
 constexpr std::size_t k_clique_size = FamilyOptions{}.clique_size;
 
-/// A list of sizes of which no two are the same; it may be empty.
-void require_sizes(const std::vector<std::size_t>& sizes, const char* field) {
-  for (auto size = sizes.begin(); size != sizes.end(); ++size) {
-    require(*size >= 1, field, "expected 1 or more, found 0");
-    require(std::find(sizes.begin(), size, *size) == size, field, fmt::format("{} is named twice", *size));
+/// An entry of a list that is in it twice.
+template <typename Value>
+std::optional<OptionConflict> repeated_in(const std::vector<Value>& values, const char* field) {
+  for (auto value = values.begin(); value != values.end(); ++value) {
+    if (std::find(values.begin(), value, *value) == value) continue;
+    return OptionConflict{field, value_text(*value) + " is named twice"};
   }
+  return std::nullopt;
 }
 
 void add_if_new(std::vector<ScalingCase>& cases, const ScalingCase& one) {
@@ -40,45 +40,19 @@ std::vector<ScalingCase> cases_of(const ScalingOptions& options, Family family) 
 
 }  // namespace
 
-void validate(const ScalingOptions& options) {
-  require(!options.families.empty(), "families", "expected one at least, found none");
-  for (auto family = options.families.begin(); family != options.families.end(); ++family) {
-    require(std::find(options.families.begin(), family, *family) == family, "families",
-            fmt::format("{} is named twice", to_string(*family)));
+std::optional<OptionConflict> conflict_in(const ScalingOptions& options) {
+  if (options.families.empty()) return OptionConflict{"families", "expected one at least, found none"};
+  if (options.primitives.empty() && options.points.empty()) {
+    return OptionConflict{"primitives", "expected one size at least"};
   }
-  require_sizes(options.primitives, "primitives");
-  require_sizes(options.points, "points");
-  require_sizes(options.cliques, "cliques");
-  require(!options.primitives.empty() || !options.points.empty(), "primitives", "expected one size at least");
-  for (const std::size_t size : options.primitives) validate(FamilyOptions{.primitives = size});
-  for (const std::size_t size : options.cliques) validate(FamilyOptions{.clique_size = size});
-  validate(FamilyOptions{.primitives = options.at_primitives});
-  require(options.points_per_primitive >= 1, "points_per_primitive", "expected 1 or more, found 0");
-  require(options.at_points >= 1, "at_points", "expected 1 or more, found 0");
-  require(std::isfinite(options.noise) && options.noise >= 0, "noise",
-          fmt::format("expected a number of 0 or more, found {}", options.noise));
-  require(options.repeats >= 1, "repeats", "expected 1 or more, found 0");
-  require(options.threads >= 1, "threads", fmt::format("expected 1 or more, found {}", options.threads));
-  require(std::isfinite(options.time_limit_seconds) && options.time_limit_seconds >= 0, "time_limit_seconds",
-          fmt::format("expected a number of 0 or more, found {}", options.time_limit_seconds));
+  if (auto conflict = repeated_in(options.families, "families")) return conflict;
+  if (auto conflict = repeated_in(options.primitives, "primitives")) return conflict;
+  if (auto conflict = repeated_in(options.points, "points")) return conflict;
+  return repeated_in(options.cliques, "cliques");
 }
 
 std::span<const Sweep> all_sweeps() {
   return k_sweeps;
-}
-
-std::string_view to_string(Sweep sweep) {
-  switch (sweep) {
-    case Sweep::primitives:
-      return "primitives";
-    case Sweep::primitives_at_points:
-      return "primitives_at_points";
-    case Sweep::points:
-      return "points";
-    case Sweep::cliques:
-      return "cliques";
-  }
-  return "";
 }
 
 std::vector<ScalingCase> cases_of(const ScalingOptions& options, Sweep sweep, Family family) {

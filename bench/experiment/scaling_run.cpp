@@ -38,33 +38,9 @@ void warm_up(const ScalingOptions& options, const RunContext& run) {
   (void)run_scaling_case(small, options.seed, options, run);
 }
 
-std::string list_of(const std::vector<std::size_t>& sizes) {
-  return fmt::format("{}", fmt::join(sizes, ", "));
-}
-
-std::string list_of(const std::vector<Family>& families) {
-  std::vector<std::string_view> names;
-  names.reserve(families.size());
-  for (const Family family : families) names.push_back(to_string(family));
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
 void check_same_experiment(const std::filesystem::path& file, const ScalingResults& there, const ScalingResults& now) {
   const ResumeCheck check(file);
-  const ScalingOptions& a = there.options;
-  const ScalingOptions& b = now.options;
-  check.same("families", list_of(a.families), list_of(b.families));
-  check.same("primitives", list_of(a.primitives), list_of(b.primitives));
-  check.same("points per primitive", a.points_per_primitive, b.points_per_primitive);
-  check.same("at points", a.at_points, b.at_points);
-  check.same("points", list_of(a.points), list_of(b.points));
-  check.same("at primitives", a.at_primitives, b.at_primitives);
-  check.same("cliques", list_of(a.cliques), list_of(b.cliques));
-  check.same("noise", a.noise, b.noise);
-  check.same("repeats", a.repeats, b.repeats);
-  check.same("seed", a.seed, b.seed);
-  check.same("threads", a.threads, b.threads);
-  check.same("time limit", a.time_limit_seconds, b.time_limit_seconds);
+  check.same_options(there.options, now.options);
   check.same_environment(there.environment, now.environment);
 }
 

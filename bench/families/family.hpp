@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/model.hpp"
 
 /// Families of models with known truth, of any size: for measuring how the method scales and how good its trees are.
@@ -28,22 +31,39 @@ enum class Family {
 
 /// All, in the order above.
 [[nodiscard]] std::span<const Family> all_families();
-/// "chain", "grid", "plate", "random", "nest", "panel"
-[[nodiscard]] std::string_view to_string(Family family);
+constexpr auto names_of(Family /*any*/) {
+  return std::to_array<EnumName<Family>>({{"chain", Family::chain},
+                                          {"grid", Family::grid},
+                                          {"plate", Family::plate},
+                                          {"random", Family::random},
+                                          {"nest", Family::nest},
+                                          {"panel", Family::panel}});
+}
 /// @throws Error when there is none of this name.
 [[nodiscard]] Family family_of(std::string_view name);
 
 struct FamilyOptions {
-  std::size_t primitives = 20;  ///< exactly so many
-  /// random: primitives of a cluster, that is of a largest clique, 2 to 20; the last may have fewer.
+  std::size_t primitives = 20;
   std::size_t clique_size = 4;
-  /// random: clusters have this many to clique_size primitives, drawn evenly; 0: all have clique_size.
   std::size_t least_clique_size = 0;
-  std::size_t levels = 5;  ///< nest: boxes in a nest, 1 to 8; the last nest may have fewer
+  std::size_t levels = 5;
   std::uint64_t seed = 1;
 };
-/// @throws Error naming the field
-void validate(const FamilyOptions& options);
+inline constexpr OptionRange k_family_sizes = from_to(1, 1e6);
+inline constexpr OptionRange k_clique_sizes = from_to(2, 20);
+void option_table(OptionsOf<FamilyOptions>, auto&& field) {
+  using O = FamilyOptions;
+  field(&O::primitives, "primitives", "Exactly so many", k_family_sizes);
+  field(&O::clique_size, "clique_size",
+        "random: primitives of a cluster, that is of a largest clique; the last may have fewer", k_clique_sizes);
+  field(&O::least_clique_size, "least_clique_size",
+        "random: clusters have this many to `clique_size` primitives, drawn evenly; 0: all have that many",
+        OptionRange{.least = k_clique_sizes.least, .most = k_clique_sizes.most, .takes_zero = true});
+  field(&O::levels, "levels", "nest: boxes in a nest; the last nest may have fewer", from_to(1, 8));
+  field(&O::seed, k_seed);
+}
+/// More primitives in the least cluster than in the largest.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const FamilyOptions& options);
 
 /// A model of a family. Its tree has each primitive as one leaf. All solids are bounded, and their overlap graph is
 /// connected. Of each primitive, a part is surface of the solid, so that it can be recovered: about a twentieth of its

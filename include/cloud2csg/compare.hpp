@@ -10,11 +10,21 @@
 
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct CompareOptions {
-  int resolution = 256;  ///< about resolution^2 columns through the joint bounds, for the volumes; 2 to 8192
-  std::size_t surface_samples = 100'000;  ///< points on each surface that is not a cloud, for the distances
-  std::uint64_t seed = 1;                 ///< of the surface samples
+  int resolution = 256;
+  std::size_t surface_samples = 100'000;
+  std::uint64_t seed = 1;
 };
+void option_table(OptionsOf<CompareOptions>, auto&& field) {
+  using O = CompareOptions;
+  field(&O::resolution, "resolution",
+        "Volumes: columns along the longest side of the joint bounds. About the square of it in all.",
+        from_to(2, 8192));
+  field(&O::surface_samples, "surface_samples", "Distances: points on each surface that is not a cloud", at_least(1),
+        {.option = "samples"});
+  field(&O::seed, k_seed);
+}
 
 /// How alike two solids are. What cannot be had from the inputs (a volume from a cloud or from a mesh with holes, a
 /// tree from a mesh) is absent.

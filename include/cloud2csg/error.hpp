@@ -13,10 +13,10 @@ namespace cloud2csg {
 class Error : public std::exception {
  public:
   struct Parts {
-    std::string file;      ///< the file at fault; empty when the input is not a file
-    std::string where;     ///< line, byte, or path of the field, e.g. "line 12", "/primitives/3/radius"
-    std::string expected;  ///< what was expected and what was found
-    std::string remedy;    ///< what to do about it; may be empty
+    std::string file = {};      ///< the file at fault; empty when the input is not a file
+    std::string where = {};     ///< line, byte, or path of the field, e.g. "line 12", "/primitives/3/radius"
+    std::string expected = {};  ///< what was expected and what was found
+    std::string remedy = {};    ///< what to do about it; may be empty
   };
 
   explicit Error(Parts parts);
@@ -28,6 +28,10 @@ class Error : public std::exception {
   Parts parts_;
   std::string message_;
 };
+
+/// Refuses a field of an options struct: "search.elites: expected 0 or more, found -1". Fields that texts speak of
+/// stand in `these`: other languages than C++ have names of their own for them.
+[[nodiscard]] Error invalid_option(std::string field, std::string expected, std::string remedy = {});
 
 /// Thrown by stages that have no partial result when the caller's stop token is triggered.
 class Cancelled : public std::exception {

@@ -11,12 +11,23 @@
 
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct OpenScadOptions {
-  int facets = 64;           ///< how many facets a circle has: $fn, in .csg by $fa where that can be
-  int mesh_resolution = 64;  ///< for displaced and expression solids, which become polyhedra
-  bool patterns = true;      ///< write what repeats at equal steps or angles, or mirrored, as loops
-  std::string comment = {};  ///< lines for the head of the file, e.g. the fit; without "//"
+  int facets = 64, mesh_resolution = 64;
+  bool patterns = true;
+  std::string comment = {};
 };
+void option_table(OptionsOf<OpenScadOptions>, auto&& field) {
+  using O = OpenScadOptions;
+  field(&O::facets, "facets", "OpenSCAD (.scad .csg): facets of a full circle. $fn, in .csg by $fa where that can be.",
+        at_least(3));
+  field(&O::mesh_resolution, "mesh_resolution",
+        "Displaced and expression solids, which become polyhedra: cells along the longest side", at_least(4),
+        k_library);
+  field(&O::patterns, "patterns", ".scad: write what repeats at equal steps or angles, or mirrored, as loops",
+        k_library);
+  field(&O::comment, "comment", "Lines for the head of the file, such as the fit; without '//'", k_library);
+}
 
 /// An OpenSCAD program: the values of each primitive as named variables in a section of the customiser, a named module
 /// a primitive, the tree with indentation, chains of the same operation as one block. Of three or more equal solids, or
@@ -33,10 +44,16 @@ struct OpenScadOptions {
 [[nodiscard]] std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives,
                                           const OpenScadOptions& options = {});
 
+/// Its fields: see the table.
 struct ScriptOptions {
-  int facet_resolution = 16;  ///< of what has no exact surface: cells along its longest side
-  std::string comment = {};   ///< lines for the head of the file; without "#"
+  int facet_resolution = 16;
+  std::string comment = {};
 };
+void option_table(OptionsOf<ScriptOptions>, auto&& field) {
+  using O = ScriptOptions;
+  field(&O::facet_resolution, k_facet_resolution);
+  field(&O::comment, "comment", "Lines for the head of the file; without '#'", k_library);
+}
 
 /// A macro for FreeCAD (.FCMacro, Python): a document in which each primitive is an object with its sizes and its
 /// placement, labelled with its id, and each operation one over others. In numbers that are read as they are here.
@@ -51,16 +68,28 @@ struct ScriptOptions {
 [[nodiscard]] std::string to_cadquery(const CsgTree& tree, const PrimitiveSet& primitives,
                                       const ScriptOptions& options = {});
 
+/// Its fields: see the table.
 struct ExportOptions {
   OpenScadOptions openscad = {};
   ScriptOptions script = {};
   MeshingOptions meshing = {};
   BrepOptions brep = {};
-  /// Meshes of the exact solid: mesh_brep(), as near as a fiftieth of the cells of `meshing`. Without, and for trees
-  /// of more than 100 leaves, for what has no exact surface, and where the exact solid has a fault or cannot be had,
-  /// they are those of mesh_surface().
   bool exact_meshes = true;
 };
+void option_table(OptionsOf<ExportOptions>, auto&& field) {
+  using O = ExportOptions;
+  field(&O::openscad, "openscad", "Of .scad and .csg");
+  field(&O::script, "script", "Of .FCMacro and .py");
+  field(&O::meshing, "meshing", "Of .stl, .off, .obj and .3mf");
+  field(&O::brep, "brep", "Of .step, .stp and .brep");
+  field(&O::exact_meshes, "exact_meshes",
+        "Meshes of the exact solid, as near as a fiftieth of the cells of `meshing`. For trees of more than 100 "
+        "leaves, for what has no exact surface, and where the exact solid has a fault or cannot be had, they are made "
+        "by contouring in cells all the same.",
+        {.opposite = "contour",
+         .otherwise = "Meshes by contouring in cells, also where OpenCASCADE could make the exact solid: faster for "
+                      "many primitives"});
+}
 
 /// What a file does not say of itself.
 struct ExportReport {

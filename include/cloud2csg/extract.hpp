@@ -35,45 +35,80 @@ enum class Parallel {
   both,
 };
 
-/// "auto", "cells", "partition", "baseline"; "none", "population", "partitions", "both".
-[[nodiscard]] std::string_view to_string(Strategy strategy);
-[[nodiscard]] std::string_view to_string(Parallel parallel);
+constexpr auto names_of(Strategy /*any*/) {
+  return std::to_array<EnumName<Strategy>>({{"auto", Strategy::automatic},
+                                            {"cells", Strategy::cells},
+                                            {"partition", Strategy::partition},
+                                            {"baseline", Strategy::baseline}});
+}
+constexpr auto names_of(Parallel /*any*/) {
+  return std::to_array<EnumName<Parallel>>({{"none", Parallel::none},
+                                            {"population", Parallel::population},
+                                            {"partitions", Parallel::partitions},
+                                            {"both", Parallel::both}});
+}
 
+/// Its fields: see the table.
 struct ExtractOptions {
   Strategy strategy = Strategy::automatic;
   Parallel parallel = Parallel::both;
   SegmentationOptions segmentation = {};
   ObjectiveOptions objective = {};
-  Precision precision = Precision::automatic;  ///< of distances and angles in the pass over the points
-  GaOptions search = {};                       ///< its seed is not used: see below
-  /// automatic: try cells first, and take their tree where the points contradict at most what is missing here to 1 of
-  /// what they say, and enough say something. Elsewhere partitions are searched too, and the tree of the higher E is
-  /// taken. 0: the tree of the cells wherever there is one; above 1: no cells.
+  Precision precision = Precision::automatic;
+  GaOptions search = {};
   double cell_trust = 0.97;
   SampleCounts cell_samples = {};
   LabelOptions cell_labels = {};
   CellSolveOptions cell_solve = {};
-  /// Solids nearer than this overlap, in the cloud's units. Absent: the measured noise, so that touching faces do.
   std::optional<double> overlap_tolerance = {};
-  /// Judge the trees of a partition without the points inside primitives of other partitions, where no tree over its
-  /// own can be right. The paper judges by all points on its primitives.
-  bool without_strangers = true;
-  /// Take nodes out of the merged tree of a component as long as its E grows; of up to 24 primitives. Where the tree
-  /// of the cells was not taken at once, a local search by E over all points comes last; of up to 127 primitives. The
-  /// paper has neither.
-  bool polish = true;
-  /// Stop the search when so many seconds have passed since the start of the extraction, with the best tree so far. The
-  /// pass over the points, without which there is no tree, is always completed. The one option that makes a result
-  /// depend on the machine's speed.
+  bool without_strangers = true, polish = true;
   std::optional<double> time_limit_seconds = {};
   std::uint64_t seed = 1;
 };
+void option_table(OptionsOf<ExtractOptions>, auto&& field) {
+  using O = ExtractOptions;
+  field(&O::strategy, "strategy",
+        "By cells into which space is cut, by partitions as in the paper, or all primitives at once; auto: by cells, "
+        "and by partitions where the points do not bear them out");
+  field(&O::parallel, "parallel", "What runs in parallel in the search; the result is the same for each");
+  field(&O::segmentation, "segmentation", "Which points lie on which primitive", {.group = "Fit"});
+  field(&O::objective, "objective", "Weights of the objective", {.group = "Fit"});
+  field(&O::precision, "precision", "Of distances and angles; auto: single where the noise is far above rounding",
+        {.group = "Fit"});
+  field(&O::search, "search", "The genetic algorithm; its seed is not used, but that of the extraction",
+        {.group = "Genetic algorithm"});
+  field(&O::cell_trust, "cell_trust",
+        "Strategy auto: take the tree of the cells where the points contradict at most what is missing here to 1 of "
+        "what they say. ... and enough say something. Elsewhere partitions are searched too, and the tree of the "
+        "higher E is taken. 0: the tree of the cells wherever there is one; above 1: no cells.",
+        at_least(0), k_library);
+  field(&O::cell_samples, "cell_samples", "Samples of surfaces, to find cells without points", k_library);
+  field(&O::cell_labels, "cell_labels", "What labels of cells cost", k_library);
+  field(&O::cell_solve, "cell_solve", "From cells to the tree", k_library);
+  field(&O::overlap_tolerance, "overlap_tolerance",
+        "Primitives nearer than this overlap, in the cloud's units. So touching faces do.", at_least(0),
+        {.absent = "the measured noise", .unit = "D", .group = "Fit"});
+  field(&O::without_strangers, "without_strangers",
+        "Judge a partition's trees without points inside primitives of others: no tree of the partition explains them. "
+        "The paper judges by all points on its primitives.",
+        {.option = "no-strangers",
+         .opposite = "strangers",
+         .otherwise = "Judge a partition's trees also by points inside primitives of others"});
+  field(&O::polish, "polish",
+        "Improve the merged trees by the whole cloud. Nodes are taken out as long as E over a component of up to 24 "
+        "primitives grows. Where the tree of the cells was not taken at once, a local search by E over all points "
+        "comes last, of up to 127 primitives. The paper has neither.",
+        {.option = "polish", .opposite = "no-polish", .otherwise = "Take them as they are"});
+  field(&O::time_limit_seconds, "time_limit_seconds",
+        "Take the best tree so far when so many seconds have passed; reading and writing are not counted. The pass "
+        "over the points, without which there is no tree, is always completed. The one option that makes a result "
+        "depend on the machine's speed.",
+        above(0), {.absent = "none", .unit = "SECONDS"});
+  field(&O::seed, k_seed);
+}
 
 /// As in the paper: its weights, its genetic algorithm, no polish, full precision; strategy partition.
 [[nodiscard]] ExtractOptions paper_options();
-
-/// @throws Error naming the field when an option is out of range.
-void validate(const ExtractOptions& options);
 
 /// Wall-clock seconds of each stage; those of the command line (reading, writing) are filled in by it.
 struct StageSeconds {

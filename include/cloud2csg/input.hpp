@@ -13,11 +13,17 @@
 /// Input: points from whatever a file holds, a cloud or a triangle mesh, and what is doubtful about it.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct InputOptions {
-  /// Points to draw from a mesh: enough that details of a hundredth of the part still have dozens.
   std::size_t mesh_points = 100'000;
-  std::uint64_t seed = 1;  ///< of the draw
+  std::uint64_t seed = 1;
 };
+void option_table(OptionsOf<InputOptions>, auto&& field) {
+  using O = InputOptions;
+  field(&O::mesh_points, "mesh_points",
+        "Points to draw from a mesh. Enough that details of a hundredth of the part still have dozens.", at_least(1));
+  field(&O::seed, k_inner_seed);
+}
 
 struct Input {
   PointCloud cloud;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/run_context.hpp"
 
@@ -16,12 +17,19 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// Its fields: see the table.
 struct MeshingOptions {
-  int resolution = 128;  ///< cells along the longest side of the solid's bounds
-  /// Keep the solid's corners even where that makes a few of the small triangles around them overlap. Without, such
-  /// corners are cut off by less than a cell: for programs that need all triangles apart, as OpenSCAD does.
+  int resolution = 128;
   bool corners_first = true;
 };
+void option_table(OptionsOf<MeshingOptions>, auto&& field) {
+  using O = MeshingOptions;
+  field(&O::resolution, "resolution", "Meshes of solids: cells along the longest side of the bounds", from_to(4, 4096));
+  field(&O::corners_first, "corners_first",
+        "Keep the solid's corners even where that makes a few of the small triangles around them overlap. Without, "
+        "such corners are cut off by less than a cell: for programs that need all triangles apart, as OpenSCAD does.",
+        k_library);
+}
 
 /// The surface of a solid as a closed mesh, by dual contouring of its implicit value with the known gradients, so
 /// that sharp edges stay sharp. Every edge has exactly two triangles. Unbounded solids are cut at `bounds`.

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "cloud2csg/advanced/colour.hpp"
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/run_context.hpp"
 
@@ -52,12 +53,19 @@ struct RawCloud {
 /// The points with these indices, in this order, with all that is known of them. O(indices)
 [[nodiscard]] PointCloud select_points(const PointCloud& cloud, std::span<const std::uint32_t> indices);
 
+/// Its fields: see the table.
 struct CloudWriteOptions {
-  bool binary = true;            ///< .ply and .pcd; the others are text always
-  bool double_precision = true;  ///< keeps every bit, in text too; false: float, a file of half the size
+  bool binary = true, double_precision = true;
   /// One a point, or none: red, green and blue in .ply; the others leave them out.
   std::span<const Colour> colours = {};
 };
+void option_table(OptionsOf<CloudWriteOptions>, auto&& field) {
+  using O = CloudWriteOptions;
+  field(&O::binary, "binary", "Binary numbers in .ply and .pcd; the others are text always",
+        {.opposite = "ascii", .otherwise = "Text instead of binary numbers in .ply and .pcd"});
+  field(&O::double_precision, "double_precision",
+        "Keep every bit, in text too; else single precision, a file of half the size", k_library);
+}
 
 /// Writes by the file's ending, as read_point_cloud reads; .pts has no place for normals and leaves them out, .xyzn
 /// needs them. Sensor positions are written to .ply and .pcd (as VIEWPOINT, where they are all the same and not the

@@ -12,22 +12,38 @@
 /// The whole way: a raw cloud in, solids and one tree out.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct ReconstructOptions {
-  /// What somebody knows: these primitives are kept as they are, of any type, with their ids, and only what the points
-  /// show beyond them is detected. Ids are all different.
   PrimitiveSet known = {};
   PrepareOptions preparation = {};
   DetectOptions detection = {};
-  /// Close a side that is missing as a whole, as that on which the part stood, by a plane, and go on with the walls of
-  /// bores where no sensor could see them: else nothing tells how far the solid reaches there. Not where primitives are
-  /// known.
   bool close_unseen = true;
   SolidOptions solids = {};
   ExtractOptions extraction = {};
-  /// Then move and size the solids to where the points are, as in extract_refined_csg(), and take them and the tree
-  /// over them where E is higher so. Not where primitives are known: these stay.
   std::optional<RefineOptions> refine = {};
 };
+void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
+  using O = ReconstructOptions;
+  field(&O::known, "known",
+        "Primitives that are known: they are kept as they are, of any type, with their ids, and only what the points "
+        "show beyond them is detected. Ids are all different.",
+        k_library);
+  field(&O::preparation, "preparation", "How the cloud is cleaned and oriented");
+  field(&O::detection, "detection", "How surfaces are detected");
+  field(&O::close_unseen, "close_unseen",
+        "Close a side that is missing as a whole, as that on which the part stood, by a plane, and go on with the "
+        "walls of bores where no sensor could see them. Else nothing tells how far the solid reaches there. Not where "
+        "primitives are known.",
+        {.opposite = "leave-open",
+         .otherwise = "Do not close a side without any points, as that on which a scanned part stood, by a plane, nor "
+                      "go on with walls of bores that no sensor saw"});
+  field(&O::solids, "solids", "How solids are chosen");
+  field(&O::extraction, "extraction", "How a tree over them is extracted", k_library);
+  field(&O::refine, "refine",
+        "Then move and size the solids to where the points are, and take them where E is higher so. As in "
+        "extract_refined_csg(). Not where primitives are known: these stay.",
+        {.absent = "they stay where they are", .option = k_no_option});
+}
 
 /// Cleans and orients the cloud, detects its surfaces and chooses solids that these bound, with the tree that they were
 /// chosen with: prepare_cloud(),

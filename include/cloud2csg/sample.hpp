@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/point_cloud.hpp"
@@ -9,13 +11,25 @@
 /// Clouds from known shapes: points on a surface, and a range scanner around it.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct SampleOptions {
-  std::size_t count = 10'000;   ///< points to make; used when density is 0
-  double density = 0.0;         ///< points per unit of area; 0 = use count
-  double noise = 0.0;           ///< sigma of the Gaussian displacement of each coordinate (the paper: 0.01)
-  double normal_noise_deg = 0;  ///< sigma of the angle by which normals are tilted
+  std::size_t count = 10'000;
+  double density = 0, noise = 0, normal_noise_deg = 0;
   std::uint64_t seed = 1;
 };
+void option_table(OptionsOf<SampleOptions>, auto&& field) {
+  using O = SampleOptions;
+  field(&O::count, "count", "How many points; used when `density` is 0", {.letter = 'n'});
+  field(&O::density, "density", "Points per unit of area, of models only; 0: use `count`", at_least(0));
+  field(&O::noise, "noise",
+        "Standard deviation by which each coordinate is moved, in the model's units. The paper: 0.01.", at_least(0),
+        {.unit = "SIGMA"});
+  field(&O::normal_noise_deg, "normal_noise_deg",
+        "Standard deviation by which normals are tilted, in degrees; of models only", at_least(0), {.unit = "DEG"});
+  field(&O::seed, k_seed);
+}
+/// Neither a count nor a density.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const SampleOptions& options);
 
 /// Points on a model's surface: uniform by area, only where the primitives' surfaces are the surface of the whole
 /// solid, with outward normals. Positions are moved by the noise after the normal was taken.
@@ -29,38 +43,66 @@ struct SampleOptions {
 
 /// A range scanner that is put around a part, view by view. Lengths are shares of the diagonal of the part's bounds
 /// where nothing else is said; the part's bounding sphere has half that diagonal as radius. The defaults are those of a
-/// fair hand-held scanner on a part that reflects well.
+/// fair hand-held scanner on a part that reflects well. Its fields: see the table.
 struct ScanOptions {
-  std::size_t views = 20;  ///< sensors, spread evenly over a sphere around the part (Fibonacci), turned by the seed
-  /// The part lies on a table, its z axis upright: sensors are above its middle only, and nothing is seen of the side
-  /// on which it lies.
+  std::size_t views = 20;
   bool on_table = false;
-  double distance = 3.0;         ///< from the middle of the part to each sensor, in bounding radii; more than 1
-  double field_of_view_deg = 0;  ///< width and height of what a view sees, up to 170; 0 = just the bounding sphere
-  std::size_t count = 100'000;   ///< points in all; used when angular_step_deg is 0
-  double angular_step_deg = 0;   ///< between neighbouring rays of a view; 0 = what gives `count` points
-
-  /// Sigma of the error along the ray, at the middle's distance and where the ray hits the surface squarely. It grows
-  /// with the square of the range and with 1 / cosine of the incidence, up to twenty times.
-  double noise = 0.0005;
-  double quantisation = 0.0001;  ///< the range is a multiple of this; 0 = any number
-  /// From this incidence on (0 = squarely, 90 = along the surface) returns are missing, with a probability that grows
-  /// evenly up to `grazing_loss` at 90 degrees.
-  double grazing_angle_deg = 70;
-  double grazing_loss = 0.9;
-  double outliers = 0.002;  ///< probability that a return is anywhere on its ray within the bounding sphere
-  /// Probability that a return is between two surfaces, where the ray, as wide as half an angular step, grazes the edge
-  /// of one and sees the other.
-  double mixed_pixels = 0.5;
-  /// Sigmas of the motion by which each view as a whole is out of place: the angle of a turn around the middle of the
-  /// part about a random axis, and each coordinate of a shift.
-  double rotation_deg = 0.02;
-  double translation = 0.0003;
-
-  bool with_normals = false;    ///< the true ones, outward: for tests, no scanner knows them
-  MeshingOptions meshing = {};  ///< scan_model(): the mesh that tells what a ray hits first
+  double distance = 3.0, field_of_view_deg = 0;
+  std::size_t count = 100'000;
+  double angular_step_deg = 0;
+  double noise = 0.0005, quantisation = 0.0001;
+  double grazing_angle_deg = 70, grazing_loss = 0.9;
+  double outliers = 0.002, mixed_pixels = 0.5;
+  double rotation_deg = 0.02, translation = 0.0003;
+  bool with_normals = false;
+  MeshingOptions meshing = {};
   std::uint64_t seed = 1;
 };
+void option_table(OptionsOf<ScanOptions>, auto&& field) {
+  using O = ScanOptions;
+  field(&O::views, "views", "Sensors, spread evenly over a sphere around the part, turned by the seed",
+        from_to(1, 1e6));
+  field(
+      &O::on_table, "on_table",
+      "The part lies on a table, its z axis upright: sensors are above its middle only, and its underside is not seen");
+  field(&O::distance, "distance", "From the middle of the part to each sensor, in radii of its bounding sphere",
+        from_to(1.001, 1e6), {.unit = "R"});
+  field(&O::field_of_view_deg, "field_of_view_deg",
+        "Width and height of a view in degrees; 0: just the bounding sphere", from_to(0, 170), {.unit = "DEG"});
+  field(&O::count, "count", "How many points in all; used when `angular_step_deg` is 0", {.letter = 'n'});
+  field(&O::angular_step_deg, "angular_step_deg",
+        "Degrees between neighbouring rays of a view; 0: what gives `count` points", from_to(0, 170), {.unit = "DEG"});
+  field(&O::noise, "noise",
+        "Sigma of the range, as a share of the bounds' diagonal; it grows with the range squared and with grazing "
+        "incidence. Told for the middle's distance and a ray that hits squarely; it grows with 1 / cosine of the "
+        "incidence, up to twenty times.",
+        at_least(0), {.unit = "SHARE", .group = "Defects"});
+  field(&O::quantisation, "quantisation", "Step of the range, as a share of the diagonal; 0: any number", at_least(0),
+        {.unit = "SHARE", .group = "Defects"});
+  field(&O::grazing_angle_deg, "grazing_angle_deg",
+        "Incidence from which on returns are missing; 0: squarely, 90: along the surface", from_to(0, 89.999),
+        {.unit = "DEG", .group = "Defects"});
+  field(&O::grazing_loss, "grazing_loss", "... with a probability that grows evenly up to this at 90 degrees", k_share,
+        {.unit = "P", .group = "Defects"});
+  field(&O::outliers, "outliers", "Probability that a return is anywhere on its ray within the bounding sphere",
+        k_share, {.unit = "P", .group = "Defects"});
+  field(&O::mixed_pixels, "mixed_pixels",
+        "Probability that a ray at an edge returns from between two surfaces. The ray is as wide as half an angular "
+        "step: it grazes the edge of one and sees the other.",
+        k_share, {.unit = "P", .group = "Defects"});
+  field(&O::rotation_deg, "rotation_deg",
+        "Sigma of the turn by which each view is out of place, in degrees. Around the middle of the part about a "
+        "random axis.",
+        at_least(0), {.unit = "DEG", .group = "Defects"});
+  field(&O::translation, "translation", "... and of each coordinate of its shift, as a share of the diagonal",
+        at_least(0), {.unit = "SHARE", .group = "Defects"});
+  field(&O::with_normals, "with_normals", "With the true outward normals, which no scanner knows",
+        {.option = "normals"});
+  field(&O::meshing, "meshing", "Models: the mesh that tells what a ray hits first");
+  field(&O::seed, k_seed);
+}
+/// Neither a count nor a step.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const ScanOptions& options);
 
 /// The same scanner without noise, quantisation, missing returns, outliers, mixed pixels and misregistration.
 [[nodiscard]] ScanOptions without_defects(ScanOptions options);

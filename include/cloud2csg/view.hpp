@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/colour.hpp"
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/extract.hpp"
 #include "cloud2csg/model.hpp"
@@ -31,16 +32,29 @@ struct Scene {
   std::vector<Colour> colours = {};  ///< of the points, one each; none: all are grey
 };
 
+/// Its fields: see the table.
 struct PictureOptions {
-  int width = 0;  ///< pixels, 4096 at most; 0: so many that each half is a square. In all at most 4 million
-  int height = 600;
-  /// Where the camera stands, seen from the middle: turned from the x axis towards y, then raised over the xy plane.
+  int width = 0, height = 600;
   double azimuth_deg = -60, elevation_deg = 25;
-  int resolution = 192;  ///< cells along the longest side of the solid's mesh, of which only outlines show any
+  int resolution = 192;
 };
-
-/// @throws Error naming the field when an option is out of range.
-void validate(const PictureOptions& options);
+void option_table(OptionsOf<PictureOptions>, auto&& field) {
+  using O = PictureOptions;
+  constexpr OptionRange k_sides = from_to(16, 4096);
+  field(&O::width, "width",
+        "Width of a .png; 0: a square for the cloud, one for the solid. Pixels, at most 4 million in all.",
+        OptionRange{.least = k_sides.least, .most = k_sides.most, .takes_zero = true},
+        {.unit = "PIXELS", .option = "picture-width"});
+  field(&O::height, "height", "Height of a .png. Pixels.", k_sides, {.unit = "PIXELS", .option = "picture-height"});
+  field(&O::azimuth_deg, "azimuth_deg",
+        "Where the camera stands, seen from the middle: degrees turned from the x axis towards y", {.unit = "DEG"});
+  field(&O::elevation_deg, "elevation_deg", "... and raised over the xy plane", from_to(-90, 90), {.unit = "DEG"});
+  field(&O::resolution, "resolution",
+        "Cells along the longest side of the solid's mesh, of which only outlines show any", from_to(4, 4096),
+        k_library);
+}
+/// More pixels than 4 million.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const PictureOptions& options);
 
 /// The colour of a pixel in this row where there is nothing.
 [[nodiscard]] Colour background(const PictureOptions& options, int row);
@@ -81,20 +95,31 @@ struct Report {
   std::vector<std::string> warnings = {};  ///< beyond those of the statistics
 };
 
+/// How large the page is: see the table.
 struct ReportOptions {
-  /// Points to show; of more, so many are taken, evenly in space. Figures are of all points. So many take about a
-  /// megabyte.
   std::size_t most_points = 100'000;
-  /// Cells along the longest side of the meshes of the whole solid, and of its parts: fewer, where there are many.
   int resolution = 128, part_resolution = 64;
-  /// Triangles of the whole solid, and of all meshes together: flat parts need few.
   std::size_t most_triangles = 24'000, most_triangles_in_all = 120'000;
-  /// Parts of the tree that have a mesh of their own: the whole, then primitives, then inner nodes from the root on.
   std::size_t most_meshes = 240;
 };
-
-/// @throws Error naming the field when an option is out of range.
-void validate(const ReportOptions& options);
+void option_table(OptionsOf<ReportOptions>, auto&& field) {
+  using O = ReportOptions;
+  field(&O::most_points, "most_points",
+        "Points to show; of more, so many are taken, evenly in space. Figures are of all points. 100 000 take about a "
+        "megabyte.",
+        at_least(1));
+  field(&O::resolution, "resolution", "Cells along the longest side of the whole solid's mesh", from_to(4, 4096));
+  field(&O::part_resolution, "part_resolution", "... and of those of its parts; fewer, where there are many",
+        from_to(4, 4096));
+  field(&O::most_triangles, "most_triangles", "Triangles of the whole solid; flat parts need few", at_least(1));
+  field(&O::most_triangles_in_all, "most_triangles_in_all", "... and of all meshes together");
+  field(
+      &O::most_meshes, "most_meshes",
+      "Parts of the tree that have a mesh of their own. The whole, then primitives, then inner nodes from the root on.",
+      at_least(1));
+}
+/// Fewer triangles in all than of the solid.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const ReportOptions& options);
 
 /// A distance report as in metrology: signed distances of points to a solid's surface, positive outside.
 struct DeviationSummary {

@@ -9,9 +9,7 @@ namespace py = pybind11;
 
 // Each adds its classes and functions to the module; those of a later one use those of the ones before it.
 void bind_errors(py::module_& module);
-void bind_cloud_options(py::module_& module);
-void bind_extract_options(py::module_& module);
-void bind_output_options(py::module_& module);
+void bind_options(py::module_& module);
 void bind_clouds(py::module_& module);
 void bind_primitives(py::module_& module);
 void bind_models(py::module_& module);

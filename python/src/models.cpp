@@ -24,8 +24,7 @@ namespace cloud2csg::python {
 
 const CsgTree& tree_of(const Model& model) {
   if (model.tree) return *model.tree;
-  throw Error({.file = {},
-               .where = "tree",
+  throw Error({.where = "tree",
                .expected = "expected a model with a tree, found primitives only",
                .remedy = "extract a tree first"});
 }
@@ -41,10 +40,8 @@ PrimitiveSet to_primitives(const py::object& primitives) {
     }
     set.push_back(primitive.cast<Primitive>());
     if (!ids.insert(set.back().id).second) {
-      throw Error({.file = {},
-                   .where = fmt::format("primitives/{}/id", set.size() - 1),
-                   .expected = fmt::format("expected an id of its own, found \"{}\" again", set.back().id),
-                   .remedy = {}});
+      throw Error({.where = fmt::format("primitives/{}/id", set.size() - 1),
+                   .expected = fmt::format("expected an id of its own, found \"{}\" again", set.back().id)});
     }
   }
   return set;

@@ -6,9 +6,7 @@ PYBIND11_MODULE(_native, module) {
   module.doc() = "The compiled part of cloud2csg; its names are those of the package.";
   module.attr("__version__") = CLOUD2CSG_VERSION;
   c2c::bind_errors(module);
-  c2c::bind_cloud_options(module);
-  c2c::bind_extract_options(module);
-  c2c::bind_output_options(module);
+  c2c::bind_options(module);
   c2c::bind_clouds(module);
   c2c::bind_primitives(module);
   c2c::bind_models(module);

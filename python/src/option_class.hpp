@@ -11,116 +11,97 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/primitive.hpp"
 
 namespace cloud2csg::python {
 
+/// Of vectors, which are lists of three numbers each in Python.
+using Rows = std::vector<std::array<double, 3>>;
+
 /// The type that a field has in Python's notation.
 template <typename Value>
-std::string python_type() {
-  if constexpr (std::is_same_v<Value, bool>) return "bool";
-  if constexpr (std::is_integral_v<Value>) return "int";
-  if constexpr (std::is_floating_point_v<Value>) return "float";
-  if constexpr (std::is_same_v<Value, std::string>) return "str";
-  if constexpr (std::is_same_v<Value, std::vector<double>>) return "list[float]";
-  if constexpr (std::is_same_v<Value, PrimitiveSet>) return "list[Primitive]";
-  if constexpr (std::is_aggregate_v<Value>) {
-    return pybind11::type::of<Value>().attr("__name__").template cast<std::string>();
+struct PythonType {
+  static std::string name() {
+    if constexpr (std::is_same_v<Value, bool>) return "bool";
+    if constexpr (std::is_integral_v<Value>) return "int";
+    if constexpr (std::is_floating_point_v<Value>) return "float";
+    if constexpr (std::is_same_v<Value, std::string>) return "str";
+    if constexpr (std::is_same_v<Value, Primitive>) return "Primitive";
+    if constexpr (std::is_same_v<Value, Eigen::Vector3d>) return "list[float]";
+    if constexpr (HasOptionTable<Value>) {
+      return pybind11::type::of<Value>().attr("__name__").template cast<std::string>();
+    }
+    if constexpr (HasNames<Value>) {
+      std::string names;
+      for (const EnumName<Value>& known : names_of(Value{})) {
+        names += fmt::format("{}'{}'", names.empty() ? "" : ", ", known.name);
+      }
+      return "Literal[" + names + "]";
+    }
+    return {};
   }
-  return {};
-}
+};
 template <typename Value>
-struct IsOptional : std::false_type {};
+struct PythonType<std::optional<Value>> {
+  static std::string name() { return PythonType<Value>::name() + " | None"; }
+};
 template <typename Value>
-struct IsOptional<std::optional<Value>> : std::true_type {};
+struct PythonType<std::vector<Value>> {
+  static std::string name() { return "list[" + PythonType<Value>::name() + "]"; }
+};
 
-/// An options struct as a Python class: a constructor with the fields as keywords, attributes with their default and
-/// meaning as docstrings, repr, equality, copies and pickles. Values of a wrong type are a TypeError that names the
-/// field; whether they are in range is for the function that takes the options to say.
+/// What Python is given of a field: options within options by reference, so that options.search.seed = 3 works.
+template <typename Value>
+decltype(auto) to_python(Value& value) {
+  if constexpr (HasNames<Value>) {
+    return std::string(to_string(value));
+  } else if constexpr (std::is_same_v<Value, std::vector<Eigen::Vector3d>>) {
+    Rows rows;
+    for (const Eigen::Vector3d& v : value) rows.push_back({v.x(), v.y(), v.z()});
+    return rows;
+  } else if constexpr (HasOptionTable<Value>) {
+    return static_cast<Value&>(value);
+  } else {
+    return Value(value);
+  }
+}
+
+/// @throws pybind11::cast_error
+template <typename Value>
+void from_python(const pybind11::handle& given, Value& value) {
+  if constexpr (HasNames<Value>) {
+    const std::optional<Value> named = enum_named<Value>(given.cast<std::string>());
+    if (!named) throw pybind11::cast_error();
+    value = *named;
+  } else if constexpr (std::is_same_v<Value, std::vector<Eigen::Vector3d>>) {
+    value.clear();
+    for (const auto& [x, y, z] : given.cast<Rows>()) value.emplace_back(x, y, z);
+  } else {
+    value = given.cast<Value>();
+  }
+}
+
+/// An options struct as a Python class, made from its table: a constructor with the fields as keywords, attributes with
+/// their default and meaning as docstrings, repr, equality, copies and pickles. Values of a wrong type are a TypeError
+/// that names the field; whether they are in range is for the function that takes the options to say.
 template <typename Options>
 class OptionClass {
  public:
   OptionClass(pybind11::module_& module, const char* name, std::string doc)
-      : class_(module, name), name_(name), doc_(std::move(doc)) {}
-
-  /// A number, a text or a list, any of them optional; or options that may be absent.
-  template <typename Value>
-  OptionClass& field(const char* name, Value Options::*member, const std::string& doc) {
-    return add(
-        name, type_of<Value>(), [member](const Options& options) { return options.*member; },
-        [member](Options& options, const pybind11::handle& value) { options.*member = value.cast<Value>(); }, doc);
-  }
-
-  /// Vectors, which are lists of three numbers each in Python.
-  OptionClass& vectors(const char* name, std::vector<Eigen::Vector3d> Options::*member, const std::string& doc) {
-    using Rows = std::vector<std::array<double, 3>>;
-    return add(
-        name, "list[list[float]]",
-        [member](const Options& options) {
-          Rows rows;
-          rows.reserve((options.*member).size());
-          for (const Eigen::Vector3d& v : options.*member) rows.push_back({v.x(), v.y(), v.z()});
-          return rows;
-        },
-        [member](Options& options, const pybind11::handle& value) {
-          std::vector<Eigen::Vector3d> vectors;
-          for (const auto& [x, y, z] : value.cast<Rows>()) vectors.emplace_back(x, y, z);
-          options.*member = std::move(vectors);
-        },
-        doc);
-  }
-
-  /// Options within options: the attribute is a reference, so that options.search.seed = 3 works.
-  template <typename Value>
-  OptionClass& nested(const char* name, Value Options::*member, const std::string& doc) {
-    const auto type = pybind11::type::of<Value>().attr("__name__").template cast<std::string>();
-    return add(
-        name, type, [member](Options& options) -> Value& { return options.*member; },
-        [member](Options& options, const pybind11::handle& value) { options.*member = value.cast<Value>(); }, doc);
-  }
-
-  template <typename Value>
-  using Choices = std::vector<std::pair<std::string_view, Value>>;
-
-  /// An enumeration, which is a text in Python.
-  template <typename Value>
-  OptionClass& choice(const char* name, Value Options::*member, const Choices<Value>& choices, const std::string& doc) {
-    std::string type;
-    for (const auto& [text, value] : choices) type += fmt::format("{}'{}'", type.empty() ? "" : ", ", text);
-    type = "Literal[" + type + "]";
-    return add(
-        name, type,
-        [member, choices](const Options& options) {
-          for (const auto& [text, value] : choices) {
-            if (value == options.*member) return std::string(text);
-          }
-          return std::string();
-        },
-        [member, choices](Options& options, const pybind11::handle& wanted) {
-          const auto word = wanted.cast<std::string>();
-          for (const auto& [text, value] : choices) {
-            if (text != word) continue;
-            options.*member = value;
-            return;
-          }
-          throw pybind11::cast_error();
-        },
-        doc);
-  }
-
-  /// After all fields.
-  pybind11::class_<Options> finish() {
+      : class_(module, name), name_(name), doc_(std::move(doc)) {
+    for_each_field<Options>([this](auto member, const OptionField& field) { add(member, field); });
     define_constructors();
     define_values();
     class_.attr("__doc__") = doc_ + "\n\nAll fields are keywords of the constructor, and attributes.\n" + field_docs_;
     class_.attr("__annotations__") = annotations_;
-    return class_;
   }
+
+  [[nodiscard]] pybind11::class_<Options>& python() { return class_; }
 
  private:
   using Setter = std::function<void(Options&, const pybind11::handle&)>;
@@ -131,35 +112,28 @@ class OptionClass {
   using Fields = std::shared_ptr<std::vector<Field>>;
 
   template <typename Value>
-  static std::string type_of() {
-    if constexpr (IsOptional<Value>::value) {
-      return python_type<typename Value::value_type>() + " | None";
-    } else {
-      return python_type<Value>();
-    }
-  }
-
-  template <typename Getter>
-  OptionClass& add(const char* name, const std::string& type, Getter getter, const Setter& setter,
-                   const std::string& doc) {
-    Setter set = [what = name_ + "." + name, type, setter](Options& options, const pybind11::handle& value) {
+  void add(Value Options::*member, const OptionField& field) {
+    const std::string name(field.name);
+    const std::string type = PythonType<Value>::name();
+    const auto get = [member](Options& options) -> decltype(auto) { return to_python(options.*member); };
+    Setter set = [what = name_ + "." + name, type, member](Options& options, const pybind11::handle& value) {
       try {
-        setter(options, value);
+        from_python(value, options.*member);
       } catch (const pybind11::cast_error&) {
         throw pybind11::type_error(
             fmt::format("{}: expected {}, found {}", what, type, pybind11::repr(value).cast<std::string>()));
       }
     };
     fields_->push_back({.name = name, .type = type, .set = set});
-    const Options defaults{};
-    const auto start =
-        pybind11::repr(pybind11::cast(getter(const_cast<Options&>(defaults)))).template cast<std::string>();
-    const std::string text = fmt::format("{}, default {}. {}", type, start, doc);
-    class_.def_property(name, pybind11::cpp_function(getter, pybind11::return_value_policy::reference_internal),
+    Options defaults{};
+    const auto start = pybind11::repr(pybind11::cast(get(defaults))).template cast<std::string>();
+    const std::string text =
+        fmt::format("{}, default {}. {}{}{}", type, start, field.text, field.text.ends_with('.') ? "" : ".",
+                    field.absent.empty() ? "" : fmt::format(" None: {}.", field.absent));
+    class_.def_property(name.c_str(), pybind11::cpp_function(get, pybind11::return_value_policy::reference_internal),
                         pybind11::cpp_function(set), text.c_str());
     field_docs_ += fmt::format("\n{} : {}\n", name, text);
-    annotations_[name] = type;
-    return *this;
+    annotations_[name.c_str()] = type;
   }
 
   static void set_fields(Options& options, const std::string& class_name, const Fields& fields,

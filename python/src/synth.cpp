@@ -15,8 +15,7 @@ namespace {
 
 PointCloud sample_of_mesh(const TriangleMesh& mesh, const SampleOptions& options, const RunContext& run) {
   if (options.density > 0 || options.normal_noise_deg > 0) {
-    throw Error({.file = {},
-                 .where = options.density > 0 ? "density" : "normal_noise_deg",
+    throw Error({.where = options.density > 0 ? "density" : "normal_noise_deg",
                  .expected = "works on models only, this is a mesh",
                  .remedy = "give count and noise"});
   }

@@ -19,8 +19,7 @@ using IndexOfId = std::unordered_map<std::string, PrimitiveIndex>;
 CsgNode leaf(const std::string& id, const IndexOfId& index_of_id) {
   const auto found = index_of_id.find(id);
   if (found != index_of_id.end()) return CsgNode::leaf(found->second);
-  throw Error({.file = {},
-               .where = "tree",
+  throw Error({.where = "tree",
                .expected = fmt::format(R"(expected the id of a primitive, found "{}")", id),
                .remedy = "add the primitive or correct the id"});
 }

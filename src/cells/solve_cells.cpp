@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -189,6 +190,13 @@ class CellSolver {
 };
 
 }  // namespace
+
+std::optional<OptionConflict> conflict_in(const CellSolveOptions& options) {
+  const std::vector<double>& least = options.least_evidence;
+  if (!least.empty() && std::ranges::is_sorted(least, std::greater<>())) return std::nullopt;
+  return OptionConflict{"least_evidence",
+                        least.empty() ? "expected at least one number" : "expected descending numbers"};
+}
 
 std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
                                         const CellSolveOptions& options, const RunContext& run) {

@@ -15,7 +15,6 @@ namespace {
 const CsgTree& tree_of(const Model& model, const std::filesystem::path& file) {
   if (model.tree) return *model.tree;
   throw Error({.file = file.string(),
-               .where = {},
                .expected = "expected a model with a tree, found primitives only",
                .remedy = "extract a tree first, or write .json"});
 }

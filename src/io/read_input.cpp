@@ -70,12 +70,10 @@ Input read_and_sample(const std::filesystem::path& file, const InputOptions& opt
 }  // namespace
 
 PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, const RunContext& run) {
-  if (options.mesh_points == 0) {
-    throw Error({.file = {}, .where = "mesh_points", .expected = "expected at least one point", .remedy = {}});
-  }
+  validate(options);
   const TriangleSampler sampler(mesh.vertices, mesh.triangles);
   if (!(sampler.area() > 0.0)) {
-    throw Error({.file = {}, .where = "mesh", .expected = "expected triangles with area, found none", .remedy = {}});
+    throw Error({.where = "mesh", .expected = "expected triangles with area, found none"});
   }
   PointCloud cloud{.positions = Points(options.mesh_points), .normals = Points(options.mesh_points)};
   for_each_index((cloud.size() + k_chunk_points - 1) / k_chunk_points, run, [&](std::size_t chunk) {

@@ -71,11 +71,9 @@ std::vector<std::string> fit_warnings(const ExtractStatistics& statistics, doubl
 
 std::vector<std::string> tolerance_warnings(double tolerance, double diagonal) {
   if (tolerance >= diagonal) {
-    throw Error(
-        {.file = {},
-         .where = "tolerance",
-         .expected = fmt::format("{:.3g} is as large as the cloud, whose diagonal is {:.3g}", tolerance, diagonal),
-         .remedy = "give it in the cloud's units, or leave it out: it is taken from the noise"});
+    throw invalid_option("detection.distance_tolerance",
+                         fmt::format("{:.3g} is as large as the cloud, whose diagonal is {:.3g}", tolerance, diagonal),
+                         "give it in the cloud's units, or leave it out: it is taken from the noise");
   }
   if (tolerance <= k_coarse * diagonal) return {};
   return {fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost", tolerance,
@@ -86,12 +84,11 @@ std::vector<std::string> detection_warnings(const RestDetection& found, const Pr
   const PointCloud& cloud = prepared.cloud;
   const Detection& detection = found.detection;
   if (detection.surfaces.empty() && count_of(found.known) == 0) {
-    throw Error({.file = {},
-                 .where = {},
-                 .expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
-                                         "within {:.3g}",
-                                         cloud.size(), detection.distance_tolerance),
-                 .remedy = "give a larger --tolerance, or a cloud of an object made of such surfaces"});
+    throw Error(
+        {.expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
+                                 "within {:.3g}",
+                                 cloud.size(), detection.distance_tolerance),
+         .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces"});
   }
   const double unexplained = share(detection.unexplained, cloud.size());
   if (unexplained <= k_much_unexplained) return {};

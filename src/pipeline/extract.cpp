@@ -42,7 +42,7 @@ bool is_finite(const Points& points) {
 
 void check_input(const PointCloud& cloud, const PrimitiveSet& primitives) {
   const auto refuse = [](const char* expected, const char* remedy) {
-    throw Error({.file = {}, .where = {}, .expected = expected, .remedy = remedy});
+    throw Error({.expected = expected, .remedy = remedy});
   };
   if (cloud.size() == 0) refuse("the cloud has no points", "");
   if (!std::isfinite(bounds_of(cloud.positions).diagonal().norm()) || !is_finite(cloud.positions) ||

@@ -23,7 +23,7 @@ void check_known(const PrimitiveSet& known) {
   for (const Primitive& primitive : known) {
     const std::string where = fmt::format("known primitive '{}'", primitive.id);
     if (!ids.insert(primitive.id).second) {
-      throw Error({.file = {}, .where = where, .expected = "another has the same id", .remedy = {}});
+      throw Error({.where = where, .expected = "another has the same id"});
     }
     try {
       validate(primitive);
@@ -46,8 +46,6 @@ void add_evidence(FoundPrimitives& found, const DetectOptions& options, const Ru
 
 /// find_primitives() without a word on known primitives.
 FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
-  validate(options.detection);
-  validate(options.solids);
   check_known(options.known);
   Stopwatch watch;
   FoundPrimitives found;
@@ -73,9 +71,7 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
   found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
   if (found.choice.solids.empty()) {
-    throw Error({.file = {},
-                 .where = {},
-                 .expected = fmt::format("the surfaces that were found, {} in a cloud of {} points, bound no solid",
+    throw Error({.expected = fmt::format("the surfaces that were found, {} in a cloud of {} points, bound no solid",
                                          found.detection.surfaces.size(), found.prepared.cloud.size()),
                  .remedy = "give a cloud of a closed object, or of most of its surface, of some thousand points"});
   }
@@ -102,10 +98,8 @@ FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& 
     return found;
   } catch (const Cancelled&) {
     if (run.stop.stop_requested()) throw;
-    throw Error({.file = {},
-                 .where = "--time-limit",
-                 .expected = "the time was over before primitives were found",
-                 .remedy = "allow more, or give a --point-budget below the number of points"});
+    throw invalid_option("extraction.time_limit_seconds", "the time was over before primitives were found",
+                         "allow more, or give a `point_budget` below the number of points");
   }
 }
 

@@ -94,6 +94,7 @@ void note_seconds(const FoundPrimitives& found, StageSeconds& seconds) {
 }  // namespace
 
 Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
+  validate(options);
   FoundPrimitives found = find_in_time(cloud, options, run);
   append(found.warnings, unused_known_warnings(found.choice.tree, found, options.known, found.warnings));
   Extraction result;
@@ -114,13 +115,9 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
 }
 
 Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
-  validate(options.extraction);
-  if (options.refine) validate(*options.refine);
+  validate(options);
   if (options.refine && !options.known.empty()) {
-    throw Error({.file = {},
-                 .where = "refine",
-                 .expected = "primitives that are known would be moved",
-                 .remedy = "refine all primitives, or none"});
+    throw invalid_option("refine", "primitives that are known would be moved", "refine all primitives, or none");
   }
   const Stopwatch watch;
   FoundPrimitives found = find_in_time(cloud, options, run);

@@ -50,7 +50,7 @@ TEST_F(BenchScaling, WrongUsageIsNamed) {
   expect_failure(run({"bench", "scaling", "-o", path("out"), "--family", "gird"}), 2, {"--family", "grid"});
   expect_failure(run({"bench", "scaling", "-o", path("out"), "--cliques", "21"}), 2, {"--cliques", "20"});
   expect_failure(run({"bench", "scaling", "-o", path("out"), "--primitives", "0"}), 2, {"--primitives"});
-  expect_failure(run({"bench", "scaling", "-o", path("out"), "--primitives", "5", "5"}), 1, {"primitives", "twice"});
+  expect_failure(run({"bench", "scaling", "-o", path("out"), "--primitives", "5", "5"}), 2, {"--primitives", "twice"});
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST_F(Config, WhatIsPrintedIsReadAsTheSame) {
 TEST_F(Config, PrintedValuesAreThoseInForce) {
   const std::string text = printed({"extract", "--seed", "18446744073709551615", "--no-seeds", "-o", "a.scad"});
   for (const char* line : {"[extract]\n", "\nseed = \"18446744073709551615\"\n", "\nseeds = false\n",
-                           "\noutput = \"a.scad\"\n", "\npreset = \"default\"\n", "\n# population = N\n",
+                           "\noutput = \"a.scad\"\n", "\npreset = \"default\"\n", "\npopulation = 150\n",
                            "\nrefine = false\n", "\n# polish = true\n", "\nthreads = 0\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line << " is not in\n" << text;
   }
@@ -93,7 +93,7 @@ TEST_F(Config, WrongValuesAreRefused) {
   };
   refused("seed = -1", {"c.toml:2: seed: expected a whole number", "'-1'"});
   refused("strategy = \"magic\"", {"c.toml:2: strategy: expected one of", "'magic'"});
-  refused("leaf-cost = inf", {"c.toml:2: leaf-cost: expected a finite number"});
+  refused("leaf-cost = inf", {"c.toml:2: leaf-cost: expected a number above 0"});
   refused("refine = 1", {"c.toml:2: refine: expected true or false"});
   refused("seed = true", {"c.toml:2: seed: expected text, a number"});
   refused("seed = [1, 2]", {"seed: given more than once"});

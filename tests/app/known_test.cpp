@@ -149,7 +149,7 @@ TEST_F(Known, NonsenseIsWrongUsage) {
       expect_failure(run(arguments), 2, parts);
     }
   };
-  refuses({"--radii", "2,-1"}, {"--radii", "above 0", "'-1'"});
+  refuses({"--radii", "2,-1"}, {"--radii", "above 0", "-1"});
   refuses({"--radii", "2,x"}, {"--radii", "'x'"});
   refuses({"--axes", "x,w"}, {"--axes", "'x,w'", "x,y,1,1,0"});
   refuses({"--axes", "1,1"}, {"--axes", "'1,1'"});

@@ -13,9 +13,9 @@ TEST(Error, MessageJoinsAllParts) {
 }
 
 TEST(Error, EmptyPartsLeaveNoSeparators) {
-  EXPECT_STREQ(Error({.file = {}, .where = {}, .expected = "no", .remedy = {}}).what(), "no");
-  EXPECT_STREQ(Error({.file = "f", .where = {}, .expected = "no", .remedy = {}}).what(), "f: no");
-  EXPECT_STREQ(Error({.file = {}, .where = "radius", .expected = "no", .remedy = "yes"}).what(), "radius: no; yes");
+  EXPECT_STREQ(Error({.expected = "no"}).what(), "no");
+  EXPECT_STREQ(Error({.file = "f", .expected = "no"}).what(), "f: no");
+  EXPECT_STREQ(Error({.where = "radius", .expected = "no", .remedy = "yes"}).what(), "radius: no; yes");
 }
 
 TEST(Error, MessagesAreShortWhateverTheyQuote) {

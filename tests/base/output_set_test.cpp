@@ -75,11 +75,9 @@ TEST(OutputSet, ErrorsNameTheTarget) {
     return std::string("no error");
   };
   OutputSet outputs;
-  const auto fail = [](const std::filesystem::path& path) {
-    throw Error({.file = path.string(), .where = {}, .expected = "no", .remedy = {}});
-  };
+  const auto fail = [](const std::filesystem::path& path) { throw Error({.file = path.string(), .expected = "no"}); };
   const auto fail_elsewhere = [](const std::filesystem::path& /*path*/) {
-    throw Error({.file = "elsewhere", .where = {}, .expected = "no", .remedy = {}});
+    throw Error({.file = "elsewhere", .expected = "no"});
   };
   const std::filesystem::path target = folder / "a.txt";
   EXPECT_EQ(file_of_error(outputs, target, fail), target.string());

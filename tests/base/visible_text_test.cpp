@@ -35,7 +35,7 @@ TEST(VisibleText, TwiceIsOnce) {
 }
 
 TEST(VisibleText, ErrorsAreOneLine) {
-  const Error error({.file = "a\nb", .where = "/x\x1b[2J", .expected = "no", .remedy = {}});
+  const Error error({.file = "a\nb", .where = "/x\x1b[2J", .expected = "no"});
   EXPECT_STREQ(error.what(), "a\\x0ab: /x\\x1b[2J: no");
   EXPECT_EQ(error.parts().file, "a\nb");
 }

@@ -248,7 +248,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   expect_refused(ball, {.mesh = TriangleMesh{}}, {}, "result", "empty");
   expect_refused(ball, model_of(at("h", HalfSpace{}, {0, 0, 0})), {}, "tree", "unbounded");
   expect_refused(ball, ball, {.resolution = 1}, "resolution", "2 to 8192");
-  expect_refused(ball, ball, {.surface_samples = 0}, "surface_samples", "at least one");
+  expect_refused(ball, ball, {.surface_samples = 0}, "surface_samples", "1 or more");
 }
 
 TEST(Compare, HonoursTheStopToken) {

@@ -54,11 +54,10 @@ TEST(PaperPlan, OptionsAreRefusedByName) {
   EXPECT_EQ(refused([](PaperOptions& o) { o.noise = -1; }), "noise");
   EXPECT_EQ(refused([](PaperOptions& o) { o.noise = std::numeric_limits<double>::infinity(); }), "noise");
   EXPECT_EQ(refused([](PaperOptions& o) { o.repeats = 0; }), "repeats");
-  EXPECT_EQ(refused([](PaperOptions& o) { o.preset = "Paper"; }), "preset");
   EXPECT_EQ(refused([](PaperOptions& o) { o.threads = 0; }), "threads");
-  EXPECT_EQ(refused([](PaperOptions& o) { o.evaluator = "class"; }), "evaluator");
-  EXPECT_EQ(refused([](PaperOptions& o) { o.evaluator = "reference"; }), "nothing");
-  EXPECT_EQ(refused([](PaperOptions& o) { o.evaluator = "reference", o.preset = "default"; }), "evaluator");
+  EXPECT_EQ(refused([](PaperOptions& o) { o.evaluator = PaperEvaluator::reference; }), "nothing");
+  EXPECT_EQ(refused([](PaperOptions& o) { o.evaluator = PaperEvaluator::reference, o.preset = PaperPreset::standard; }),
+            "evaluator");
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST_F(ReproducePaper, OtherOptionsAreRefusedByName) {
   options.models = {"m1", "m2"};
   EXPECT_NE(refusal(options).find("models m1, not m1, m2"), std::string::npos) << refusal(options);
   options = small_experiment();
-  options.preset = "default";
+  options.preset = PaperPreset::standard;
   EXPECT_NE(refusal(options).find("preset paper, not default"), std::string::npos) << refusal(options);
   EXPECT_EQ(read_text_file(results_file()), before);
 }
@@ -134,7 +134,7 @@ TEST_F(ReproducePaper, TakesThePapersMethodItself) {
   PaperOptions options = small_experiment();
   options.low_points = 60;
   options.high_points = 120;
-  options.evaluator = "reference";
+  options.evaluator = PaperEvaluator::reference;
   const PaperResults results = reproduce(options);
   EXPECT_EQ(results.runs.size(), 12U);
   EXPECT_EQ(mode_disagreements(results), std::vector<std::string>{});

@@ -85,7 +85,7 @@ TEST(ScalingPlan, BadOptionsAreNamed) {
   EXPECT_EQ(refused([](ScalingOptions& o) { o.families = {Family::grid, Family::grid}; }), "families");
   EXPECT_EQ(refused([](ScalingOptions& o) { o.primitives = {10, 10}; }), "primitives");
   EXPECT_EQ(refused([](ScalingOptions& o) { o.points = {0}; }), "points");
-  EXPECT_EQ(refused([](ScalingOptions& o) { o.cliques = {21}; }), "clique_size");
+  EXPECT_EQ(refused([](ScalingOptions& o) { o.cliques = {21}; }), "cliques");
   EXPECT_EQ(refused([](ScalingOptions& o) { o.noise = -1; }), "noise");
   EXPECT_EQ(refused([](ScalingOptions& o) { o.repeats = 0; }), "repeats");
   EXPECT_EQ(refused([](ScalingOptions& o) { o.threads = 0; }), "threads");

@@ -248,7 +248,7 @@ TEST(Reconstruct, HoldsItsTimeLimitInEveryStage) {
       // The tree of the cells comes with the pass over the points, which is always completed.
       EXPECT_TRUE(!result.statistics.complete || result.tree() == expected) << slow;
     } catch (const Error& error) {
-      EXPECT_EQ(error.parts().where, "--time-limit") << slow;
+      EXPECT_EQ(error.parts().where, "extraction.time_limit_seconds") << slow;
     }
   }
 }

@@ -178,9 +178,9 @@ TEST(SampleSurface, RefusesEmptyAndUnboundedSolids) {
 TEST(SampleSurface, RefusesBadOptionsByName) {
   const PrimitiveSet primitives{at("a", Sphere{1}, {0, 0, 0})};
   expect_refused(CsgTree::leaf(0), primitives, {.count = 0}, "count", "at least one");
-  expect_refused(CsgTree::leaf(0), primitives, {.density = -1}, "density", "finite");
-  expect_refused(CsgTree::leaf(0), primitives, {.noise = NAN}, "noise", "finite");
-  expect_refused(CsgTree::leaf(0), primitives, {.normal_noise_deg = INFINITY}, "normal_noise_deg", "finite");
+  expect_refused(CsgTree::leaf(0), primitives, {.density = -1}, "density", "0 or more");
+  expect_refused(CsgTree::leaf(0), primitives, {.noise = NAN}, "noise", "0 or more");
+  expect_refused(CsgTree::leaf(0), primitives, {.normal_noise_deg = INFINITY}, "normal_noise_deg", "0 or more");
 }
 
 TEST(SampleSurface, HonoursTheStopToken) {

@@ -14,20 +14,34 @@
 /// part of the library is a module that is loaded when first needed, so programs that write none do not pay for it.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct BrepOptions {
-  /// Of the part in the file; empty: the name of the file without its ending.
   std::string name = {};
-  /// STEP: beside the solid, its primitives, each as a component with its name, for building on them. Off, since they
-  /// cover the solid when the file is opened.
   bool with_primitives = false;
-  /// Solids that have no exact surfaces (displaced ones, expressions), and nodes whose Boolean operation fails, are
-  /// written with facets: so many cells along their longest side. Kernels of exact solids are slow with many.
   int facet_resolution = 16;
-  /// The part of its volume by which a node may differ from what the tree says before its operation counts as failed.
-  double volume_tolerance = 1e-3;
-  /// Of mesh_brep(): how far triangles may be from the surface, as a part of the model's extent.
-  double mesh_deviation = 3e-4;
+  double volume_tolerance = 1e-3, mesh_deviation = 3e-4;
 };
+/// Of all scripts and files of exact solids.
+inline constexpr OptionField k_facet_resolution{
+    "facet_resolution",
+    "STEP, BREP, .FCMacro, .py: cells along the longest side of what has no exact surface, and has facets. Displaced "
+    "solids, expressions, and nodes whose Boolean operation fails. Kernels of exact solids are slow with many.",
+    {.range = from_to(4, 256)}};
+void option_table(OptionsOf<BrepOptions>, auto&& field) {
+  using O = BrepOptions;
+  field(&O::name, "name", "Name of the part in the file; empty: the name of the file without its ending", k_library);
+  field(&O::with_primitives, "with_primitives",
+        "STEP: the primitives, too, as components with their names, for building on them. Off, since they cover the "
+        "solid when the file is opened.");
+  field(&O::facet_resolution, k_facet_resolution);
+  field(
+      &O::volume_tolerance, "volume_tolerance",
+      "The part of its volume by which a node may differ from what the tree says before its operation counts as failed",
+      above_to(0, 1), k_library);
+  field(&O::mesh_deviation, "mesh_deviation",
+        "Of meshes: how far triangles may be from the surface, as a part of the model's extent", from_to(1e-6, 1),
+        k_library);
+}
 
 /// A node of the tree whose exact solid could not be had, and which is written with facets instead.
 struct FailedNode {

@@ -43,13 +43,17 @@ struct CellComplex {
   std::vector<std::uint32_t> order;              ///< all points, so that neighbours are near each other
 };
 
-/// How many samples of its surface a primitive gets, to find cells and patches without points.
+/// How many samples of its surface a primitive gets, to find cells and patches without points: see the table.
 struct SampleCounts {
-  std::size_t base = 48;  ///< each
-  /// And so many for each other one whose bounds meet its own: there it is cut in pieces.
-  std::size_t a_neighbour = 40;
-  std::size_t most = 1024;
+  std::size_t base = 48, a_neighbour = 40, most = 1024;
 };
+void option_table(OptionsOf<SampleCounts>, auto&& field) {
+  using O = SampleCounts;
+  field(&O::base, "base", "Samples of each primitive", at_least(1));
+  field(&O::a_neighbour, "a_neighbour",
+        "So many more for each other one whose bounds meet its own: there it is cut in pieces");
+  field(&O::most, "most", "So many in all, at most");
+}
 
 struct CellOptions {
   SegmentationTolerances tolerances;
@@ -80,17 +84,26 @@ struct CellVolumes {
                                           const AlignedBox& box, std::size_t places = 5'000,
                                           const RunContext& run = {});
 
+/// Its fields: see the table.
 struct LabelOptions {
-  /// What the absence of points costs: where a patch between a cell of the solid and one that is not has fewer points
-  /// than this share of what its area lets expect, those that are missing. A quarter: a surface of which most was
-  /// not seen is still believed.
-  double absence = 0.25;
-  /// The same, where it is less, for clouds that say where their sensors stood (extract_csg()): of what these could see
-  /// much is lost at a slant, at edges and in clefts.
-  double absence_in_scans = 0.05;
-  double presence = 5;  ///< points that a patch has stand for so many of those: where there are some, it was seen
-  double sight = 1;     ///< what a line of sight through a cell of the solid costs, in points
+  double absence = 0.25, absence_in_scans = 0.05;
+  double presence = 5, sight = 1;
 };
+void option_table(OptionsOf<LabelOptions>, auto&& field) {
+  using O = LabelOptions;
+  field(
+      &O::absence, "absence",
+      "Where a patch between a cell of the solid and one that is not has fewer points than this share of what its area "
+      "lets expect, those that are missing cost. A quarter: a surface of which most was not seen is still believed.",
+      at_least(0));
+  field(&O::absence_in_scans, "absence_in_scans",
+        "The same, where it is less, for clouds that say where their sensors stood. Of what these could see much is "
+        "lost at a slant, at edges and in clefts.",
+        at_least(0));
+  field(&O::presence, "presence",
+        "Points that a patch has stand for so many of those: where there are some, it was seen", at_least(0));
+  field(&O::sight, "sight", "Cost of a line of sight through a cell of the solid, in points", at_least(0));
+}
 
 struct CellLabels {
   std::vector<bool> is_in = {};       ///< by cell: whether it is in the solid
@@ -113,18 +126,29 @@ struct CellLabels {
 [[nodiscard]] double cost_of(const CellComplex& complex, const std::vector<bool>& is_in, double density,
                              const LabelOptions& options = {});
 
+/// Its fields: see the table.
 struct CellSolveOptions {
-  /// Of cells whose labels cost fewer points to change, the formula may make what it likes. Descending; each is tried,
-  /// and that formula taken that costs least, leaves included.
   std::vector<double> least_evidence = {12, 3, 1, 0.3};
-  double leaf_cost = 3;  ///< of a leaf, in points
-  /// Where the formula that was taken may not be minimal, a minimal one is looked for, core by core.
+  double leaf_cost = 3;
   MinimalFormulaOptions minimal = {.table_limit = std::size_t{1} << 18U, .combination_limit = 20'000'000};
-  /// Where it is not proved to be minimal, or its cells cost more than the labels by a leaf, local searches go on from
-  /// all that was tried, on what the cells and leaves of a tree cost: over all of up to 64 primitives, of more core by
-  /// core. The limits are those of each search; no work, no climbing.
   LocalSearchOptions climb = {.work_limit = 4e8};
 };
+void option_table(OptionsOf<CellSolveOptions>, auto&& field) {
+  using O = CellSolveOptions;
+  field(&O::least_evidence, "least_evidence",
+        "Of cells whose labels cost fewer points to change, the formula may make what it likes. Descending; each is "
+        "tried, and that formula taken that costs least, leaves included.",
+        at_least(0));
+  field(&O::leaf_cost, "leaf_cost", "Cost of a leaf, in points", at_least(0));
+  field(&O::minimal, "minimal",
+        "Where the formula that was taken may not be minimal, a minimal one is looked for, core by core");
+  field(&O::climb, "climb",
+        "Where it is not proved to be minimal, or its cells cost more than the labels by a leaf, local searches go on "
+        "from all that was tried. By what the cells and leaves of a tree cost: over all of up to 64 primitives, of "
+        "more core by core. The limits are those of each search; no work, no climbing.");
+}
+/// Evidence that does not descend.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const CellSolveOptions& options);
 
 /// A step on the way to a tree, and the nodes of the best one after it.
 struct TreeStep {

@@ -2,18 +2,27 @@
 
 #include <cstddef>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/advanced/scale.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/run_context.hpp"
 
 namespace cloud2csg {
 
+/// Which points of a raw cloud are left out: see the table.
 struct CleanOptions {
-  /// Leave out points that no surface goes through. Off for clouds that are known to be clean: takes most of the time.
   bool remove_outliers = true;
-  /// More points than this are thinned: beyond, later stages gain no accuracy, only take longer.
   std::size_t point_budget = 500'000;
 };
+void option_table(OptionsOf<CleanOptions>, auto&& field) {
+  using O = CleanOptions;
+  field(&O::remove_outliers, "remove_outliers",
+        "Leave out points that no surface goes through. It takes most of the time of the preparation.",
+        {.opposite = "keep-outliers", .otherwise = "Do not look for outliers: the cloud is clean"});
+  field(&O::point_budget, "point_budget",
+        "More points than about so many are thinned. Beyond, later stages gain no accuracy, only take longer.",
+        at_least(1));
+}
 
 /// How many points each step left out.
 struct CleanReport {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/advanced/scale.hpp"
 #include "cloud2csg/advanced/surface.hpp"
 #include "cloud2csg/point_cloud.hpp"
@@ -13,26 +14,39 @@
 /// Detection: the surfaces that a cloud lies on.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct DetectOptions {
-  /// How far a point may be from its surface, in the cloud's units. Absent: three times the noise, and at least
-  /// 0.15 % of the cloud's diagonal, so that the facets of a coarse mesh count as the round surface that they stand
-  /// for.
   std::optional<double> distance_tolerance = {};
-  /// ... and how far its normal may be turned from the surface's. Generous: estimated normals are off by 10 degrees,
-  /// and those of facets by 6.
   double angle_tolerance_deg = 25.0;
-  /// Surfaces with fewer points are left alone. Absent: one in 2000 of the cloud's, and at least 30.
   std::optional<std::size_t> least_points = {};
-  /// How small and how large a surface may be, in the cloud's units: the radius of a sphere or cylinder, both radii of
-  /// a torus, and the diagonal of the box around the largest piece of its points. Others are left out, and their points
-  /// lie on no surface; but what is only round by a radius above the most may be found to be flat. Absent: no limit.
-  std::optional<double> least_size = {};
-  std::optional<double> most_size = {};
+  std::optional<double> least_size = {}, most_size = {};
   std::uint64_t seed = 1;
 };
-
-/// @throws Error naming the field when an option is out of range, or least_size is above most_size.
-void validate(const DetectOptions& options);
+void option_table(OptionsOf<DetectOptions>, auto&& field) {
+  using O = DetectOptions;
+  field(&O::distance_tolerance, "distance_tolerance",
+        "How far points may be from their surface, in the cloud's units. So the facets of a coarse mesh count as the "
+        "round surface that they stand for.",
+        above(0),
+        {.absent = "3 x the measured noise, at least 0.15 % of the diagonal", .unit = "D", .option = "tolerance"});
+  field(&O::angle_tolerance_deg, "angle_tolerance_deg",
+        "... and how many degrees their normals may be turned from the surface's. Generous: estimated normals are off "
+        "by 10 degrees, and those of facets by 6.",
+        above_to(0, 90), {.unit = "DEG", .option = "normal-tolerance"});
+  field(&O::least_points, "least_points", "Surfaces with fewer points are left alone",
+        {.absent = "one in 2000 of the cloud's, at least 30"});
+  field(&O::least_size, "least_size",
+        "Surfaces with a smaller radius, or whose points reach less far, are left out. In the cloud's units: the "
+        "radius of a sphere or cylinder, both radii of a torus, and the diagonal of the box around the largest piece "
+        "of its points. Points of those that are left out lie on no surface; but what is only round by a radius above "
+        "`most_size` may be found to be flat.",
+        above(0), {.absent = "no limit", .unit = "D", .option = "min-size"});
+  field(&O::most_size, "most_size", "... and those with a larger one, or that reach farther", above(0),
+        {.absent = "no limit", .unit = "D", .option = "max-size"});
+  field(&O::seed, k_inner_seed);
+}
+/// A least_size above most_size.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const DetectOptions& options);
 
 struct DetectedSurface {
   Surface surface;

@@ -12,41 +12,57 @@
 /// The search for the tree of one partition (section 4.3 of the paper).
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct GaOptions {
-  int population = 150;         ///< trees a generation (paper)
-  int elites = 2;               ///< best trees that go to the next generation unchanged (paper)
-  int tournament = 2;           ///< a parent is the best of so many drawn at random (paper)
-  double crossover_rate = 0.3;  ///< chance that two parents swap random subtrees (paper)
-  double mutation_rate = 0.3;   ///< chance that a child is mutated (paper)
-  double new_tree_rate =
-      0.5;  ///< of the mutations: the whole tree is replaced by a new one, else a random subtree (paper)
-  /// Edges on the longest path of a tree. Absent: sqrt(pi / 2 * n (n - 1)) for n primitives (paper).
+  int population = 150, elites = 2, tournament = 2;
+  double crossover_rate = 0.3, mutation_rate = 0.3, new_tree_rate = 0.5;
   std::optional<int> height_limit = {};
-  /// Stop when the best score has not improved for so many generations. The paper stops after 10, and then misses the
-  /// true solid in some runs (bench/recovery counts them).
-  int idle_generations = 40;
-  int generation_limit = 10'000;  ///< stop here in any case
-
+  int idle_generations = 40, generation_limit = 10'000;
   // Beyond the paper. bench/recovery measures each alone.
-
-  /// Partitions of up to so many primitives are solved by listing all trees that use each primitive at most once; the
-  /// paper lists up to 2. Each one more is about 20 times the work; at most 5.
   std::size_t listing_limit = 4;
-  /// A tree is believed when it reaches this share of what no tree can exceed (RankClasses::geometry_bound). Where a
-  /// listed tree does not, the genetic algorithm looks for one that uses a primitive more than once; where its tree
-  /// does not either, it is run anew; where a local search's does on the points nearest to each primitive, it is not
-  /// run at all. 0: every listed tree is believed, and of larger partitions none before the algorithm has run (paper).
   double trust = 0.97;
-  /// New runs from other random trees, at most, while the best tree is not believed ...
   int restarts = 3;
-  /// ... and no more than so many trees were evaluated for the partition.
   std::size_t restart_budget = 200'000;
-  bool seeds = true;  ///< the first generation also has the results of local searches from simple trees
-  /// A local search on the best tree at the end; when it finds a better one, the algorithm goes on.
-  bool polish = true;
-
+  bool seeds = true, polish = true;
   std::uint64_t seed = 1;
 };
+void option_table(OptionsOf<GaOptions>, auto&& field) {
+  using O = GaOptions;
+  field(&O::population, "population", "Trees a generation", at_least(2));
+  field(&O::elites, "elites", "Best trees that go to the next generation unchanged", at_least(0));
+  field(&O::tournament, "tournament", "A parent is the best of so many drawn at random", at_least(1));
+  field(&O::crossover_rate, "crossover_rate", "Chance that two parents swap random subtrees", k_share, {.unit = "P"});
+  field(&O::mutation_rate, "mutation_rate", "Chance that a child is mutated", k_share, {.unit = "P"});
+  field(&O::new_tree_rate, "new_tree_rate", "Share of the mutations that replace the whole tree, not a random subtree",
+        k_share, {.unit = "SHARE"});
+  field(&O::height_limit, "height_limit", "Edges on the longest path of a tree", at_least(1),
+        {.absent = "sqrt(pi / 2 * n (n - 1)) for n primitives"});
+  field(&O::idle_generations, "idle_generations",
+        "Stop when the best score has not improved for so many generations. The paper stops after 10, and then misses "
+        "the true solid in some runs (bench/recovery counts them).",
+        at_least(1));
+  field(&O::generation_limit, "generation_limit", "Stop here in any case", at_least(1));
+  field(&O::listing_limit, "listing_limit",
+        "Partitions of up to so many primitives are solved by listing all trees that use each at most once. The paper "
+        "lists up to 2. Each one more is about 20 times the work; at most 5.",
+        at_most(5));
+  field(&O::trust, "trust",
+        "A tree that reaches less than this share of the score that none can exceed is searched for again. Where a "
+        "listed tree falls short, the genetic algorithm looks for one that uses a primitive more than once; where its "
+        "tree does, too, it is run anew; where a local search's tree does not on the points nearest to each primitive, "
+        "it is not run at all. 0: every listed tree is believed, and of larger partitions none before the algorithm "
+        "has run, as in the paper.",
+        k_share, {.unit = "SHARE"});
+  field(&O::restarts, "restarts", "... so many times at most, from other random trees", at_least(0));
+  field(&O::restart_budget, "restart_budget", "... and not when so many trees were evaluated for the partition");
+  field(&O::seeds, "seeds", "The first generation also has results of local searches from simple trees",
+        {.option = "seeds", .opposite = "no-seeds", .otherwise = "The first generation is random"});
+  field(&O::polish, "polish", "Improve the best tree at the end by single changes; if that helps, go on from there",
+        {.option = "local-search", .opposite = "no-local-search", .otherwise = "Take the best tree as it is"});
+  field(&O::seed, k_inner_seed);
+}
+/// More elites than trees.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const GaOptions& options);
 
 /// The parameters of the paper, nothing added.
 [[nodiscard]] GaOptions paper_ga_options();

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/run_context.hpp"
 
@@ -47,13 +48,19 @@ class PartialFunction {
 [[nodiscard]] bool agrees(const CsgTree& formula, const PartialFunction& function);
 
 /// How much work to do at most: counted, never timed, so that the same function gives the same formula everywhere.
+/// Its fields: see the table.
 struct MinimalFormulaOptions {
-  /// Functions of few leaves that are listed, some 30 bytes each and 8 more a word. All of up to five leaves over eight
-  /// variables are below the default.
   std::size_t table_limit = std::size_t{1} << 20;
-  /// Pairs of such functions that are tried, times the words. The default takes two or three seconds.
   std::uint64_t combination_limit = 2'000'000'000;
 };
+void option_table(OptionsOf<MinimalFormulaOptions>, auto&& field) {
+  using O = MinimalFormulaOptions;
+  field(&O::table_limit, "table_limit",
+        "Functions of few leaves that are listed, some 30 bytes each and 8 more a word. All of up to five leaves over "
+        "eight variables are below 2^20.");
+  field(&O::combination_limit, "combination_limit",
+        "Pairs of such functions that are tried, times the words. 2e9 take two or three seconds.");
+}
 
 struct MinimalFormula {
   CsgTree tree;                  ///< over the function's variables, as simplify() leaves it

@@ -2,16 +2,24 @@
 
 #include <cstddef>
 
+#include "cloud2csg/advanced/option_table.hpp"
+
 namespace cloud2csg {
 
-/// Of searches that climb by the best of all small changes of a tree.
+/// Of searches that climb by the best of all small changes of a tree. Its fields: see the table.
 struct LocalSearchOptions {
-  /// Only moves that make the tree smaller: redundancy removal.
   bool shrink_only = false;
   std::size_t evaluation_limit = 100'000;
-  /// Evaluations x classes x nodes: some ten seconds at most, however large the table is. On the cells of CellComplex:
-  /// evaluations x (cells + patches + nodes x cells / 64).
   double work_limit = 4e10;
 };
+void option_table(OptionsOf<LocalSearchOptions>, auto&& field) {
+  using O = LocalSearchOptions;
+  field(&O::shrink_only, "shrink_only", "Only changes that make the tree smaller: redundancy removal");
+  field(&O::evaluation_limit, "evaluation_limit", "Trees that are looked at, at most");
+  field(&O::work_limit, "work_limit",
+        "Evaluations x classes x nodes, at most. Some ten seconds, however large the table is. On cells: evaluations x "
+        "(cells + patches + nodes x cells / 64).",
+        at_least(0));
+}
 
 }  // namespace cloud2csg

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/point_cloud.hpp"
 
@@ -13,15 +14,23 @@
 ///   d = beta * f_t(s),  theta = gamma * angle between the gradient of f_t at s and the point's normal.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct ObjectiveOptions {
-  /// Cost of a node, in points. Absent: ln |S| as in the paper, S being the points that the tree is judged by.
-  std::optional<double> alpha = {};
-  /// Per unit of length. Absent: 1 / noise, so that a point one sigma off counts exp(-1). The paper: 100, which is
-  /// this for its models and noise.
-  std::optional<double> beta = {};
-  /// Per radian. The paper's 18 / pi: a normal that is 10 degrees off counts exp(-1).
+  std::optional<double> alpha = {}, beta = {};
   double gamma = 18.0 / std::numbers::pi;
 };
+void option_table(OptionsOf<ObjectiveOptions>, auto&& field) {
+  using O = ObjectiveOptions;
+  field(&O::alpha, "alpha",
+        "Cost of a node, in points. As in the paper, the points being those that the tree is judged by.", at_least(0),
+        {.absent = "ln of the points"});
+  field(&O::beta, "beta",
+        "Weight of distances, per unit of length. A point one sigma off counts exp(-1). The paper has 100, which is "
+        "this for its models and noise.",
+        above(0), {.absent = "1 / the measured noise"});
+  field(&O::gamma, "gamma",
+        "Weight of angles, per radian. The paper's 18 / pi: a normal that is 10 degrees off counts exp(-1).", above(0));
+}
 
 /// The objective's weights for one set of points: nothing left to be derived.
 struct Objective {

@@ -5,20 +5,28 @@
 #include <span>
 #include <vector>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/primitive.hpp"
 #include "cloud2csg/run_context.hpp"
 
 /// Overlap graph and partitions (section 4 of the paper: PO-graph, maximal cliques).
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct OverlapOptions {
-  /// Solids nearer than this count as overlapping, so that touching faces do. In the cloud's units; the pipeline sets
-  /// it from the measured noise.
   double tolerance = 1e-6;
   /// For infinite primitives (half-spaces): the oriented bounds of the points they were fitted to, by primitive
   /// index; an entry that is absent means the primitive itself. May be shorter than the primitive set.
   std::vector<std::optional<OrientedBox>> extents = {};
 };
+void option_table(OptionsOf<OverlapOptions>, auto&& field) {
+  field(&OverlapOptions::tolerance, "tolerance",
+        "Solids nearer than this count as overlapping, so that touching faces do; in the cloud's units. The pipeline "
+        "sets it from the measured noise.",
+        at_least(0));
+}
+/// Extents that are no finite boxes.
+[[nodiscard]] std::optional<OptionConflict> conflict_in(const OverlapOptions& options);
 
 /// Undirected, without loops: an edge for each pair of primitives whose solids share space.
 struct OverlapGraph {

@@ -9,14 +9,22 @@
 
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct PrepareOptions {
   CleanOptions clean = {};
-  /// The points lie on the surface and have its normals, as those drawn from a mesh: they are taken as they are, and
-  /// only measured.
-  bool is_exact = false;
-  /// Keep given normals that are plausible: scanners know more than positions tell. Off: estimate them in any case.
-  bool keep_normals = true;
+  bool is_exact = false, keep_normals = true;
 };
+void option_table(OptionsOf<PrepareOptions>, auto&& field) {
+  using O = PrepareOptions;
+  field(&O::clean, "clean", "Which points are left out");
+  field(&O::is_exact, "is_exact",
+        "The points lie on the surface and have its normals, as those drawn from a mesh: they are taken as they are, "
+        "and only measured",
+        k_library);
+  field(&O::keep_normals, "keep_normals",
+        "Keep given normals that are plausible: scanners know more than positions tell",
+        {.opposite = "estimate-normals", .otherwise = "Do not use the normals that the cloud has"});
+}
 
 struct PreparedCloud {
   PointCloud cloud;  ///< with outward normals

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <boost/align/aligned_allocator.hpp>
 #include <cstdint>
 #include <optional>
@@ -123,8 +124,10 @@ enum class Precision {
   single,     ///< about twice as fast; scores move by less than 1e-5 of themselves for clouds as above
 };
 
-/// "auto", "full", "single".
-[[nodiscard]] std::string_view to_string(Precision precision);
+constexpr auto names_of(Precision /*any*/) {
+  return std::to_array<EnumName<Precision>>(
+      {{"auto", Precision::automatic}, {"full", Precision::full}, {"single", Precision::single}});
+}
 
 struct PointPassOptions {
   SegmentationTolerances tolerances;

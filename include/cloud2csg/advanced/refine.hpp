@@ -1,10 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
-#include <string_view>
 #include <vector>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/point_cloud.hpp"
 
@@ -12,27 +13,38 @@
 /// is as near to the points as it can be.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct RefineOptions {
-  /// The standard deviation of the points' distances from the true surface, in the cloud's units. Absent: measured
-  /// while the primitives come nearer to the points.
   std::optional<double> noise = {};
-  /// A point tells of a primitive when its normal is within this angle of the surface's. As in the segmentation.
   double angle_tolerance_deg = 30.0;
-  /// Times that the points are dealt out to the primitives anew. Of primitives off by one percent, the points are right
-  /// after two or three.
   int rounds = 5;
-  /// Of a primitive's points, this many are taken, evenly over their order: enough to place it to a fiftieth of the
-  /// noise.
   std::size_t most_points = 2000;
-  /// Take what is nearly regular for regular: see RegularityType.
   bool regularise = true;
-  /// Directions within this angle of being parallel or orthogonal are made so, and those that are more uncertain than
-  /// that within three of their standard deviations. Small: refined primitives are right to a tenth of a degree.
   double regularity_angle_deg = 0.5;
 };
-
-/// @throws Error naming the field when an option is out of range.
-void validate(const RefineOptions& options);
+void option_table(OptionsOf<RefineOptions>, auto&& field) {
+  using O = RefineOptions;
+  field(&O::noise, "noise", "Standard deviation of the points from the true surface, in the cloud's units", above(0),
+        {.absent = "measured while the primitives come nearer to the points"});
+  field(&O::angle_tolerance_deg, "angle_tolerance_deg",
+        "A point tells of a primitive when its normal is within so many degrees of the surface's. As in the "
+        "segmentation.",
+        above_to(0, 90));
+  field(&O::rounds, "rounds",
+        "Times that the points are dealt out to the primitives anew. Of primitives off by one percent, the points are "
+        "right after two or three.",
+        at_least(1));
+  field(&O::most_points, "most_points",
+        "Of a primitive's points, this many are taken, evenly over their order. Enough to place it to a fiftieth of "
+        "the noise.",
+        at_least(100));
+  field(&O::regularise, "regularise", "Take what is nearly regular for regular");
+  field(&O::regularity_angle_deg, "regularity_angle_deg",
+        "Directions within so many degrees of being parallel or orthogonal are made so. Those that are more uncertain "
+        "than that, within three of their standard deviations. Small: refined primitives are right to a tenth of a "
+        "degree.",
+        above_to(0, 10));
+}
 
 enum class RegularityType {
   directions,  ///< axes and faces that are parallel or orthogonal to each other
@@ -40,8 +52,12 @@ enum class RegularityType {
   centres,     ///< middles in line: of two cylinders, once for each of two directions, that they have one axis
   radii,       ///< equal radii
 };
-/// "directions", "faces", "centres", "radii".
-[[nodiscard]] std::string_view to_string(RegularityType type);
+constexpr auto names_of(RegularityType /*any*/) {
+  return std::to_array<EnumName<RegularityType>>({{"directions", RegularityType::directions},
+                                                  {"faces", RegularityType::faces},
+                                                  {"centres", RegularityType::centres},
+                                                  {"radii", RegularityType::radii}});
+}
 
 /// Primitives that are exactly regular in the result.
 struct Regularity {

@@ -4,20 +4,29 @@
 #include <optional>
 #include <vector>
 
+#include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/primitive.hpp"
 
 /// Segmentation: which points lie on the surface of which primitive.
 namespace cloud2csg {
 
+/// Its fields: see the table.
 struct SegmentationOptions {
-  /// A point may belong to a primitive when it is nearer to its surface than this, in the cloud's units. Absent: three
-  /// times the estimated noise, which keeps 99.7 % of the points of a Gaussian scan.
   std::optional<double> distance_tolerance = {};
-  /// ... and its normal is within this angle of the surface's, whichever way round (a subtracted solid shows its
-  /// surface from inside). Generous, because the surface's normal is taken at the noisy point.
   double angle_tolerance_deg = 30.0;
 };
+void option_table(OptionsOf<SegmentationOptions>, auto&& field) {
+  using O = SegmentationOptions;
+  field(&O::distance_tolerance, "distance_tolerance",
+        "Points nearer than this to a primitive's surface belong to it, in the cloud's units. Three sigmas keep 99.7 % "
+        "of the points of a Gaussian scan.",
+        above(0), {.absent = "3 x the measured noise", .unit = "D"});
+  field(&O::angle_tolerance_deg, "angle_tolerance_deg",
+        "... when their normal is within so many degrees of the surface's, whichever way round. A subtracted solid "
+        "shows its surface from inside. Generous, because the surface's normal is taken at the noisy point.",
+        above_to(0, 90), {.unit = "DEG"});
+}
 
 /// The standard deviation of the points' distances from the primitives, robust: 1.4826 times the median distance to the
 /// nearest primitive whose normal agrees, over a subsample of at most 4096 points, taken again without the points that

@@ -24,14 +24,24 @@ struct LabelledPlaces {
   std::vector<double> weights = {};
 };
 
+/// Its fields: see the table.
 struct PlaceOptions {
-  /// Standard deviation of the points from the surface, in the cloud's units. Absent: a tenth of the spacing.
   std::optional<double> noise = {};
-  std::size_t volume_places = 30'000;  ///< spread over the cloud's bounds, grown by `margin`
-  std::size_t surface_points = 8'000;  ///< points that have a place on either side, at most
-  double margin = 0.06;                ///< of the diagonal: what is outside must be seen on all sides
+  std::size_t volume_places = 30'000, surface_points = 8'000;
+  double margin = 0.06;
   std::uint64_t seed = 1;
 };
+void option_table(OptionsOf<PlaceOptions>, auto&& field) {
+  using O = PlaceOptions;
+  field(&O::noise, "noise", "Standard deviation of the points from the surface, in the cloud's units", at_least(0),
+        {.absent = "a tenth of the spacing"});
+  field(&O::volume_places, "volume_places", "Places that are spread over the cloud's bounds, grown by `margin`",
+        at_least(1));
+  field(&O::surface_points, "surface_points", "Points that have a place on either side, at most", at_least(1));
+  field(&O::margin, "margin", "Share of the diagonal around the cloud: what is outside must be seen on all sides",
+        above_to(0, 1));
+  field(&O::seed, k_inner_seed);
+}
 
 /// Places in the volume are labelled by the winding number of the oriented points (Barill et al. 2018), those beside a
 /// point by its normal. Unclear ones are left out. O((places + points) log points) and places x occupied voxels, of
@@ -49,26 +59,46 @@ struct PlaceOptions {
 [[nodiscard]] Eigen::Vector3d worst_place(const CsgTree& tree, const PrimitiveSet& solids,
                                           const LabelledPlaces& places);
 
+/// Its fields: see the table.
 struct RegularityOptions {
-  /// False: surfaces are not made like each other. What is given below holds all the same.
   bool snap = true;
-  /// Directions nearer than this to each other, or to an orthogonal one, are made so; see regularise().
   double angle_tolerance_deg = 1.0;
-  /// Offsets, centres and radii nearer than this are made equal, in the cloud's units. Absent: twice the noise, at
-  /// least 1e-3 of the cloud's diagonal.
   std::optional<double> distance_tolerance = {};
-  /// Radii that spheres, cylinders and tori are known to have. Each takes the nearest of them, and the place that suits
-  /// its points best with it, where that is by no more than `given_tolerance` farther from these; else it stays as it
-  /// is.
   std::vector<double> radii = {};
-  /// Directions that planes, cylinders, cones and tori are known to have, either way round, of any length. Each takes
-  /// the nearest within `axis_tolerance_deg`, as long as its points bear that out as for radii; up to
-  /// `angle_tolerance_deg` they are not asked.
   std::vector<Eigen::Vector3d> axes = {};
   double axis_tolerance_deg = 5.0;
-  /// In the cloud's units. Absent: the distance tolerance in force; in find_primitives() that of the detection.
   std::optional<double> given_tolerance = {};
 };
+void option_table(OptionsOf<RegularityOptions>, auto&& field) {
+  using O = RegularityOptions;
+  field(&O::snap, "snap",
+        "Make surfaces like each other: directions, offsets and radii that nearly are. What is given below holds in "
+        "any case.",
+        {.opposite = "no-snap",
+         .otherwise = "Keep directions, offsets and radii as they were measured: nothing is made parallel or equal, "
+                      "but for what `radii` and `axes` say"});
+  field(&O::angle_tolerance_deg, "angle_tolerance_deg",
+        "Directions nearer than so many degrees to each other, or to an orthogonal one, are made so. See regularise().",
+        above(0), k_library);
+  field(&O::distance_tolerance, "distance_tolerance",
+        "Offsets, centres and radii nearer than this are made equal, in the cloud's units", above(0),
+        {.absent = "twice the noise, at least 1e-3 of the cloud's diagonal", .option = k_no_option});
+  field(&O::radii, "radii",
+        "Radii that spheres, cylinders and tori are known to have, as in 2.5,3,6: each takes the nearest of them, "
+        "unless its points contradict. It is put where it suits its points best with that radius.",
+        above(0), {.unit = "R,R..."});
+  field(&O::axes, "axes",
+        "Directions that planes, cylinders, cones and tori are known to have, as in x,y,z or x,1,1,0: each takes one "
+        "that is within 5 degrees, unless its points contradict. Of any length, either way round. Within "
+        "`axis_tolerance_deg`; up to `angle_tolerance_deg` points are not asked.",
+        above(0), {.unit = "A,A..."});
+  field(&O::axis_tolerance_deg, "axis_tolerance_deg",
+        "Surfaces nearer than so many degrees to a given direction take it", above(0), k_library);
+  field(&O::given_tolerance, "given_tolerance",
+        "How much farther points may be from a surface with given values, in the cloud's units. find_primitives() "
+        "takes the tolerance of the detection where it is absent.",
+        above(0), {.absent = "the distance tolerance in force", .option = k_no_option});
+}
 
 enum class RegularityKind : std::uint8_t {
   direction,
@@ -117,22 +147,34 @@ struct FixedValues {
                                          double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
                                          std::span<const FixedValues> fixed = {});
 
+/// Its fields: see the table.
 struct SolidOptions {
-  /// What a leaf more must gain, in the weight of places: see LabelledPlaces. One permille: a hole of that share of the
-  /// volume or of the surface is worth a leaf.
-  double leaf_cost = 0.001;
-  /// What a plane of a polytope beyond the sixth costs, in leaves: a box is preferred where it is as good.
-  double plane_cost = 0.2;
-  std::size_t most_rules = 1024;  ///< of the decision list; a guard, and a warning says where it ended the choice
+  double leaf_cost = 0.001, plane_cost = 0.2;
+  std::size_t most_rules = 1024;
   PlaceOptions places = {};
-  /// Places in the volume, and points with places beside them, for each surface, where that is more than `places` has:
-  /// with fewer, a hole among hundreds is a matter of chance.
   std::size_t volume_places_a_surface = 400, surface_points_a_surface = 100;
   RegularityOptions regularity = {};
 };
-
-/// @throws Error naming the field when an option is out of range.
-void validate(const SolidOptions& options);
+void option_table(OptionsOf<SolidOptions>, auto&& field) {
+  using O = SolidOptions;
+  field(&O::leaf_cost, "leaf_cost",
+        "What a leaf more must gain, as a share of volume and surface: more gives smaller trees. In the weight of "
+        "places. One permille: a hole of that share of the volume or of the surface is worth a leaf.",
+        above_to(0, 1), {.unit = "SHARE"});
+  field(&O::plane_cost, "plane_cost",
+        "Cost of a plane of a polytope beyond the sixth, in leaves. So a box is preferred where it is as good.",
+        above(0), k_library);
+  field(&O::most_rules, "most_rules",
+        "Rules of the decision list; a guard, and a warning says where it ended the choice", at_least(1), k_library);
+  field(&O::places, "places", "Places by which solids are judged", k_library);
+  field(&O::volume_places_a_surface, "volume_places_a_surface",
+        "Places in the volume for each surface, where that is more than `places` has. With fewer, a hole among "
+        "hundreds is a matter of chance.",
+        k_library);
+  field(&O::surface_points_a_surface, "surface_points_a_surface",
+        "Points with places beside them for each surface, where that is more", k_library);
+  field(&O::regularity, "regularity", "What of the surfaces is made regular");
+}
 
 /// A solid that is known, and the points that lie on its surface. They should not be those of detected surfaces.
 struct KnownSolid {

@@ -58,7 +58,6 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
 std::string read_text_file(const std::filesystem::path& file) {
   const auto fail = [&file](int reason) {
     throw Error({.file = file.string(),
-                 .where = {},
                  .expected = fmt::format("cannot be read ({})", std::strerror(reason)),
                  .remedy = "check the path and its permissions"});
   };

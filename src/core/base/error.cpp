@@ -37,6 +37,10 @@ std::string one_line(const Error::Parts& parts) {
 
 }  // namespace
 
+Error invalid_option(std::string field, std::string expected, std::string remedy) {
+  return Error({.where = std::move(field), .expected = std::move(expected), .remedy = std::move(remedy)});
+}
+
 Error::Error(Parts parts) : parts_(std::move(parts)), message_(one_line(parts_)) {}
 
 }  // namespace cloud2csg

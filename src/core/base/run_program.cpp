@@ -42,10 +42,7 @@ RunEnd run_program(std::vector<std::string> command, const std::filesystem::path
   const int failure = start(process, command, output, complaints);
   if (failure == ENOENT) return RunEnd::not_installed;
   if (failure != 0) {
-    throw Error({.file = command.front(),
-                 .where = {},
-                 .expected = fmt::format("cannot be run ({})", std::strerror(failure)),
-                 .remedy = {}});
+    throw Error({.file = command.front(), .expected = fmt::format("cannot be run ({})", std::strerror(failure))});
   }
   const Clock::time_point end = Clock::now() + limit;
   int status = 0;

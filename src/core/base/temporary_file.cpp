@@ -91,7 +91,6 @@ Destination destination_of(const std::filesystem::path& target) {
 
 void refuse_output(const std::filesystem::path& target, std::string_view what, int reason) {
   throw Error({.file = target.string(),
-               .where = {},
                .expected = fmt::format("{} ({})", what, std::strerror(reason)),
                .remedy = "check the folder, its permissions and the free space"});
 }

@@ -12,8 +12,7 @@ namespace cloud2csg {
 namespace {
 
 [[noreturn]] void refuse_formula(const std::string& reason) {
-  throw Error({.file = {},
-               .where = "distance",
+  throw Error({.where = "distance",
                .expected = fmt::format("a formula in x, y and z: {}", reason),
                .remedy = "write it in muParser's syntax, for example sqrt(x^2+y^2+z^2)-1"});
 }

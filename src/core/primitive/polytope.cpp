@@ -15,7 +15,7 @@ namespace {
 constexpr double k_parallel = 1e-9;
 
 [[noreturn]] void refuse(std::string where, std::string expected, std::string remedy) {
-  throw Error({.file = {}, .where = std::move(where), .expected = std::move(expected), .remedy = std::move(remedy)});
+  throw Error({.where = std::move(where), .expected = std::move(expected), .remedy = std::move(remedy)});
 }
 
 /// How exactly a point can be said to lie on a plane.

@@ -13,7 +13,7 @@ namespace cloud2csg {
 namespace {
 
 [[noreturn]] void refuse(const char* where, std::string expected, const char* remedy = "") {
-  throw Error({.file = {}, .where = where, .expected = std::move(expected), .remedy = remedy});
+  throw Error({.where = where, .expected = std::move(expected), .remedy = remedy});
 }
 
 void require_positive(const char* where, double value) {

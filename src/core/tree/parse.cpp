@@ -54,10 +54,8 @@ class Lexer {
       const bool continues_character = (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
       column += continues_character ? 0 : 1;
     }
-    throw Error({.file = {},
-                 .where = fmt::format("column {}", column),
-                 .expected = std::move(expected),
-                 .remedy = std::move(remedy)});
+    throw Error(
+        {.where = fmt::format("column {}", column), .expected = std::move(expected), .remedy = std::move(remedy)});
   }
 
  private:

@@ -60,7 +60,7 @@ void FileContent::fail(FilePosition where, std::string expected, std::string rem
 }
 
 void FileContent::fail(std::string expected, std::string remedy) const {
-  throw Error({.file = name_, .where = {}, .expected = std::move(expected), .remedy = std::move(remedy)});
+  throw Error({.file = name_, .expected = std::move(expected), .remedy = std::move(remedy)});
 }
 
 void FileContent::fail_truncated(FilePosition where, std::size_t announced, std::size_t found,

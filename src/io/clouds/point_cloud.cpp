@@ -72,7 +72,6 @@ void write_point_cloud(const std::filesystem::path& file, const PointCloud& clou
   const CloudFormat& format = cloud_format(format_to_write(file, {FileKind::cloud}));
   if (format.id == FileFormat::Id::xyzn && !cloud.has_normals()) {
     throw Error({.file = file.string(),
-                 .where = {},
                  .expected = "a file of this ending holds normals, the cloud has none",
                  .remedy = "write .xyz, or estimate the normals first"});
   }

@@ -37,9 +37,7 @@ void append_record(std::string& block, std::span<const double> numbers, bool bin
   for (const double& number : numbers) {
     const T value = static_cast<T>(number);
     if (!std::isfinite(value)) {
-      throw Error({.file = {},
-                   .where = {},
-                   .expected = fmt::format("a point cloud that can be written has finite numbers, found {}", number),
+      throw Error({.expected = fmt::format("a point cloud that can be written has finite numbers, found {}", number),
                    .remedy = sizeof(T) < sizeof(double) ? "write in double precision" : ""});
     }
     if (binary) {

@@ -102,7 +102,7 @@ std::string endings_written(Kinds kinds) {
 }
 
 InputFile format_to_read(const std::filesystem::path& file, Kinds kinds) {
-  Error::Parts parts{.file = file.string(), .where = {}, .expected = {}, .remedy = {}};
+  Error::Parts parts{.file = file.string()};
   std::error_code failure;
   if (!std::filesystem::exists(std::filesystem::status(file, failure))) {
     parts.expected = fmt::format("cannot be read ({})", failure.message());
@@ -136,10 +136,8 @@ FileFormat::Id format_to_write(const std::filesystem::path& file, Kinds kinds) {
   const bool is_written = format != nullptr && format->trait != FileFormat::Trait::read_only;
   if (is_written && is_one_of(format->kind, kinds)) return format->id;
   throw Error({.file = file.string(),
-               .where = {},
                .expected = fmt::format("expected a file ending in {}, found '{}'", endings_written(kinds),
-                                       visible_text(file.extension().string(), k_longest_quote)),
-               .remedy = {}});
+                                       visible_text(file.extension().string(), k_longest_quote))});
 }
 
 void check_overwriting(const std::filesystem::path& file, bool by_statistics) {
@@ -149,7 +147,6 @@ void check_overwriting(const std::filesystem::path& file, bool by_statistics) {
   const FileStart start = start_of(file);
   if (start.file_size == 0 || format->is_it(start)) return;
   throw Error({.file = file.string(),
-               .where = {},
                .expected = fmt::format("is there already and is no {}", format->name),
                .remedy = "remove it, or choose another name"});
 }

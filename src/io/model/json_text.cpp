@@ -41,8 +41,7 @@ std::string reason_of(const json::exception& exception) {
 }
 
 [[noreturn]] void refuse_text(std::string_view text, std::size_t byte, const std::string& reason) {
-  throw Error({.file = {},
-               .where = place_of(text, byte),
+  throw Error({.where = place_of(text, byte),
                .expected = fmt::format("expected JSON, found an error in it: {}", reason),
                .remedy = "correct the text there"});
 }
@@ -69,8 +68,7 @@ class ParseGuard : public nlohmann::json_sax<json> {
   bool parse_error(std::size_t byte, const std::string& last_word, const json::exception& error) override {
     constexpr int k_no_double = 406;
     if (error.id != k_no_double) refuse_text(text_, byte, reason_of(error));
-    throw Error({.file = {},
-                 .where = path(),
+    throw Error({.where = path(),
                  .expected = fmt::format("expected a number that fits a double, found {}",
                                          visible_text(last_word, k_longest_quote)),
                  .remedy = "numbers go up to about 1.8e308"});
@@ -100,8 +98,7 @@ class ParseGuard : public nlohmann::json_sax<json> {
 
   bool open(bool is_list) {
     if (levels_.size() >= k_max_nesting) {
-      throw Error({.file = {},
-                   .where = levels_.front().is_list ? "" : "/" + levels_.front().field,
+      throw Error({.where = levels_.front().is_list ? "" : "/" + levels_.front().field,
                    .expected = fmt::format("nested too deeply: a tree may have {} levels", k_max_tree_depth),
                    .remedy = "write chains of the same union as one node with many children"});
     }
@@ -123,8 +120,7 @@ class ParseGuard : public nlohmann::json_sax<json> {
     Level& object = levels_.back();
     object.field = name;
     if (object.fields.insert(name).second) return true;
-    throw Error({.file = {},
-                 .where = path(),
+    throw Error({.where = path(),
                  .expected = "expected each field of an object once, found this one twice",
                  .remedy = "leave one of the two"});
   }

@@ -34,8 +34,7 @@ Eigen::Vector3d vector_of(const json& value) {
 /// @throws Error when it is further from unit length than rounding explains.
 double unit_scale(double length, const std::string& where) {
   if (!(std::abs(length - 1.0) <= k_unit_tolerance)) {
-    throw Error({.file = {},
-                 .where = where,
+    throw Error({.where = where,
                  .expected = fmt::format("expected unit length, found a length of {:.9g}", length),
                  .remedy = "divide by the length"});
   }
@@ -96,11 +95,9 @@ class ModelReader {
       Primitive primitive = read_primitive(value, where);
       const auto index = static_cast<PrimitiveIndex>(model.primitives.size());
       if (const auto [first, fresh] = index_of_id.emplace(primitive.id, index); !fresh) {
-        throw Error({.file = {},
-                     .where = where + "/id",
+        throw Error({.where = where + "/id",
                      .expected = fmt::format("expected an id of its own, found \"{}\" as in /primitives/{}",
-                                             visible_text(primitive.id, k_longest_quote), first->second),
-                     .remedy = {}});
+                                             visible_text(primitive.id, k_longest_quote), first->second)});
       }
       model.primitives.push_back(std::move(primitive));
     }
@@ -128,13 +125,11 @@ class ModelReader {
     for (const std::string& known : types) {
       if (type == known) return known;
     }
-    throw Error({.file = {},
-                 .where = value.is_object() ? where + "/type" : where,
+    throw Error({.where = value.is_object() ? where + "/type" : where,
                  .expected = !value.is_object() ? fmt::format("expected a primitive, found {}", brief(value))
                              : value.contains("type")
                                  ? fmt::format("expected one of {}, found {}", fmt::join(types, ", "), brief(type))
-                                 : fmt::format("expected one of {}, found nothing", fmt::join(types, ", ")),
-                 .remedy = {}});
+                                 : fmt::format("expected one of {}, found nothing", fmt::join(types, ", "))});
   }
 
   Primitive read_primitive(const json& value, const std::string& where) const {

@@ -82,8 +82,7 @@ Error::Parts explain_violation(const json& schema, std::string_view definition, 
     if (unknown.empty()) continue;
     FieldPath unknown_path = path;
     unknown_path.push_back(unknown);
-    return {.file = {},
-            .where = pointer(value_path, unknown_path),
+    return {.where = pointer(value_path, unknown_path),
             .expected = "unknown field",
             .remedy = fmt::format("{} has the fields {}", rules.at("description").get<std::string>(),
                                   fmt::join(field_names(rules), ", "))};
@@ -98,13 +97,11 @@ Error::Parts explain_violation(const json& schema, std::string_view definition, 
     found_text = "nothing";
   }
   const json& expected = rules_at(schema, definition, path);
-  return {.file = {},
-          .where = pointer(value_path, path),
+  return {.where = pointer(value_path, path),
           .expected = fmt::format("expected {}, found {}",
                                   expected.contains("description") ? expected.at("description").get<std::string>()
                                                                    : expected.value("const", json()).dump(),
-                                  found_text),
-          .remedy = {}};
+                                  found_text)};
 }
 
 }  // namespace cloud2csg

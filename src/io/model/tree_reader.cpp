@@ -88,8 +88,7 @@ class TreeReader {
   [[nodiscard]] CsgNode leaf(const json& node) const {
     const auto found = index_of_id_.find(node["primitive"].get_ref<const std::string&>());
     if (found == index_of_id_.end()) {
-      throw Error({.file = {},
-                   .where = path() + "/primitive",
+      throw Error({.where = path() + "/primitive",
                    .expected = fmt::format("expected the id of a primitive, found {}", brief(node["primitive"])),
                    .remedy = "add the primitive or correct the id"});
     }
@@ -103,17 +102,14 @@ class TreeReader {
       if (op == to_string(kind.operation)) return kind;
     }
     if (node.is_object() && node.contains("op")) {
-      throw Error({.file = {},
-                   .where = path() + "/op",
-                   .expected = fmt::format(
-                       "expected one of union, intersection, difference, complement, empty, full, found {}", brief(op)),
-                   .remedy = {}});
+      throw Error(
+          {.where = path() + "/op",
+           .expected = fmt::format("expected one of union, intersection, difference, complement, empty, full, found {}",
+                                   brief(op))});
     }
-    throw Error({.file = {},
-                 .where = path(),
+    throw Error({.where = path(),
                  .expected = fmt::format(R"(expected an object with a field "primitive" or "op", found {})",
-                                         node.is_object() ? "neither" : brief(node)),
-                 .remedy = {}});
+                                         node.is_object() ? "neither" : brief(node))});
   }
 
   /// JSON pointer of the node that is being entered.

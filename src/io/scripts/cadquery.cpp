@@ -187,7 +187,7 @@ std::string cadquery_functions(const std::string& statements) {
 }  // namespace
 
 std::string to_cadquery(const CsgTree& tree, const PrimitiveSet& primitives, const ScriptOptions& options) {
-  script::validate_facet_resolution(options.facet_resolution);
+  validate(options);
   const script::Plan plan = script::plan_script(tree, primitives);
   const script::NumberFormat number(plan.everything.sizes().maxCoeff());
   script::UniqueNames names(cadquery_reserved_names());

@@ -182,7 +182,7 @@ std::string freecad_functions(const std::string& statements) {
 }  // namespace
 
 std::string to_freecad_macro(const CsgTree& tree, const PrimitiveSet& primitives, const ScriptOptions& options) {
-  script::validate_facet_resolution(options.facet_resolution);
+  validate(options);
   const script::Plan plan = script::plan_script(tree, primitives);
   script::UniqueNames names(freecad_reserved_names());
   const script::PythonBody body = script::python_body(plan, primitives, options.facet_resolution, names, dialect());

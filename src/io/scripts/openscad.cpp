@@ -124,7 +124,7 @@ class ProgramWriter {
 }  // namespace
 
 std::string to_openscad(const CsgTree& tree, const PrimitiveSet& primitives, const OpenScadOptions& options) {
-  openscad::validate(options);
+  validate(options);
   const script::Plan plan = script::plan_script(tree, primitives);
   const Program program = ProgramWriter(plan, primitives, options).write();
   std::string text = script::comment(options.comment, "// ");

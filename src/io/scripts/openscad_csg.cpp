@@ -92,7 +92,7 @@ std::string statement(const brep::KernelSolid& solid, const script::NumberFormat
 }  // namespace
 
 std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives, const OpenScadOptions& options) {
-  openscad::validate(options);
+  validate(options);
   const script::Plan plan = script::plan_script(tree, primitives);
   const script::NumberFormat number(plan.everything.sizes().maxCoeff());
   const brep::KernelSolid everything{.shape = Box{.size = plan.everything.sizes()},

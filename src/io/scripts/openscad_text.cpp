@@ -7,8 +7,6 @@
 #include <sstream>
 #include <variant>
 
-#include "cloud2csg/error.hpp"
-
 namespace cloud2csg::openscad {
 namespace {
 
@@ -46,17 +44,6 @@ const std::set<std::string>& reserved_words() {
     return std::set<std::string>{std::istream_iterator<std::string>(all), {}};
   }();
   return words;
-}
-
-void validate(const OpenScadOptions& options) {
-  const auto refuse = [](const char* field, int least, int found) {
-    throw Error({.file = {},
-                 .where = field,
-                 .expected = fmt::format("expected {} or more, found {}", least, found),
-                 .remedy = {}});
-  };
-  if (options.facets < 3) refuse("facets", 3, options.facets);
-  if (options.mesh_resolution < 4) refuse("mesh_resolution", 4, options.mesh_resolution);
 }
 
 std::string list(const Eigen::Vector3d& vector, const script::NumberFormat& number) {

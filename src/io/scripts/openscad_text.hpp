@@ -12,9 +12,6 @@ namespace cloud2csg::openscad {
 /// Words of the language, its modules, and the modules that every file of ours may define.
 [[nodiscard]] const std::set<std::string>& reserved_words();
 
-/// @throws Error naming the field
-void validate(const OpenScadOptions& options);
-
 /// [x, y, z]
 [[nodiscard]] std::string list(const Eigen::Vector3d& vector, const script::NumberFormat& number);
 

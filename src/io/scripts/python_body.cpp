@@ -103,7 +103,7 @@ class BodyWriter {
 
 PythonBody python_body(const Plan& plan, const PrimitiveSet& primitives, int facet_resolution, UniqueNames& names,
                        const Dialect& dialect) {
-  if (is_empty(plan)) throw Error({.file = {}, .where = {}, .expected = "the solid is empty", .remedy = {}});
+  if (is_empty(plan)) throw Error({.expected = "the solid is empty"});
   return BodyWriter(plan, primitives, facet_resolution, names, dialect).write();
 }
 
@@ -142,14 +142,6 @@ std::string shells_text(const brep::Facets& facets) {
         fmt::format("    (\n        [{}],\n        [{}],\n    ),\n", fmt::join(points, ", "), fmt::join(faces, ", ")));
   }
   return fmt::format("[\n{}]", fmt::join(shells, ""));
-}
-
-void validate_facet_resolution(int resolution) {
-  if (resolution >= 4 && resolution <= 256) return;
-  throw Error({.file = {},
-               .where = "facet_resolution",
-               .expected = fmt::format("expected 4 to 256 cells, found {}", resolution),
-               .remedy = {}});
 }
 
 }  // namespace cloud2csg::script

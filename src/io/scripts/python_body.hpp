@@ -53,7 +53,4 @@ struct PythonBody {
 /// Lists for `polyhedron(shells)`: (points, faces) of each connected piece, those inside of others after them.
 [[nodiscard]] std::string shells_text(const brep::Facets& facets);
 
-/// @throws Error naming the field
-void validate_facet_resolution(int resolution);
-
 }  // namespace cloud2csg::script

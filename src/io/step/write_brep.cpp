@@ -23,26 +23,10 @@ using brep::KernelFormat;
 using brep::KernelJob;
 using brep::KernelResult;
 
-void validate(const BrepOptions& options) {
-  const auto refuse = [](const char* field, std::string expected) {
-    throw Error({.file = {}, .where = field, .expected = std::move(expected), .remedy = {}});
-  };
-  if (options.facet_resolution < 4 || options.facet_resolution > 256) {
-    refuse("facet_resolution", fmt::format("expected 4 to 256 cells, found {}", options.facet_resolution));
-  }
-  if (!(options.volume_tolerance > 0 && options.volume_tolerance < 1)) {
-    refuse("volume_tolerance", fmt::format("expected a number between 0 and 1, found {}", options.volume_tolerance));
-  }
-  if (!(options.mesh_deviation >= 1e-6 && options.mesh_deviation < 1)) {
-    refuse("mesh_deviation", fmt::format("expected a number from 1e-6 to 1, found {}", options.mesh_deviation));
-  }
-}
-
 const brep::Kernel& kernel_for(const std::filesystem::path& file) {
   const brep::Kernel& kernel = brep::load_kernel();
   if (kernel.run != nullptr) return kernel;
   throw Error({.file = file.string(),
-               .where = {},
                .expected = "exact solids need OpenCASCADE, which cloud2csg has not: " + kernel.missing,
                .remedy = kernel.remedy});
 }
@@ -126,7 +110,7 @@ Made make(const std::filesystem::path& file, const KernelJob& job, const CsgTree
   kernel_for(file).run(&job, &host, &result);
   if (result.error.empty() && result.is_empty) result.error = "the solid is empty";
   if (!result.error.empty()) {
-    throw Error({.file = file.string(), .where = {}, .expected = result.error, .remedy = {}});
+    throw Error({.file = file.string(), .expected = result.error});
   }
   made.report = report_of(result, job, tree, primitives);
   const VolumeEstimate estimate = volume_within(tree, primitives, extent, run);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -135,6 +136,12 @@ void settle_for_a_solid(const RankClasses& table, Evolution& best) {
 }
 
 }  // namespace
+
+std::optional<OptionConflict> conflict_in(const GaOptions& options) {
+  if (options.elites < options.population) return std::nullopt;
+  return OptionConflict{"elites", "expected fewer than the population (" + std::to_string(options.population) +
+                                      "), found " + std::to_string(options.elites)};
+}
 
 GaOptions paper_ga_options() {
   GaOptions options;

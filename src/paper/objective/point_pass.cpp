@@ -129,18 +129,6 @@ PointPass pass_over(const PointCloud& cloud, const AlignedBox& box, const Primit
 
 }  // namespace
 
-std::string_view to_string(Precision precision) {
-  switch (precision) {
-    case Precision::automatic:
-      return "auto";
-    case Precision::full:
-      return "full";
-    case Precision::single:
-      return "single";
-  }
-  return "";
-}
-
 PointPass build_rank_classes(const PointCloud& cloud, const PrimitiveSet& primitives,
                              std::span<const RankClassesRequest> requests, const PointPassOptions& options,
                              const RunContext& run) {

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "cloud2csg/error.hpp"
 #include "core/primitive/bounds_index.hpp"
 #include "paper/overlap/narrow_phase.hpp"
 
@@ -15,24 +13,6 @@ namespace {
 
 /// The stop token is looked at once in this many pairs: a pair of convex solids takes about a microsecond.
 constexpr std::size_t k_pairs_between_stops = 1024;
-
-void check(const OverlapOptions& options) {
-  if (!std::isfinite(options.tolerance) || options.tolerance < 0) {
-    throw Error({.file = {},
-                 .where = "tolerance",
-                 .expected = fmt::format("expected a finite number, 0 or more, got {}", options.tolerance),
-                 .remedy = {}});
-  }
-  for (std::size_t i = 0; i < options.extents.size(); ++i) {
-    if (!options.extents[i]) continue;
-    const Eigen::Vector3d& half = options.extents[i]->half_size;
-    if (half.allFinite() && half.minCoeff() >= 0) continue;
-    throw Error({.file = {},
-                 .where = fmt::format("extents[{}]", i),
-                 .expected = "expected a finite box with sizes of 0 or more",
-                 .remedy = {}});
-  }
-}
 
 std::vector<OverlapBody> make_bodies(const PrimitiveSet& primitives, const OverlapOptions& options) {
   std::vector<OverlapBody> bodies;
@@ -88,8 +68,18 @@ std::size_t OverlapGraph::edge_count() const {
   return ends / 2;
 }
 
+std::optional<OptionConflict> conflict_in(const OverlapOptions& options) {
+  for (std::size_t i = 0; i < options.extents.size(); ++i) {
+    if (!options.extents[i]) continue;
+    const Eigen::Vector3d& half = options.extents[i]->half_size;
+    if (half.allFinite() && half.minCoeff() >= 0) continue;
+    return OptionConflict{fmt::format("extents[{}]", i), "expected a finite box with sizes of 0 or more"};
+  }
+  return std::nullopt;
+}
+
 OverlapGraph build_overlap_graph(const PrimitiveSet& primitives, const OverlapOptions& options, const RunContext& run) {
-  check(options);
+  validate(options);
   const std::vector<OverlapBody> bodies = make_bodies(primitives, options);
   const BroadPhase broad_phase(bodies, options.tolerance / 2);
   OverlapGraph graph;

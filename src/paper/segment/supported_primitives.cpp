@@ -39,9 +39,7 @@ SupportedPrimitives without_unsupported(SupportedPrimitives supported,
         fmt::format("no point supports {} more primitives: they are left out", dropped - k_named_warnings));
   }
   if (kept.primitives.empty()) {
-    throw Error({.file = {},
-                 .where = {},
-                 .expected = "no point of the cloud is near any primitive",
+    throw Error({.expected = "no point of the cloud is near any primitive",
                  .remedy = "check that cloud and primitives are in the same frame and units"});
   }
   return kept;

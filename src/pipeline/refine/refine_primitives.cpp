@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -8,7 +6,6 @@
 
 #include "cloud2csg/advanced/refine.hpp"
 #include "cloud2csg/advanced/segmentation.hpp"
-#include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/robust_deviation.hpp"
 #include "core/tree/taken.hpp"
@@ -265,37 +262,6 @@ class Refiner {
 };
 
 }  // namespace
-
-std::string_view to_string(RegularityType type) {
-  switch (type) {
-    case RegularityType::directions:
-      return "directions";
-    case RegularityType::faces:
-      return "faces";
-    case RegularityType::centres:
-      return "centres";
-    case RegularityType::radii:
-      return "radii";
-  }
-  return "";
-}
-
-void validate(const RefineOptions& options) {
-  const auto require = [](bool holds, const char* field, std::string expected) {
-    if (!holds) throw Error({.file = {}, .where = field, .expected = std::move(expected), .remedy = {}});
-  };
-  if (options.noise) {
-    require(std::isfinite(*options.noise) && *options.noise > 0, "noise",
-            fmt::format("expected a number > 0, found {}", *options.noise));
-  }
-  require(options.angle_tolerance_deg > 0 && options.angle_tolerance_deg <= 90, "angle_tolerance_deg",
-          fmt::format("expected a number above 0 and at most 90, found {}", options.angle_tolerance_deg));
-  require(options.rounds >= 1, "rounds", fmt::format("expected 1 or more, found {}", options.rounds));
-  require(options.most_points >= 100, "most_points",
-          fmt::format("expected 100 or more, found {}", options.most_points));
-  require(options.regularity_angle_deg > 0 && options.regularity_angle_deg <= 10, "regularity_angle_deg",
-          fmt::format("expected a number above 0 and at most 10, found {}", options.regularity_angle_deg));
-}
 
 Refinement refine_primitives(const PointCloud& cloud, const PrimitiveSet& primitives, const CsgTree& tree,
                              const RefineOptions& options, const RunContext& run) {

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "cloud2csg/advanced/detect.hpp"
-#include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "raw/detect/connected.hpp"
@@ -142,34 +141,12 @@ bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const De
          (!options.most_size || most * work.diagonal <= *options.most_size);
 }
 
-void require_positive(const char* field, double value) {
-  if (value > 0 && std::isfinite(value)) return;
-  throw Error({.file = {},
-               .where = field,
-               .expected = fmt::format("expected a finite number above 0, got {}", value),
-               .remedy = {}});
-}
-
 }  // namespace
 
-void validate(const DetectOptions& options) {
-  require_positive("angle_tolerance_deg", options.angle_tolerance_deg);
-  if (options.angle_tolerance_deg > 90) {
-    throw Error({.file = {},
-                 .where = "angle_tolerance_deg",
-                 .expected = fmt::format("expected at most 90 degrees, got {}", options.angle_tolerance_deg),
-                 .remedy = {}});
-  }
-  if (options.distance_tolerance) require_positive("distance_tolerance", *options.distance_tolerance);
-  if (options.least_size) require_positive("least_size", *options.least_size);
-  if (options.most_size) require_positive("most_size", *options.most_size);
-  if (options.least_size && options.most_size && *options.least_size > *options.most_size) {
-    throw Error({.file = {},
-                 .where = "least_size",
-                 .expected = fmt::format("expected no more than most_size, got {} and {}", *options.least_size,
-                                         *options.most_size),
-                 .remedy = {}});
-  }
+std::optional<OptionConflict> conflict_in(const DetectOptions& options) {
+  if (!options.least_size || !options.most_size || *options.least_size <= *options.most_size) return std::nullopt;
+  return OptionConflict{"least_size", fmt::format("expected no more than `most_size`, found {} and {}",
+                                                  *options.least_size, *options.most_size)};
 }
 
 std::size_t detection_least_points(const DetectOptions& options, std::size_t points) {

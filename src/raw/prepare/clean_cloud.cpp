@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cloud2csg/advanced/clean.hpp"
-#include "cloud2csg/error.hpp"
 #include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/outliers.hpp"
 
@@ -110,9 +109,7 @@ Indices thinned(const Points& points, Indices kept, const Scale& scale, std::siz
 
 CleanCloud clean_cloud(const PointCloud& cloud, const Scale& scale, const CleanOptions& options,
                        const RunContext& run) {
-  if (options.point_budget == 0) {
-    throw Error({.file = {}, .where = "point_budget", .expected = "expected at least one point", .remedy = {}});
-  }
+  validate(options);
   const CentredPoints local = centred(cloud.positions);
   CleanReport report;
   Indices kept = without_duplicates(local.points);

@@ -120,10 +120,8 @@ AlignedBox box_without_strays(const Points& points, const NeighbourTree& tree, d
 
 Scale estimate_scale(const PointCloud& cloud, const RunContext& run) {
   if (cloud.size() < k_least_points) {
-    throw Error({.file = {},
-                 .where = "cloud",
-                 .expected = fmt::format("expected at least {} points, found {}", k_least_points, cloud.size()),
-                 .remedy = {}});
+    throw Error({.where = "cloud",
+                 .expected = fmt::format("expected at least {} points, found {}", k_least_points, cloud.size())});
   }
   const CentredPoints local = centred(cloud.positions);
   const NeighbourTree tree(local.points);
@@ -134,8 +132,7 @@ Scale estimate_scale(const PointCloud& cloud, const RunContext& run) {
   scale.diagonal = scale.box.diagonal().norm();
   scale.box.translate(local.centre);
   if (!(scale.diagonal > 0.0) || !(scale.spacing > 0.0)) {
-    throw Error({.file = {},
-                 .where = "cloud",
+    throw Error({.where = "cloud",
                  .expected = "expected points at different places, found most of them at the same",
                  .remedy = "leave out repeated points"});
   }

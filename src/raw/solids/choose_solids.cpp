@@ -18,14 +18,6 @@ namespace {
 constexpr double k_least_tolerance = 1e-3;  // of the diagonal
 constexpr double k_tolerance_sigmas = 2;
 
-void require_positive(const std::string& field, double value) {
-  if (value > 0 && std::isfinite(value)) return;
-  throw Error({.file = {},
-               .where = field,
-               .expected = fmt::format("expected a finite number above 0, got {}", value),
-               .remedy = {}});
-}
-
 /// The noise that was given, or else the root mean square of the residuals.
 double noise_of(std::span<const DetectedSurface> surfaces, std::span<const KnownSolid> known,
                 const SolidOptions& options) {
@@ -64,29 +56,7 @@ GivenSurfaces made_regular(const PointCloud& cloud, std::span<const DetectedSurf
   return result;
 }
 
-void validate(const RegularityOptions& options) {
-  require_positive("angle_tolerance_deg", options.angle_tolerance_deg);
-  require_positive("axis_tolerance_deg", options.axis_tolerance_deg);
-  if (options.distance_tolerance) require_positive("distance_tolerance", *options.distance_tolerance);
-  if (options.given_tolerance) require_positive("given_tolerance", *options.given_tolerance);
-  for (const double radius : options.radii) require_positive("radii", radius);
-  for (const Eigen::Vector3d& axis : options.axes) require_positive("axes", axis.norm());
-}
-
 }  // namespace
-
-void validate(const SolidOptions& options) {
-  require_positive("leaf_cost", options.leaf_cost);
-  if (options.leaf_cost > 1) {
-    throw Error({.file = {},
-                 .where = "leaf_cost",
-                 .expected = fmt::format("expected a share of the solid, at most 1, got {}", options.leaf_cost),
-                 .remedy = {}});
-  }
-  require_positive("plane_cost", options.plane_cost);
-  require_positive("most_rules", static_cast<double>(options.most_rules));
-  validate(options.regularity);
-}
 
 SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                           const SolidOptions& options, const RunContext& run) {
@@ -99,7 +69,7 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   const bool is_any_seen =
       std::ranges::any_of(known, [](const KnownSolid& solid) { return !solid.own.points.empty(); });
   if (surfaces.empty() && !is_any_seen) {
-    throw Error({.file = {}, .where = "surfaces", .expected = "expected a surface or more, got none", .remedy = {}});
+    throw Error({.where = "surfaces", .expected = "expected a surface or more, got none"});
   }
   PlaceOptions place_options = options.places;
   place_options.noise = noise_of(surfaces, known, options);

@@ -24,7 +24,7 @@ constexpr double k_far_margin = 0.3;         // of the diagonal, beyond the marg
 constexpr std::size_t k_chunk_places = 256;  // places between two looks at the stop token
 
 [[noreturn]] void refuse(const char* where, std::string expected, std::string remedy = {}) {
-  throw Error({.file = {}, .where = where, .expected = std::move(expected), .remedy = std::move(remedy)});
+  throw Error({.where = where, .expected = std::move(expected), .remedy = std::move(remedy)});
 }
 
 [[noreturn]] void refuse_without_inside() {
@@ -35,14 +35,7 @@ constexpr std::size_t k_chunk_places = 256;  // places between two looks at the 
 void check(const PointCloud& cloud, const PlaceOptions& options) {
   if (!cloud.has_normals()) refuse("cloud", "expected a cloud with outward normals");
   if (cloud.size() < k_least_points) refuse("cloud", fmt::format("expected at least {} points", k_least_points));
-  if (options.noise && !(*options.noise >= 0 && std::isfinite(*options.noise))) {
-    refuse("noise", fmt::format("expected a finite number, 0 or more, got {}", *options.noise));
-  }
-  if (options.volume_places == 0) refuse("volume_places", "expected at least 1");
-  if (options.surface_points == 0) refuse("surface_points", "expected at least 1");
-  if (!(options.margin > 0 && options.margin <= 1)) {
-    refuse("margin", fmt::format("expected more than 0 and at most 1, got {}", options.margin));
-  }
+  validate(options);
 }
 
 /// One place by chance in each of the cells of a lattice.

@@ -1,7 +1,6 @@
 #include "cloud2csg/compare.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,20 +11,9 @@
 namespace cloud2csg {
 namespace {
 
-void check_options(const CompareOptions& options) {
-  const auto fail = [](const char* name, const char* expected) {
-    throw Error({.file = {}, .where = name, .expected = expected, .remedy = {}});
-  };
-  constexpr int k_highest_resolution = 8192;
-  if (options.resolution < 2 || options.resolution > k_highest_resolution) {
-    fail("resolution", "expected a number from 2 to 8192");
-  }
-  if (options.surface_samples == 0) fail("surface_samples", "expected at least one");
-}
-
 void check_shape(const Shape3d& shape, const char* role) {
   const auto fail = [role](const char* expected, const char* remedy) {
-    throw Error({.file = {}, .where = role, .expected = expected, .remedy = remedy});
+    throw Error({.where = role, .expected = expected, .remedy = remedy});
   };
   const int kinds = (shape.model ? 1 : 0) + (shape.mesh ? 1 : 0) + (shape.cloud ? 1 : 0);
   if (kinds != 1) fail("expected one of a model, a mesh and a point cloud", "");
@@ -57,7 +45,7 @@ std::optional<double> ratio(std::size_t result, std::size_t truth) {
 }  // namespace
 
 Comparison compare(const Shape3d& truth, const Shape3d& result, const CompareOptions& options, const RunContext& run) {
-  check_options(options);
+  validate(options);
   check_shape(truth, "truth");
   check_shape(result, "result");
   Comparison comparison;

@@ -32,7 +32,7 @@ std::vector<double> for_each_point(std::size_t count, const RunContext& run, con
 Points sample_mesh(const TriangleMesh& mesh, const CompareOptions& options) {
   const TriangleSampler sampler(mesh.vertices, mesh.triangles);
   if (!(sampler.area() > 0.0)) {
-    throw Error({.file = {}, .where = "mesh", .expected = "the mesh is empty: it has no surface", .remedy = {}});
+    throw Error({.where = "mesh", .expected = "the mesh is empty: it has no surface"});
   }
   RandomStream random(options.seed, k_mesh_stream);
   Points points(options.surface_samples);

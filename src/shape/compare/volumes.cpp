@@ -21,8 +21,7 @@ AlignedBox volume_bounds(const Shape3d& shape) {
   if (!shape.model) return {};
   const AlignedBox box = bounds_of(*shape.model->tree, shape.model->primitives);
   if (!box.isEmpty() && !is_finite(box)) {
-    throw Error({.file = {},
-                 .where = "tree",
+    throw Error({.where = "tree",
                  .expected = "the solid is unbounded: it has no volume",
                  .remedy = "intersect it with a bounded primitive such as a box"});
   }

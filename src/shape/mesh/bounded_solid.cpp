@@ -13,8 +13,7 @@ BoundedSolid bound_solid(const CsgTree& tree, const PrimitiveSet& primitives, co
   BoundedSolid solid{bounded_field(tree, primitives), own_bounds.intersection(bounds)};
   if (own_bounds.isEmpty() || solid.bounds.isEmpty()) return {};
   if (!is_finite(solid.bounds)) {
-    throw Error({.file = {},
-                 .where = "bounds",
+    throw Error({.where = "bounds",
                  .expected = "expected finite bounds for a solid that is not bounded itself",
                  .remedy = "intersect the solid with a box, or give bounds at which to cut it"});
   }

@@ -1,29 +1,10 @@
-#include <fmt/format.h>
-
 #include <utility>
 
-#include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "shape/mesh/contour.hpp"
 #include "shape/mesh/untangle.hpp"
 
 namespace cloud2csg {
-namespace {
-
-constexpr int k_least_resolution = 4;
-constexpr int k_most_resolution = 4096;
-
-void validate(const MeshingOptions& options) {
-  if (options.resolution >= k_least_resolution && options.resolution <= k_most_resolution) return;
-  throw Error({.file = {},
-               .where = "resolution",
-               .expected = fmt::format("expected {} to {} cells, found {}", k_least_resolution, k_most_resolution,
-                                       options.resolution),
-               .remedy = {}});
-}
-
-}  // namespace
-
 TriangleMesh mesh_surface(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& bounds,
                           const MeshingOptions& options, const RunContext& run) {
   constexpr std::size_t k_steps = 4;

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 [[noreturn]] void fail_embree(const std::string& what) {
-  throw Error({.file = {}, .where = {}, .expected = "ray casting cannot be set up: " + what, .remedy = {}});
+  throw Error({.expected = "ray casting cannot be set up: " + what});
 }
 
 /// Throws what went wrong in the calls before.

@@ -2,11 +2,9 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/append.hpp"
@@ -26,18 +24,6 @@ constexpr std::size_t k_most_blind_batches = 16;
 constexpr std::size_t k_most_round_batches = 256;
 /// Batches that measure the area for a wanted density; as many without a hit mean that there is no surface.
 constexpr std::size_t k_measuring_batches = 64;
-
-[[noreturn]] void fail_option(std::string name, std::string expected) {
-  throw Error({.file = {}, .where = std::move(name), .expected = std::move(expected), .remedy = {}});
-}
-
-void check_options(const SampleOptions& options) {
-  const auto is_valid = [](double value) { return std::isfinite(value) && value >= 0.0; };
-  if (!is_valid(options.density)) fail_option("density", "expected a finite number that is not negative");
-  if (!is_valid(options.noise)) fail_option("noise", "expected a finite number that is not negative");
-  if (!is_valid(options.normal_noise_deg)) fail_option("normal_noise_deg", "expected a finite angle, not negative");
-  if (options.count == 0 && options.density == 0.0) fail_option("count", "expected at least one point");
-}
 
 /// How many batches to make next. Which batches these are at the end does not depend on it.
 std::size_t next_round(std::size_t batches_done, std::size_t points, std::size_t wanted) {
@@ -94,9 +80,14 @@ void add_noise(PointCloud& cloud, const SampleOptions& options) {
 
 }  // namespace
 
+std::optional<OptionConflict> conflict_in(const SampleOptions& options) {
+  if (options.count > 0 || options.density > 0) return std::nullopt;
+  return OptionConflict{"count", "expected at least one point"};
+}
+
 PointCloud sample_surface(const CsgTree& tree, const PrimitiveSet& primitives, const SampleOptions& options,
                           const RunContext& run) {
-  check_options(options);
+  validate(options);
   const SurfaceSampler sampler(tree, primitives, options.seed, run);
   PointCloud cloud = draw_points(sampler, options, run);
   if (options.noise > 0.0 || options.normal_noise_deg > 0.0) add_noise(cloud, options);

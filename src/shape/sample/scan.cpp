@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -26,40 +25,8 @@ constexpr std::uint64_t k_thinning_stream = 0x7363616e'04;
 /// Rays that one thread traces at a time.
 constexpr std::size_t k_block_rays = 4096;
 
-void check_range(const char* name, double value, double least, double most, const char* expected) {
-  if (value >= least && value <= most) return;
-  throw Error({.file = {}, .where = name, .expected = expected, .remedy = {}});
-}
-
-void check_options(const ScanOptions& options) {
-  constexpr double k_most = std::numeric_limits<double>::max();
-  const auto check_size = [](const char* name, double value) {
-    check_range(name, value, 0.0, k_most, "expected a finite number that is not negative");
-  };
-  const auto check_probability = [](const char* name, double value) {
-    check_range(name, value, 0.0, 1.0, "expected a probability from 0 to 1");
-  };
-  check_range("views", static_cast<double>(options.views), 1, 1e6, "expected 1 to 1000000 views");
-  check_range("distance", options.distance, 1.001, 1e6, "expected 1.001 to 1000000 bounding radii");
-  check_range("field_of_view_deg", options.field_of_view_deg, 0.0, 170.0, "expected an angle from 0 to 170 degrees");
-  check_range("angular_step_deg", options.angular_step_deg, 0.0, 170.0, "expected an angle from 0 to 170 degrees");
-  if (options.angular_step_deg == 0.0) {
-    check_range("count", static_cast<double>(options.count), 1, 1e10, "expected at least one point");
-  }
-  check_size("noise", options.noise);
-  check_size("quantisation", options.quantisation);
-  check_range("grazing_angle_deg", options.grazing_angle_deg, 0.0, 89.999,
-              "expected an angle from 0 to below 90 degrees");
-  check_probability("grazing_loss", options.grazing_loss);
-  check_probability("outliers", options.outliers);
-  check_probability("mixed_pixels", options.mixed_pixels);
-  check_size("rotation_deg", options.rotation_deg);
-  check_size("translation", options.translation);
-}
-
 [[noreturn]] void refuse_invisible() {
-  throw Error(
-      {.file = {}, .where = {}, .expected = "no ray of the scanner returns: there is nothing to see", .remedy = {}});
+  throw Error({.expected = "no ray of the scanner returns: there is nothing to see"});
 }
 
 class Scanner {
@@ -178,6 +145,11 @@ PointCloud scan_surface(const TriangleMesh& mesh, const SettleHits& settle, cons
 
 }  // namespace
 
+std::optional<OptionConflict> conflict_in(const ScanOptions& options) {
+  if (options.count > 0 || options.angular_step_deg > 0) return std::nullopt;
+  return OptionConflict{"count", "expected at least one point"};
+}
+
 ScanOptions without_defects(ScanOptions options) {
   options.noise = options.quantisation = 0.0;
   options.grazing_loss = 0.0;
@@ -187,14 +159,14 @@ ScanOptions without_defects(ScanOptions options) {
 }
 
 PointCloud scan_mesh(const TriangleMesh& mesh, const ScanOptions& options, const RunContext& run) {
-  check_options(options);
+  validate(options);
   return scan_surface(mesh, {}, options, run);
 }
 
 PointCloud scan_model(const CsgTree& tree, const PrimitiveSet& primitives, const ScanOptions& options,
                       const RunContext& run) {
   constexpr double k_reach_cells = 3.0;
-  check_options(options);
+  validate(options);
   const AlignedBox bounds = finite_bounds(tree, primitives);
   const TriangleMesh mesh = mesh_surface(tree, primitives, bounds, options.meshing, run);
   if (mesh.triangles.empty()) refuse_without_surface();

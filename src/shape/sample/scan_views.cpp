@@ -86,11 +86,9 @@ Raster make_raster(const ScanOptions& options, double step) {
                                                             : std::asin(1.0 / options.distance);
   const double side = std::floor(2.0 * half_angle / step);
   if (!(side <= k_most_rays_a_side)) {
-    throw Error({.file = {},
-                 .where = options.angular_step_deg > 0.0 ? "angular_step_deg" : "count",
+    throw Error({.where = options.angular_step_deg > 0.0 ? "angular_step_deg" : "count",
                  .expected = fmt::format("expected no more than {:.0f} rays across a view, found {:.3g}",
-                                         k_most_rays_a_side, side),
-                 .remedy = {}});
+                                         k_most_rays_a_side, side)});
   }
   if (side < 1) return {.step = 2.0 * half_angle, .side = 1};
   return {.step = step, .side = static_cast<std::size_t>(side)};

@@ -45,15 +45,14 @@ void shuffle(PointCloud& cloud, RandomStream random) {
 }  // namespace
 
 void refuse_without_surface() {
-  throw Error({.file = {}, .where = "tree", .expected = "the solid is empty: it has no surface", .remedy = {}});
+  throw Error({.where = "tree", .expected = "the solid is empty: it has no surface"});
 }
 
 AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives) {
   const AlignedBox region = bounds_of(tree, primitives);
   if (region.isEmpty()) refuse_without_surface();
   if (!is_finite(region)) {
-    throw Error({.file = {},
-                 .where = "tree",
+    throw Error({.where = "tree",
                  .expected = "the solid is unbounded: its surface cannot be sampled",
                  .remedy = "intersect it with a bounded primitive such as a box"});
   }

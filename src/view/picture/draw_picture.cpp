@@ -20,7 +20,6 @@ namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_oversampling = 3;
-constexpr int k_longest_side = 4096;
 // In all: samples and what rays meet take half a kilobyte a pixel.
 constexpr double k_most_pixels = 4e6;
 
@@ -82,22 +81,11 @@ AlignedBox main_box(const PointCloud& cloud) {
 
 }  // namespace
 
-void validate(const PictureOptions& options) {
-  const auto require = [](bool is_right, const char* field, const std::string& expected, double found) {
-    if (is_right) return;
-    throw Error(
-        {.file = {}, .where = field, .expected = fmt::format("expected {}, found {}", expected, found), .remedy = {}});
-  };
-  const std::string pixels = fmt::format("16 to {} pixels", k_longest_side);
-  const auto is_side = [](int side) { return side >= 16 && side <= k_longest_side; };
-  require(options.width == 0 || is_side(options.width), "width", pixels, options.width);
-  require(is_side(options.height), "height", pixels, options.height);
+std::optional<OptionConflict> conflict_in(const PictureOptions& options) {
   const double width = options.width > 0 ? options.width : 2.0 * options.height;
-  require(width * options.height <= k_most_pixels, "height",
-          fmt::format("at most {:.0f} pixels with this width", k_most_pixels / width), options.height);
-  require(std::isfinite(options.azimuth_deg), "azimuth_deg", "a finite number", options.azimuth_deg);
-  require(std::abs(options.elevation_deg) <= 90, "elevation_deg", "-90 to 90 degrees", options.elevation_deg);
-  require(options.resolution >= 4 && options.resolution <= 4096, "resolution", "4 to 4096 cells", options.resolution);
+  if (width * options.height <= k_most_pixels) return std::nullopt;
+  return OptionConflict{"height", fmt::format("expected at most {:.0f} pixels with this width, found {}",
+                                              k_most_pixels / width, options.height)};
 }
 
 Colour background(const PictureOptions& options, int row) {
@@ -122,8 +110,7 @@ Image draw_picture(const Scene& scene, const PictureOptions& options, const RunC
   if (has_cloud) box.extend(main_box(*scene.cloud));
   const int panes = (has_cloud ? 1 : 0) + (scene.model.tree ? 1 : 0);
   if (panes == 0 || box.isEmpty()) {
-    throw Error(
-        {.file = {}, .where = {}, .expected = "expected a cloud or a solid to draw, found neither", .remedy = {}});
+    throw Error({.expected = "expected a cloud or a solid to draw, found neither"});
   }
   Image image{.width = options.width > 0 ? options.width : panes * options.height, .height = options.height};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));

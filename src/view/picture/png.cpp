@@ -9,7 +9,7 @@ namespace cloud2csg {
 namespace {
 
 [[noreturn]] void fail(const std::string& reason) {
-  throw Error({.file = {}, .where = {}, .expected = "the picture cannot be compressed: " + reason, .remedy = {}});
+  throw Error({.expected = "the picture cannot be compressed: " + reason});
 }
 
 }  // namespace

@@ -16,25 +16,12 @@ namespace {
 /// Where the page has its data; viewer/index.html has the same.
 constexpr std::string_view k_mark = "@CLOUD2CSG_REPORT@";
 
-void require(bool holds, const char* field, std::string expected) {
-  if (holds) return;
-  throw Error({.file = {}, .where = field, .expected = std::move(expected), .remedy = {}});
-}
-
 }  // namespace
 
-void validate(const ReportOptions& options) {
-  const auto is_resolution = [](int cells) { return cells >= 4 && cells <= 4096; };
-  require(options.most_points > 0, "most_points", "expected 1 or more, found 0");
-  require(is_resolution(options.resolution), "resolution",
-          fmt::format("expected 4 to 4096 cells, found {}", options.resolution));
-  require(is_resolution(options.part_resolution), "part_resolution",
-          fmt::format("expected 4 to 4096 cells, found {}", options.part_resolution));
-  require(options.most_triangles > 0, "most_triangles", "expected 1 or more, found 0");
-  require(options.most_triangles_in_all >= options.most_triangles, "most_triangles_in_all",
-          fmt::format("expected at least most_triangles, {}, found {}", options.most_triangles,
-                      options.most_triangles_in_all));
-  require(options.most_meshes > 0, "most_meshes", "expected 1 or more, found 0");
+std::optional<OptionConflict> conflict_in(const ReportOptions& options) {
+  if (options.most_triangles_in_all >= options.most_triangles) return std::nullopt;
+  return OptionConflict{"most_triangles_in_all", fmt::format("expected at least `most_triangles`, {}, found {}",
+                                                             options.most_triangles, options.most_triangles_in_all)};
 }
 
 bool has_report_page() {
@@ -43,16 +30,17 @@ bool has_report_page() {
 
 std::string report_page(const Report& report, const ReportOptions& options, const RunContext& run) {
   validate(options);
-  require(report.model.tree.has_value(), "/tree", "expected a model with a tree, found primitives only");
+  if (!report.model.tree) {
+    throw Error({.where = "/tree", .expected = "expected a model with a tree, found primitives only"});
+  }
   if (!has_report_page()) {
-    throw Error({.file = {},
-                 .where = {},
-                 .expected = "this cloud2csg was built without the page of reports (.html)",
+    throw Error({.expected = "this cloud2csg was built without the page of reports (.html)",
                  .remedy = "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"});
   }
   const std::string_view page = page_template();
   const std::size_t mark = page.find(k_mark);
-  require(mark != std::string_view::npos, "viewer", "the page has no place for the data");
+  if (mark == std::string_view::npos)
+    throw Error({.where = "viewer", .expected = "the page has no place for the data"});
   std::string text(page.substr(0, mark));
   text += compressed_base64(gather_payload(report, options, run));
   text += page.substr(mark + k_mark.size());
