@@ -150,7 +150,8 @@ TEST(Picture, RefusesWhatCannotBeDrawn) {
     return "drawn";
   };
   EXPECT_NE(message({}, {}).find("a cloud or a solid"), std::string::npos);
-  EXPECT_NE(message({.model = ball()}, {.width = 3}).find("width: expected 0, or a whole number from 16 to"), std::string::npos);
+  EXPECT_NE(message({.model = ball()}, {.width = 3}).find("width: expected 0, or a whole number from 16 to"),
+            std::string::npos);
   EXPECT_NE(message({.model = ball()}, {.width = 4000, .height = 2000}).find("at most 1000 pixels"), std::string::npos);
   EXPECT_NE(message({.model = ball()}, {.height = 0}).find("height"), std::string::npos);
   EXPECT_NE(message({.model = ball()}, {.elevation_deg = 91}).find("elevation_deg"), std::string::npos);
