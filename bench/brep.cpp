@@ -19,7 +19,7 @@ namespace {
 void print_row(const std::string& name, const Model& model) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "cloud2csg_bench.step";
   const Stopwatch watch;
-  const BrepReport report = write_step(file, *model.tree, model.primitives, {}, {.threads = 0});
+  const BrepReport report = write_step(file, model, {}, {.threads = 0});
   const double seconds = watch.seconds();
   fmt::print("| {} | {} | {:.2f} | {} | {} | {} | {:.6g} | {:.6g} | {:.4f} % | {:.4f} % | {} | {:.2f} |\n", name,
              leaf_count(*model.tree), seconds, report.is_valid ? "yes" : "no", report.solids, report.faces,

@@ -20,7 +20,7 @@ inline Model shipped_model(const std::string& name) {
 inline PointCloud paper_cloud(const Model& model, std::size_t points, std::uint64_t seed) {
   RunContext all_cores;
   all_cores.threads = 0;
-  return sample_surface(*model.tree, model.primitives, {.count = points, .noise = 0.01, .seed = seed}, all_cores);
+  return sample_surface(model, {.count = points, .noise = 0.01, .seed = seed}, all_cores);
 }
 
 /// Seconds of several runs of the same thing. The machine is shared: the median is quoted, the least says what the

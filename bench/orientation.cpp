@@ -59,7 +59,7 @@ Options read_options(int argc, char** argv) {
 }
 
 c2c::PointCloud of_model(const c2c::Model& model, std::size_t points) {
-  return c2c::sample_surface(*model.tree, model.primitives, {.count = points}, k_run);
+  return c2c::sample_surface(model, {.count = points}, k_run);
 }
 
 c2c::PointCloud of_file(const std::filesystem::path& file, std::size_t points) {

@@ -32,7 +32,7 @@ const c2c::RunContext k_run{.threads = 2};
 c2c::PointCloud truth(const std::filesystem::path& file, std::size_t points) {
   if (file.extension() != ".json") return c2c::read_cloud_or_mesh(file, {.mesh_points = points}).cloud;
   const c2c::Model model = c2c::read_model(file);
-  return c2c::sample_surface(*model.tree, model.primitives, {.count = points});
+  return c2c::sample_surface(model, {.count = points});
 }
 
 /// What a virtual scanner sees, with true normals.
@@ -40,7 +40,7 @@ c2c::PointCloud scan(const std::filesystem::path& file, std::size_t points) {
   const c2c::ScanOptions options{.count = points, .with_normals = true};
   if (file.extension() != ".json") return c2c::scan_mesh(c2c::read_mesh(file), options, k_run);
   const c2c::Model model = c2c::read_model(file);
-  return c2c::scan_model(*model.tree, model.primitives, options, k_run);
+  return c2c::scan_model(model, options, k_run);
 }
 
 void print_scale(const std::vector<std::filesystem::path>& files) {

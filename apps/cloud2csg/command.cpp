@@ -43,14 +43,6 @@ CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& f
   return options.add_option(name, file, help)->check(file_name())->required();
 }
 
-const CsgTree& tree_of(const Model& model, const std::string& file) {
-  if (model.tree) return *model.tree;
-  throw Error({.file = file,
-               .where = "/tree",
-               .expected = "the model has primitives but no tree",
-               .remedy = "extract a tree from a cloud first, or add a \"tree\" that combines the primitives"});
-}
-
 std::string example(const std::string& lines) {
   return "Example:\n" + lines;
 }

@@ -62,9 +62,6 @@ CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, con
 /// A required file to read, as an option or by its place.
 CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& file, const std::string& help);
 
-/// @throws Error naming the file when the model has no tree.
-[[nodiscard]] const CsgTree& tree_of(const Model& model, const std::string& file);
-
 /// What `work` returns. An Error that names no file, of a stage that knows none, gets the name of what was worked on.
 template <typename Work>
 auto naming(const std::string& files, const Work& work) {

@@ -81,7 +81,7 @@ PointCloud ExtractCommand::unexplained_part(const Extraction& result, int thread
   const SegmentationTolerances tolerances =
       segmentation_tolerances(options.extraction.segmentation, result.statistics.noise);
   const std::vector<std::uint32_t> indices =
-      unexplained_points(result.tree(), result.model.primitives, result.cloud, tolerances, {.threads = threads});
+      unexplained_points(result.model, result.cloud, tolerances, {.threads = threads});
   return select_points(result.cloud, indices);
 }
 

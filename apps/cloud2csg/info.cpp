@@ -67,7 +67,7 @@ Json describe(const Model& model) {
   for (const Primitive& primitive : model.primitives) {
     ++by_type[(primitive.displacement ? "displaced " : "") + std::string(type_name(primitive.shape))];
   }
-  const AlignedBox box = model.tree ? bounds_of(*model.tree, model.primitives) : bounds_of(model.primitives);
+  const AlignedBox box = model.tree ? bounds_of(model) : bounds_of(model.primitives);
   return {{"kind", "model"},
           {"description", model.description},
           {"primitives", model.primitives.size()},

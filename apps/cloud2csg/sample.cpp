@@ -44,7 +44,7 @@ PointCloud SampleCommand::sample(const Shape3d& read, const RunContext& run) con
   if (read.mesh || relative_noise) exact.noise = 0;
   PointCloud cloud;
   if (read.model) {
-    cloud = sample_surface(tree_of(*read.model, shape), read.model->primitives, exact, run);
+    cloud = sample_surface(*read.model, exact, run);
   } else if (read.mesh) {
     cloud = sample_of_mesh(*read.mesh, exact, run);
   } else {

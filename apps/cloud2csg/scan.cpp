@@ -26,7 +26,7 @@ struct ScanCommand {
 
 PointCloud scan_shape(const Shape3d& shape, const std::string& file, const ScanOptions& options,
                       const RunContext& run) {
-  if (shape.model) return scan_model(tree_of(*shape.model, file), shape.model->primitives, options, run);
+  if (shape.model) return scan_model(*shape.model, options, run);
   if (shape.mesh) return scan_mesh(*shape.mesh, options, run);
   throw Error({.file = file,
                .expected = "expected a model with a tree or a mesh, found a point cloud",

@@ -32,8 +32,8 @@ Disagreement disagreement(const CsgTree& a, const CsgTree& b, const PrimitiveSet
                           std::uint64_t seed, const RunContext& run) {
   std::vector<PrimitiveIndex> all(primitives.size());
   std::iota(all.begin(), all.end(), PrimitiveIndex{0});
-  const std::vector<Neighbourhood> of_a = neighbourhoods(a, primitives, all, offset);
-  const std::vector<Neighbourhood> of_b = neighbourhoods(b, primitives, all, offset);
+  const std::vector<Neighbourhood> of_a = neighbourhoods({.primitives = primitives, .tree = a}, all, offset);
+  const std::vector<Neighbourhood> of_b = neighbourhoods({.primitives = primitives, .tree = b}, all, offset);
   std::vector<double> shares(primitives.size());
   for_each_index(primitives.size(), run, [&](std::size_t p) {
     RandomStream random(seed, k_stream, p);

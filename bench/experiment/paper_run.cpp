@@ -49,7 +49,7 @@ class CloudRuns {
       : model_(model),
         options_(options),
         run_{.stop = run.stop, .on_progress = {}, .threads = options.threads},
-        cloud_(sample_surface(*model.tree, model.primitives,
+        cloud_(sample_surface(model,
                               {.count = sampling == Sampling::low ? options.low_points : options.high_points,
                                .noise = options.noise,
                                .seed = options.seed},

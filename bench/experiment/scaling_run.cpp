@@ -57,8 +57,8 @@ ScalingRun run_scaling_case(const ScalingCase& scaling_case, std::uint64_t seed,
   const Model model =
       make_family(scaling_case.family,
                   {.primitives = scaling_case.primitives, .clique_size = scaling_case.clique_size, .seed = seed});
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives,
-                                          {.count = scaling_case.points, .noise = options.noise, .seed = seed}, inner);
+  const PointCloud cloud =
+      sample_surface(model, {.count = scaling_case.points, .noise = options.noise, .seed = seed}, inner);
   ExtractOptions extract{.seed = seed};
   if (options.time_limit_seconds > 0) extract.time_limit_seconds = options.time_limit_seconds;
   const PeakMemory memory;

@@ -101,9 +101,9 @@ Primitive spurious_copy(const PrimitiveSet& primitives, RandomStream& random) {
 PointCloud defective_cloud(const Model& model, Defect defect, const DefectOptions& options, RandomStream& random) {
   SampleOptions sample{.count = options.points, .noise = options.noise, .seed = options.seed};
   if (defect == Defect::noise) {
-    sample.noise = k_noise_of_diagonal * bounds_of(*model.tree, model.primitives).diagonal().norm();
+    sample.noise = k_noise_of_diagonal * bounds_of(model).diagonal().norm();
   }
-  PointCloud cloud = sample_surface(*model.tree, model.primitives, sample);
+  PointCloud cloud = sample_surface(model, sample);
   if (defect == Defect::patches) {
     const double patch_share = k_patch_of_primitive / static_cast<double>(model.primitives.size());
     return without_patches(cloud, patch_share, random);

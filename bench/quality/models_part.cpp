@@ -42,10 +42,8 @@ void print_models(const QualityOptions& options) {
     for (const std::size_t points : k_points) {
       const auto make = [&](std::size_t i) {
         const std::uint64_t seed = i + 1;
-        return make_task(
-            model,
-            sample_surface(*model.tree, model.primitives, {.count = points, .noise = options.noise, .seed = seed}),
-            judge, seed);
+        return make_task(model, sample_surface(model, {.count = points, .noise = options.noise, .seed = seed}), judge,
+                         seed);
       };
       const auto outcomes = run_tasks(fmt::format("{}, {} points", name, points), options.seeds, make, options.run);
       for (std::size_t s = 0; s < outcomes.size(); ++s) {

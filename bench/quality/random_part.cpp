@@ -25,8 +25,7 @@ Task make_random_task(const RandomModel& random_model, std::size_t points_per_pr
   const Model model = make_model(random_model);
   const std::uint64_t seed = random_model.options.seed;
   PointCloud cloud =
-      sample_surface(*model.tree, model.primitives,
-                     {.count = points_per_primitive * model.primitives.size(), .noise = noise, .seed = seed});
+      sample_surface(model, {.count = points_per_primitive * model.primitives.size(), .noise = noise, .seed = seed});
   return make_task(model, std::move(cloud), std::make_shared<Judge>(model.primitives, *model.tree), seed);
 }
 

@@ -68,7 +68,7 @@ Errors errors_of(const Model& model, const PrimitiveSet& primitives, const Point
 
 std::vector<TableCell> row_of(const char* name, bool regularise, std::size_t seeds, int threads) {
   const Model model = shipped_model(name);
-  const PointCloud exact = sample_surface(*model.tree, model.primitives, {.count = k_points, .seed = 1000});
+  const PointCloud exact = sample_surface(model, {.count = k_points, .seed = 1000});
   Errors before;
   Errors after;
   double worst = 0;

@@ -24,11 +24,10 @@ std::vector<Setting> scan_settings() {
 Task make_scan_task(std::uint64_t seed, std::size_t views) {
   const RandomModel drawn = draw_model(Family::random, seed);
   const Model model = make_model(drawn);
-  PointCloud cloud = scan_model(*model.tree, model.primitives,
-                                {.views = views,
-                                 .count = k_points_per_primitive_scanned * model.primitives.size(),
-                                 .with_normals = true,
-                                 .seed = seed});
+  PointCloud cloud = scan_model(model, {.views = views,
+                                        .count = k_points_per_primitive_scanned * model.primitives.size(),
+                                        .with_normals = true,
+                                        .seed = seed});
   return make_task(model, std::move(cloud), std::make_shared<Judge>(model.primitives, *model.tree), seed);
 }
 

@@ -154,9 +154,6 @@ class CsgTree {
 /// Whether one point, given which primitives it is inside of (indexed by PrimitiveIndex), is in the solid.
 [[nodiscard]] bool contains(const CsgTree& tree, const std::vector<bool>& inside_primitive);
 
-/// Graphviz: one box a node, labelled with the operation or the primitive's id.
-[[nodiscard]] std::string to_graphviz(const CsgTree& tree, const PrimitiveSet& primitives);
-
 /// Primitives and, where known, a tree over them: one solid.
 struct Model {
   PrimitiveSet primitives = {};
@@ -166,5 +163,10 @@ struct Model {
   /// Sentences for the user: what is doubtful about how it was read. Not written to files.
   std::vector<std::string> warnings = {};
 };
+/// The model's tree. Whatever takes a model as a solid needs one. @throws Error naming `file`, if one is given
+[[nodiscard]] const CsgTree& tree_of(const Model& model, const std::string& file = {});
+
+/// Graphviz: one box a node, labelled with the operation or the primitive's id. @throws Error without a tree
+[[nodiscard]] std::string to_graphviz(const Model& model);
 
 }  // namespace cloud2csg

@@ -34,15 +34,13 @@ void option_table(OptionsOf<OpenScadOptions>, auto&& field) {
 /// equal combinations of up to 64, that are united, taken away or intersected, at equal steps or at equal angles about
 /// an axis, to 1e-6 of the model's size, the first is written, in a loop; so it is of two combinations that are equal
 /// or mirror images. Renders in OpenSCAD 2021.01 without warnings.
-[[nodiscard]] std::string to_openscad(const CsgTree& tree, const PrimitiveSet& primitives,
-                                      const OpenScadOptions& options = {});
+[[nodiscard]] std::string to_openscad(const Model& model, const OpenScadOptions& options = {});
 
 /// The flat language that OpenSCAD calculates with (.csg): each solid by a matrix, numbers in place of names, no loops.
 /// Circles have no number of facets of their own ($fn = 0), so that FreeCAD reads true cylinders and spheres; OpenSCAD
 /// makes facets by angle, down to a length of 0.01. Circles so small that it would make fewer than `facets` have that
 /// number, and 17 at least: FreeCAD reads those as round, too.
-[[nodiscard]] std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives,
-                                          const OpenScadOptions& options = {});
+[[nodiscard]] std::string to_openscad_csg(const Model& model, const OpenScadOptions& options = {});
 
 /// Its fields: see the table.
 struct ScriptOptions {
@@ -59,14 +57,12 @@ void option_table(OptionsOf<ScriptOptions>, auto&& field) {
 /// placement, labelled with its id, and each operation one over others. In numbers that are read as they are here.
 /// Displaced solids, expressions and polytopes have facets.
 /// @throws Error when the solid is empty
-[[nodiscard]] std::string to_freecad_macro(const CsgTree& tree, const PrimitiveSet& primitives,
-                                           const ScriptOptions& options = {});
+[[nodiscard]] std::string to_freecad_macro(const Model& model, const ScriptOptions& options = {});
 
 /// A script for CadQuery 2.2 or later (.py): the values of each primitive as named variables, then the solids, then the
 /// operations; the result is `part`.
 /// @throws Error when the solid is empty
-[[nodiscard]] std::string to_cadquery(const CsgTree& tree, const PrimitiveSet& primitives,
-                                      const ScriptOptions& options = {});
+[[nodiscard]] std::string to_cadquery(const Model& model, const ScriptOptions& options = {});
 
 /// Its fields: see the table.
 struct ExportOptions {

@@ -261,8 +261,7 @@ struct Extraction {
 
 /// The points that a tree does not explain: farther from its surface than the tolerance, or with a normal that is not
 /// within the angle of the surface's outward one. Ascending. O(points x primitives near each)
-[[nodiscard]] std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const PrimitiveSet& primitives,
-                                                            const PointCloud& cloud,
+[[nodiscard]] std::vector<std::uint32_t> unexplained_points(const Model& model, const PointCloud& cloud,
                                                             const SegmentationTolerances& tolerances,
                                                             const RunContext& run = {});
 

@@ -36,12 +36,12 @@ void option_table(OptionsOf<MeshingOptions>, auto&& field) {
 /// Empty when the solid is. O(surface cells x size): space far from the surface is skipped, and near it only the
 /// primitives that can matter are evaluated. Expressions are evaluated everywhere within their bounds.
 /// @throws Error when neither the solid nor `bounds` is finite, or the resolution is not 4 to 4096; Cancelled
-[[nodiscard]] TriangleMesh mesh_surface(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& bounds,
+[[nodiscard]] TriangleMesh mesh_surface(const Model& model, const AlignedBox& bounds,
                                         const MeshingOptions& options = {}, const RunContext& run = {});
 
 /// Bounds of the solid: those of its bounded primitives where the formula allows, by the tree (the union of both
 /// for a union, the common part for an intersection, the first for a difference). May be infinite.
-[[nodiscard]] AlignedBox bounds_of(const CsgTree& tree, const PrimitiveSet& primitives);
+[[nodiscard]] AlignedBox bounds_of(const Model& model);
 
 /// Whether every edge has exactly two triangles, in opposite directions.
 [[nodiscard]] bool is_watertight(const TriangleMesh& mesh);

@@ -34,8 +34,8 @@ void option_table(OptionsOf<SampleOptions>, auto&& field) {
 /// Points on a model's surface: uniform by area, only where the primitives' surfaces are the surface of the whole
 /// solid, with outward normals. Positions are moved by the noise after the normal was taken.
 /// @throws Error when the solid is empty or unbounded; Cancelled.
-[[nodiscard]] PointCloud sample_surface(const CsgTree& tree, const PrimitiveSet& primitives,
-                                        const SampleOptions& options = {}, const RunContext& run = {});
+[[nodiscard]] PointCloud sample_surface(const Model& model, const SampleOptions& options = {},
+                                        const RunContext& run = {});
 
 /// Moves each coordinate by a Gaussian of this sigma, in the cloud's units; normals stay. The same seed moves the same
 /// way. O(n)
@@ -119,7 +119,6 @@ void option_table(OptionsOf<ScanOptions>, auto&& field) {
 /// The same for a model: its mesh tells what each ray hits first, the model's formulas where exactly. What is thinner
 /// than a few cells of the mesh may be missed.
 /// @throws Error as scan_mesh(), and when the solid is empty or unbounded; Cancelled.
-[[nodiscard]] PointCloud scan_model(const CsgTree& tree, const PrimitiveSet& primitives,
-                                    const ScanOptions& options = {}, const RunContext& run = {});
+[[nodiscard]] PointCloud scan_model(const Model& model, const ScanOptions& options = {}, const RunContext& run = {});
 
 }  // namespace cloud2csg

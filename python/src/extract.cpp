@@ -78,10 +78,9 @@ py::object statistics_of(const Result& result) {
 
 py::array_t<std::uint32_t> unexplained_in(const Result& self, int threads, const py::object& progress) {
   const SegmentationTolerances tolerances = segmentation_tolerances({}, self.statistics.noise);
-  const std::vector<std::uint32_t> indices =
-      run_work({.threads = threads, .progress = progress}, [&](const RunContext& run) {
-        return unexplained_points(*self.model->tree, self.model->primitives, self.cloud->points(), tolerances, run);
-      });
+  const std::vector<std::uint32_t> indices = run_work(
+      {.threads = threads, .progress = progress},
+      [&](const RunContext& run) { return unexplained_points(*self.model, self.cloud->points(), tolerances, run); });
   return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(indices.size()), indices.data());
 }
 

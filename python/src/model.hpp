@@ -12,9 +12,6 @@
 
 namespace cloud2csg::python {
 
-/// @throws Error when the model has no tree.
-[[nodiscard]] const CsgTree& tree_of(const Model& model);
-
 /// Primitives of a model, or of any iterable of primitives. @throws Error for an id that is there twice; TypeError
 [[nodiscard]] PrimitiveSet to_primitives(const pybind11::object& primitives);
 

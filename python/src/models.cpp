@@ -22,13 +22,6 @@
 
 namespace cloud2csg::python {
 
-const CsgTree& tree_of(const Model& model) {
-  if (model.tree) return *model.tree;
-  throw Error({.where = "tree",
-               .expected = "expected a model with a tree, found primitives only",
-               .remedy = "extract a tree first"});
-}
-
 PrimitiveSet to_primitives(const py::object& primitives) {
   if (py::isinstance<Model>(primitives)) return primitives.cast<const Model&>().primitives;
   PrimitiveSet set;
@@ -138,7 +131,7 @@ void bind_content(ModelClass& model) {
           "depth", [](const Model& self) { return depth(tree_of(self)); },
           "Edges from the root to the deepest leaf of the binary tree. Raises Error without a tree.")
       .def_property_readonly(
-          "bounds", [](const Model& self) { return to_array(bounds_of(tree_of(self), self.primitives)); },
+          "bounds", [](const Model& self) { return to_array(bounds_of(self)); },
           "[[least x, y, z], [greatest x, y, z]] around the solid, shape (2, 3); may be infinite.")
       .def(
           "simplified",
@@ -160,11 +153,11 @@ void bind_texts(ModelClass& model) {
       .def(
           "to_scad",
           [](const Model& self, const std::optional<OpenScadOptions>& options) {
-            return to_openscad(tree_of(self), self.primitives, options.value_or(OpenScadOptions{}));
+            return to_openscad(self, options.value_or(OpenScadOptions{}));
           },
           py::arg("options") = py::none(), "The OpenSCAD program. Raises Error without a tree.")
       .def(
-          "to_graphviz", [](const Model& self) { return to_graphviz(tree_of(self), self.primitives); },
+          "to_graphviz", [](const Model& self) { return to_graphviz(self); },
           "The tree for Graphviz. Raises Error without a tree.")
       .def(
           "to_text", [](const Model& self) { return to_text(tree_of(self), self.primitives); },
@@ -210,10 +203,9 @@ void bind_outputs(ModelClass& model) {
           "mesh",
           [](const Model& self, const std::optional<MeshingOptions>& options, int threads, const py::object& progress,
              const py::kwargs& fields) {
-            const CsgTree& tree = tree_of(self);
             const MeshingOptions meshing = with_fields(options, fields);
             return run_work({.threads = threads, .progress = progress}, [&](const RunContext& run) {
-              return mesh_surface(tree, self.primitives, model_extent(tree, self.primitives), meshing, run);
+              return mesh_surface(self, model_extent(self), meshing, run);
             });
           },
           py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0, py::arg("progress") = py::none(),

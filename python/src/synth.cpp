@@ -37,9 +37,7 @@ Cloud sample(const py::object& shape, const std::optional<SampleOptions>& option
   }
   if (!py::isinstance<Model>(shape)) refuse("sample");
   const auto& model = shape.cast<const Model&>();
-  const CsgTree& tree = tree_of(model);
-  return Cloud(run_work(arguments,
-                        [&](const RunContext& run) { return sample_surface(tree, model.primitives, sampling, run); }));
+  return Cloud(run_work(arguments, [&](const RunContext& run) { return sample_surface(model, sampling, run); }));
 }
 
 Cloud scan(const py::object& shape, const std::optional<ScanOptions>& options, int threads, const py::object& progress,
@@ -52,9 +50,7 @@ Cloud scan(const py::object& shape, const std::optional<ScanOptions>& options, i
   }
   if (!py::isinstance<Model>(shape)) refuse("scan");
   const auto& model = shape.cast<const Model&>();
-  const CsgTree& tree = tree_of(model);
-  return Cloud(
-      run_work(arguments, [&](const RunContext& run) { return scan_model(tree, model.primitives, scanning, run); }));
+  return Cloud(run_work(arguments, [&](const RunContext& run) { return scan_model(model, scanning, run); }));
 }
 
 }  // namespace

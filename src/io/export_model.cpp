@@ -12,13 +12,6 @@
 namespace cloud2csg {
 namespace {
 
-const CsgTree& tree_of(const Model& model, const std::filesystem::path& file) {
-  if (model.tree) return *model.tree;
-  throw Error({.file = file.string(),
-               .expected = "expected a model with a tree, found primitives only",
-               .remedy = "extract a tree first, or write .json"});
-}
-
 std::string text_of(const Eigen::Vector3d& corner) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", corner.x(), corner.y(), corner.z());
 }
@@ -40,25 +33,22 @@ void write_marked(const std::filesystem::path& file, std::string_view comment, c
 
 template <class Options>
 ExportReport export_script(const std::filesystem::path& file, std::string_view comment, const Model& model,
-                           Options options,
-                           std::string (*to_script)(const CsgTree&, const PrimitiveSet&, const Options&)) {
-  const CsgTree& tree = tree_of(model, file);
-  ExportReport report{.cut_at = cut_at(tree, model.primitives, model_extent(tree, model.primitives))};
+                           Options options, std::string (*to_script)(const Model&, const Options&)) {
+  ExportReport report{.cut_at = cut_at(model, model_extent(model))};
   options.comment = head_comment(std::move(options.comment), model, report.cut_at);
-  write_marked(file, comment, to_script(tree, model.primitives, options));
+  write_marked(file, comment, to_script(model, options));
   return report;
 }
 
 /// The surface of the exact solid, where there is a kernel that makes one without fault.
-std::optional<TriangleMesh> exact_surface(const CsgTree& tree, const PrimitiveSet& primitives,
-                                          const ExportOptions& options, const RunContext& run) {
+std::optional<TriangleMesh> exact_surface(const Model& model, const ExportOptions& options, const RunContext& run) {
   constexpr std::size_t k_most_leaves = 100;  // of more, the kernel is slow
   constexpr double k_share_of_cell = 0.02;
-  if (!options.exact_meshes || leaf_count(tree) > k_most_leaves || !has_brep()) return std::nullopt;
+  if (!options.exact_meshes || leaf_count(*model.tree) > k_most_leaves || !has_brep()) return std::nullopt;
   BrepOptions brep = options.brep;
   brep.mesh_deviation = k_share_of_cell / options.meshing.resolution;
   try {
-    BrepMesh made = mesh_brep(tree, primitives, brep, run);
+    BrepMesh made = mesh_brep(model, brep, run);
     const bool is_right = made.report.is_exact(brep) && is_watertight(made.mesh);
     return is_right ? std::optional(std::move(made.mesh)) : std::nullopt;
   } catch (const Error&) {
@@ -68,11 +58,10 @@ std::optional<TriangleMesh> exact_surface(const CsgTree& tree, const PrimitiveSe
 
 ExportReport export_mesh(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
                          const RunContext& run) {
-  const CsgTree& tree = tree_of(model, file);
-  const AlignedBox extent = model_extent(tree, model.primitives);
-  const std::optional<TriangleMesh> exact = exact_surface(tree, model.primitives, options, run);
-  write_mesh(file, exact ? *exact : mesh_surface(tree, model.primitives, extent, options.meshing, run));
-  return {.cut_at = cut_at(tree, model.primitives, extent)};
+  const AlignedBox extent = model_extent(model);
+  const std::optional<TriangleMesh> exact = exact_surface(model, options, run);
+  write_mesh(file, exact ? *exact : mesh_surface(model, extent, options.meshing, run));
+  return {.cut_at = cut_at(model, extent)};
 }
 
 }  // namespace
@@ -82,12 +71,13 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
   using Kind = FileKind;
   const FileFormat::Id format =
       format_to_write(file, {Kind::model, Kind::script, Kind::solid, Kind::mesh, Kind::graph});
+  if (format != FileFormat::Id::json) (void)tree_of(model, file.string());
   switch (format) {
     case FileFormat::Id::json:
       write_model(file, model);
       return {};
     case FileFormat::Id::dot:
-      write_marked(file, "//", to_graphviz(tree_of(model, file), model.primitives));
+      write_marked(file, "//", to_graphviz(model));
       return {};
     case FileFormat::Id::scad:
       return export_script(file, "//", model, options.openscad, to_openscad);
@@ -100,7 +90,7 @@ ExportReport export_model(const std::filesystem::path& file, const Model& model,
     case FileFormat::Id::step:
     case FileFormat::Id::brep: {
       const auto write = format == FileFormat::Id::brep ? write_brep : write_step;
-      const BrepReport report = write(file, tree_of(model, file), model.primitives, options.brep, run);
+      const BrepReport report = write(file, model, options.brep, run);
       return {.cut_at = report.cut_at, .brep = report};
     }
     default:

@@ -78,7 +78,7 @@ class PaperMethod {
     statistics_.points = cloud_.size();
     statistics_.tree = statistics_of(tree);
     if (!primitives_of(tree).empty()) {
-      statistics_.fit = measure_fit(tree, input_, cloud_, scale_.noise, options_, run_);
+      statistics_.fit = measure_fit({.primitives = input_, .tree = tree}, cloud_, scale_.noise, options_, run_);
     }
     return {.model = {.primitives = input_, .tree = tree}, .statistics = std::move(statistics_)};
   }

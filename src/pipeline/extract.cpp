@@ -184,7 +184,8 @@ class Extractor {
 
   [[nodiscard]] FitStatistics fit_of(const CsgTree& tree) const {
     const std::vector<std::uint32_t>& order = by_partitions_ ? by_partitions_->order : by_cells_->complex.order;
-    return measure_fit(tree, input_, cloud_, scale_.noise, options_, without_stop(run_.pass()), order);
+    return measure_fit({.primitives = input_, .tree = tree}, cloud_, scale_.noise, options_, without_stop(run_.pass()),
+                       order);
   }
 
   CsgTree simplified(const CsgTree& tree) {

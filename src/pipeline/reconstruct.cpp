@@ -39,8 +39,8 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
     statistics.steps = {{"choice of solids", choice.tree.size()}};
     statistics.cells.reset();
     statistics.warnings.clear();  // they are about the other tree
-    statistics.fit =
-        measure_fit(choice.tree, choice.solids, prepared.cloud, statistics.noise, extraction, without_stop(run));
+    statistics.fit = measure_fit({.primitives = choice.solids, .tree = choice.tree}, prepared.cloud, statistics.noise,
+                                 extraction, without_stop(run));
   }
   return result;
 }
@@ -63,8 +63,7 @@ void refine_found(Extraction& found, const ReconstructOptions& options, double s
   before.refine = after.refine;
   before.seconds.refine = after.seconds.refine;
   if (before.refine) before.refine->is_taken = false;
-  const FitStatistics given =
-      measure_fit(*found.model.tree, found.model.primitives, found.cloud, after.noise, extraction, without_stop(run));
+  const FitStatistics given = measure_fit(found.model, found.cloud, after.noise, extraction, without_stop(run));
   if (after.fit.objective <= given.objective) return;
   for (const std::string& warning : after.warnings) {
     if (std::ranges::find(before.warnings, warning) == before.warnings.end()) before.warnings.push_back(warning);
@@ -105,10 +104,10 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   result.statistics.finding = statistics_of(found, options.known.size(), cloud.size());
   result.statistics.finding->is_tree_of_choice = true;
   result.statistics.finding->disagreement = found.choice.disagreement;
-  result.statistics.fit = measure_fit(found.choice.tree, found.choice.solids, found.prepared.cloud,
-                                      result.statistics.noise, options.extraction, without_stop(run));
-  result.statistics.warnings = std::move(found.warnings);
   result.model = {.primitives = std::move(found.choice.solids), .tree = std::move(found.choice.tree)};
+  result.statistics.fit =
+      measure_fit(result.model, found.prepared.cloud, result.statistics.noise, options.extraction, without_stop(run));
+  result.statistics.warnings = std::move(found.warnings);
   take_finding(result, found);
   note_seconds(found, result.statistics.seconds);
   return result;

@@ -85,7 +85,7 @@ Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& prim
   if (refinement->is_better) {
     const double noise = again ? again->statistics.noise : refinement->noise;
     const auto fit_of = [&](const CsgTree& some, const PrimitiveSet& over) {
-      return measure_fit(some, over, cloud, noise, options, without_stop(run));
+      return measure_fit({.primitives = over, .tree = some}, cloud, noise, options, without_stop(run));
     };
     const FitStatistics given = fit_of(tree, primitives);
     const FitStatistics moved = fit_of(tree, refinement->primitives);

@@ -65,7 +65,7 @@ RC_GTEST_PROP(CountCrossings, IsThePlainRuleAtEachPointOfAnyScene, (std::uint64_
 class PaperCloud : public ::testing::TestWithParam<const char*> {
  protected:
   PaperCloud() : model_(test::paper_model(GetParam())) {
-    cloud_ = sample_surface(*model_.tree, model_.primitives, {.count = 40'000, .noise = k_sampling_noise, .seed = 4});
+    cloud_ = sample_surface(model_, {.count = 40'000, .noise = k_sampling_noise, .seed = 4});
   }
 
   Model model_;
@@ -164,7 +164,7 @@ TEST_P(PaperCloud, BecomesAComplexInOrder) {
 
 TEST(FindCells, GivesNothingOnAStop) {
   const PrimitiveSet primitives{test::placed("a", Sphere{1}, {0, 0, 0})};
-  const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 100});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = CsgTree::leaf(0)}, {.count = 100});
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW((void)find_cells(cloud, primitives, options_with(Precision::automatic), {.stop = stop.get_token()}),

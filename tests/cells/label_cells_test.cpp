@@ -139,7 +139,8 @@ class LabelsOfPoints : public ::testing::Test {
     labels_ = label_cells(complex_);
   }
   [[nodiscard]] PointCloud cloud_of(const char* formula) const {
-    return sample_surface(parse_tree(formula, primitives_), primitives_, {.count = 4000, .noise = 0.002, .seed = 3});
+    return sample_surface({.primitives = primitives_, .tree = parse_tree(formula, primitives_)},
+                          {.count = 4000, .noise = 0.002, .seed = 3});
   }
   [[nodiscard]] std::size_t index_of(const Cell& cell) const {
     const auto found = std::ranges::lower_bound(complex_.cells, cell);

@@ -18,8 +18,7 @@ TEST(SolveLargeCells, ClimbsCoreByCoreInLargeModels) {
   std::size_t better = 0;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const Model model = make_family(Family::random, {.primitives = 72, .clique_size = 12, .seed = seed});
-    const PointCloud cloud =
-        sample_surface(*model.tree, model.primitives, {.count = 9000, .noise = k_noise, .seed = seed});
+    const PointCloud cloud = sample_surface(model, {.count = 9000, .noise = k_noise, .seed = seed});
     const Labelled labelled = label(cloud, model.primitives);
     const std::optional<CellSolution> climbed = labelled.solve(options);
     const std::optional<CellSolution> start = labelled.solve(without);

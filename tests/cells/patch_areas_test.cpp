@@ -14,7 +14,8 @@ namespace {
 
 /// A few points, so that there are bounds, and many samples.
 CellComplex cells_of(const PrimitiveSet& primitives, std::size_t samples) {
-  const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 50, .seed = 1});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = CsgTree::leaf(0)}, {.count = 50, .seed = 1});
   constexpr double k_small_noise = 0.0005;
   return find_cells(cloud, primitives,
                     {.tolerances = segmentation_tolerances({}, k_small_noise),

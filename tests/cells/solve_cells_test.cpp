@@ -30,8 +30,7 @@ INSTANTIATE_TEST_SUITE_P(Models, PaperModels, ::testing::Values("m0", "m1", "m2"
 
 TEST_P(PaperModels, AreSolvedToTheTruth) {
   const Model model = test::paper_model(GetParam());
-  const Labelled labelled = label(
-      sample_surface(*model.tree, model.primitives, {.count = 5000, .noise = 0.005, .seed = 2}), model.primitives);
+  const Labelled labelled = label(sample_surface(model, {.count = 5000, .noise = 0.005, .seed = 2}), model.primitives);
   const std::optional<CellSolution> solution = labelled.solve();
   ASSERT_TRUE(solution.has_value());
   for (const Cell& cell : labelled.complex.cells) {
@@ -125,8 +124,7 @@ RC_GTEST_PROP(SolveCells, IsNoLargerThanTheTruthWhereItIsMinimal, (std::uint64_t
 /// Twelve solids that all meet: what few points say of the cells between them takes some of them several times.
 Labelled dense_cluster(std::uint64_t seed) {
   const Model model = make_family(Family::random, {.primitives = 12, .clique_size = 12, .seed = seed});
-  const PointCloud cloud =
-      sample_surface(*model.tree, model.primitives, {.count = 1500, .noise = k_noise, .seed = seed});
+  const PointCloud cloud = sample_surface(model, {.count = 1500, .noise = k_noise, .seed = seed});
   return label(cloud, model.primitives);
 }
 
@@ -177,8 +175,8 @@ TEST(SolveCells, LeavesOutPrimitivesThatAreNotThere) {
   const PrimitiveSet primitives{
       test::placed("inner", Sphere{0.4}, {-0.4, 0.3, 0.2}), test::placed("a", Box{{2, 2, 2}}, {0, 0, 0}),
       test::placed("across", Sphere{0.5}, {-1, 0, 0}), test::placed("b", Cylinder{0.3, 3}, {0.5, -0.5, 0})};
-  const PointCloud cloud =
-      sample_surface(parse_tree("a - b", primitives), primitives, {.count = 5000, .noise = k_noise, .seed = 2});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = parse_tree("a - b", primitives)},
+                                          {.count = 5000, .noise = k_noise, .seed = 2});
   const std::optional<CellSolution> solution = label(cloud, primitives).solve();
   ASSERT_TRUE(solution.has_value());
   EXPECT_EQ(to_text(solution->tree, primitives), "a - b");
@@ -188,8 +186,8 @@ TEST(SolveCells, LeavesOutPrimitivesThatAreNotThere) {
 /// A detection that finds a solid again and again, nearly where it is.
 TEST(SolveCells, UsesOneOfSeveralCopies) {
   PrimitiveSet primitives{test::placed("a", Box{{2, 2, 2}}, {0, 0, 0}), test::placed("b", Sphere{0.7}, {1, 0, 0})};
-  const PointCloud cloud =
-      sample_surface(parse_tree("a - b", primitives), primitives, {.count = 5000, .noise = k_noise, .seed = 2});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = parse_tree("a - b", primitives)},
+                                          {.count = 5000, .noise = k_noise, .seed = 2});
   primitives.push_back(test::placed("a2", Box{{2, 2, 2}}, {0, 0, 0}));
   primitives.push_back(test::placed("b2", Sphere{0.702}, {1, 0.001, 0}));
   const std::optional<CellSolution> solution = label(cloud, primitives).solve();
@@ -202,8 +200,7 @@ TEST(SolveCells, UsesOneOfSeveralCopies) {
 TEST(SolveCells, SolvesLargeModels) {
   for (const auto& [family, primitives] : {std::pair(Family::grid, 400U), std::pair(Family::panel, 200U)}) {
     const Model model = make_family(family, {.primitives = primitives});
-    const PointCloud cloud =
-        sample_surface(*model.tree, model.primitives, {.count = 40'000, .noise = k_noise, .seed = 1});
+    const PointCloud cloud = sample_surface(model, {.count = 40'000, .noise = k_noise, .seed = 1});
     const std::optional<CellSolution> solution = label(cloud, model.primitives).solve();
     ASSERT_TRUE(solution.has_value());
     EXPECT_EQ(leaf_count(solution->tree), primitives) << to_string(family);

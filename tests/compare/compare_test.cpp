@@ -24,8 +24,7 @@ Shape3d model_of(Primitive primitive) {
 }
 Shape3d mesh_of(const Shape3d& shape, int resolution = 64) {
   const Model& model = *shape.model;
-  return {.mesh = mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives),
-                               {.resolution = resolution})};
+  return {.mesh = mesh_surface(model, bounds_of(model), {.resolution = resolution})};
 }
 
 /// One point: something to compare with when only the first shape is of interest.
@@ -183,7 +182,7 @@ TEST(Compare, DistancesBesideEdgesAreThoseToTheEdge) {
   const Comparison back = compare(model_of(plate), axis_points, {.surface_samples = 1});
   EXPECT_DOUBLE_EQ(comparison.mean_distance, back.mean_distance);
   const double sample_to_cloud = 2 * comparison.mean_distance - expected;
-  const PointCloud one = sample_surface(plate.tree, plate.primitives, {.count = 1});
+  const PointCloud one = sample_surface(plate.model(), {.count = 1});
   double nearest = 1e9;
   for (std::size_t i = 0; i < 3; ++i) {
     nearest = std::min(nearest, (axis_points.cloud->positions[i] - one.positions[0]).norm());
@@ -193,7 +192,7 @@ TEST(Compare, DistancesBesideEdgesAreThoseToTheEdge) {
 
 TEST(Compare, CloudsHaveDistancesOnly) {
   const KnownSolid solid = combined_solids()[0];
-  const Shape3d cloud{.cloud = sample_surface(solid.tree, solid.primitives, {.count = 20'000, .seed = 9})};
+  const Shape3d cloud{.cloud = sample_surface(solid.model(), {.count = 20'000, .seed = 9})};
   const Comparison with_model = compare(model_of(solid), cloud, {.surface_samples = 20'000});
   EXPECT_FALSE(with_model.intersection_over_union.has_value());
   EXPECT_TRUE(with_model.volume_truth.has_value());

@@ -47,7 +47,7 @@ inline double diagonal_of(const PointCloud& cloud) {
 }
 
 inline PointCloud cloud_of(const Part& part, double noise, std::size_t count = 20'000, double normal_noise_deg = 0) {
-  return sample_surface(part.tree, part.primitives,
+  return sample_surface({.primitives = part.primitives, .tree = part.tree},
                         {.count = count, .noise = noise, .normal_noise_deg = normal_noise_deg, .seed = 11});
 }
 

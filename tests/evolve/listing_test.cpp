@@ -99,8 +99,9 @@ TEST(ListTrees, IsAsGoodAsLocalSearchOnReadOnceSolids) {
       test::placed("c", Cylinder{0.2, 2}, {0.1, 0.1, 0}), test::placed("d", Box{{0.5, 2, 0.3}}, {0, 0, 0.4})};
   for (const char* formula : {"a - b", "(a | b) - c", "(a & b) - d", "((a | b) - c) | d", "(a - c) & (b | d)"}) {
     const CsgTree truth = parse_tree(formula, primitives);
-    const test::Scene scene{.primitives = primitives,
-                            .cloud = sample_surface(truth, primitives, {.count = 3000, .noise = 0.003, .seed = 2})};
+    const test::Scene scene{
+        .primitives = primitives,
+        .cloud = sample_surface({.primitives = primitives, .tree = truth}, {.count = 3000, .noise = 0.003, .seed = 2})};
     const RankClasses table = test::whole_table(scene);
     const Listing listing = list_trees(table);
     RankScratch scratch;

@@ -340,8 +340,8 @@ TEST(EvolveTree, RecoversRandomFormulas) {
     const Puzzle puzzle = random_puzzle(count, random);
     if (!has_volume(puzzle)) continue;
     ++tried;
-    const PointCloud cloud =
-        sample_surface(puzzle.truth, puzzle.primitives, {.count = 4000, .noise = 0.001, .seed = seed});
+    const PointCloud cloud = sample_surface({.primitives = puzzle.primitives, .tree = puzzle.truth},
+                                            {.count = 4000, .noise = 0.001, .seed = seed});
     Clique all(count);
     std::iota(all.begin(), all.end(), 0U);
     const CsgTree tree = evolve_tree(cloud, puzzle.primitives, all, {.seed = seed});
@@ -357,7 +357,7 @@ TEST(EvolveTree, RenamesThePrimitivesOfAClique) {
       test::placed("far", Sphere{0.5}, {5, 0, 0}), test::placed("a", Box{{1, 1, 1}}, {0, 0, 0}),
       test::placed("other", Sphere{0.5}, {0, 5, 0}), test::placed("b", Sphere{0.4}, {0.5, 0, 0})};
   const CsgTree truth = subtract(CsgTree::leaf(1), CsgTree::leaf(3));
-  const PointCloud cloud = sample_surface(truth, primitives, {.count = 2000, .seed = 1});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = truth}, {.count = 2000, .seed = 1});
   EXPECT_EQ(evolve_tree(cloud, primitives, Clique{1, 3}), truth);
 }
 

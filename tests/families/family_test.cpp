@@ -65,7 +65,7 @@ TEST(Family, DependsOnTheSeedAlone) {
 TEST(Family, ShowsAPartOfEveryPrimitive) {
   constexpr std::size_t k_points_each = 600;
   for (const Model& model : some_models(60)) {
-    const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 60 * k_points_each});
+    const PointCloud cloud = sample_surface(model, {.count = 60 * k_points_each});
     std::vector<int> owners(cloud.size(), 0);
     for (const Primitive& primitive : model.primitives) {
       std::size_t points = 0;
@@ -125,7 +125,8 @@ TEST(Family, NestIsADifferenceOfDifferences) {
   EXPECT_EQ(to_text(*model.tree, model.primitives), "box_1 - (box_2 - (box_3 - (box_4 - box_5)))");
   // Each box lies wholly inside the one before.
   for (std::size_t level = 1; level < 5; ++level) {
-    const PointCloud inner = sample_surface(CsgTree::leaf(0), {model.primitives[level]}, {.count = 2000});
+    const PointCloud inner =
+        sample_surface({.primitives = {model.primitives[level]}, .tree = CsgTree::leaf(0)}, {.count = 2000});
     for (const double distance : signed_distance(model.primitives[level - 1], inner.positions)) {
       ASSERT_LT(distance, -0.05) << level;
     }

@@ -17,7 +17,8 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 
 VolumeEstimate volume(const CsgTree& tree, const PrimitiveSet& primitives, int levels = 7, int threads = 1) {
-  return tree_volume(tree, primitives, bounds_of(tree, primitives), levels, {.threads = threads});
+  return tree_volume({.primitives = primitives, .tree = tree}, bounds_of({.primitives = primitives, .tree = tree}),
+                     levels, {.threads = threads});
 }
 
 void expect_volume(const VolumeEstimate& found, double expected) {
@@ -49,7 +50,7 @@ TEST(TreeVolume, DoesNotDependOnThreads) {
 }
 
 TEST(TreeVolume, OfNothingIsNothing) {
-  EXPECT_EQ(tree_volume(CsgTree::empty(), {}, AlignedBox(), 6, {}).volume, 0);
+  EXPECT_EQ(tree_volume({.primitives = {}, .tree = CsgTree::empty()}, AlignedBox(), 6, {}).volume, 0);
 }
 
 /// Waves as high as half of the radius: what a displacement does to the slope must not hide them.

@@ -160,8 +160,8 @@ std::vector<Seed> make_seeds(const std::filesystem::path& folder) {
     add(ending, [&](const std::filesystem::path& file) { write_point_cloud(file, cloud, {}); });
   }
   add(".json", [&](const std::filesystem::path& file) { write_model(file, model); });
-  seeds.push_back({.ending = ".scad", .bytes = to_openscad(*model.tree, model.primitives)});
-  seeds.push_back({.ending = ".csg", .bytes = to_openscad_csg(*model.tree, model.primitives)});
+  seeds.push_back({.ending = ".scad", .bytes = to_openscad(model)});
+  seeds.push_back({.ending = ".csg", .bytes = to_openscad_csg(model)});
   seeds.push_back({.ending = ".stl", .bytes = stl_text(mesh)});
   seeds.push_back({.ending = ".ply", .bytes = ply_mesh(mesh, true)});
   seeds.push_back({.ending = ".ply", .bytes = ply_mesh(mesh, false)});

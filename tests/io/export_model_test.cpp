@@ -31,8 +31,7 @@ std::string content_of(const std::filesystem::path& file) {
 }
 
 double mesh_volume(const Model& model, int resolution = 96) {
-  return volume_of(mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives),
-                                {.resolution = resolution}));
+  return volume_of(mesh_surface(model, bounds_of(model), {.resolution = resolution}));
 }
 
 bool has_openscad() {
@@ -99,7 +98,7 @@ TEST(OpenScadProgram, RendersLoopsLikeTheirMembers) {
     const Rendering plain = render("plain", model, {.facets = 48, .patterns = false});
     ASSERT_EQ(loops.status, 0) << loops.log;
     ASSERT_EQ(plain.status, 0) << plain.log;
-    EXPECT_NE(to_openscad(*model.tree, model.primitives, {}).find("for (i = "), std::string::npos);
+    EXPECT_NE(to_openscad(model, {}).find("for (i = "), std::string::npos);
     EXPECT_EQ(loops.log.find("WARNING"), std::string::npos) << loops.log;
     EXPECT_NEAR(volume_of(loops.mesh) / mesh_volume(model), 1.0, 0.01);
     // The facets of a turned cylinder turn with it.
@@ -188,8 +187,7 @@ TEST(ExportModel, MeshesOfExactSolidsHaveFlatFacesAndTrueEdges) {
 TEST(ExportModel, MeshesOfFreeFormsAreContoured) {
   const Model model = data_model("m1.json");
   const MeshingOptions meshing{.resolution = 40};
-  const TriangleMesh contour =
-      mesh_surface(*model.tree, model.primitives, model_extent(*model.tree, model.primitives), meshing);
+  const TriangleMesh contour = mesh_surface(model, model_extent(model), meshing);
   EXPECT_EQ(written_mesh(model, {.meshing = meshing}).triangles.size(), contour.triangles.size());
 }
 
@@ -212,7 +210,7 @@ TEST(MeshBrep, IsClosedWhateverTheSizeAndPlace) {
   if (!has_brep()) GTEST_SKIP() << "built without OpenCASCADE";
   for (const double scale : {1e-3, 1.0, 1e4}) {
     const Model model = block_with_a_bore(scale);
-    const BrepMesh made = mesh_brep(*model.tree, model.primitives);
+    const BrepMesh made = mesh_brep(model);
     EXPECT_TRUE(made.report.is_exact({})) << scale;
     EXPECT_TRUE(is_watertight(made.mesh)) << scale;
     EXPECT_NEAR(volume_of(made.mesh) / made.report.volume, 1, 5e-3) << scale;
@@ -221,7 +219,7 @@ TEST(MeshBrep, IsClosedWhateverTheSizeAndPlace) {
 
 TEST(MeshBrep, RefusesADeviationThatIsNone) {
   const Model model = data_model("m2.json");
-  EXPECT_THROW((void)mesh_brep(*model.tree, model.primitives, {.mesh_deviation = 0}), Error);
+  EXPECT_THROW((void)mesh_brep(model, {.mesh_deviation = 0}), Error);
 }
 
 bool is_script(const std::string& ending) {

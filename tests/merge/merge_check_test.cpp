@@ -23,7 +23,7 @@ class MergeCheckOfABlock : public ::testing::Test {
       : primitives_{test::placed("block", Box{{2, 2, 1}}, {0, 0, 0}), test::placed("bore", Cylinder{0.4, 2}, {0, 0, 0}),
                     test::placed("knob", Sphere{0.15}, {1, 0, 0})},
         scene_{.primitives = primitives_,
-               .cloud = sample_surface(tree("(block | knob) - bore"), primitives_,
+               .cloud = sample_surface({.primitives = primitives_, .tree = tree("(block | knob) - bore")},
                                        {.count = 12'000, .noise = 0.005, .seed = 1})},
         table_(test::whole_table(scene_)) {}
 
@@ -92,7 +92,8 @@ class MergeCheckInWindows : public ::testing::Test {
     }
     truth_ = tree("(a | c | d | f | g | i) - (b | e | h)");
     scene_ = {.primitives = primitives_,
-              .cloud = sample_surface(truth_, primitives_, {.count = 20'000, .noise = 0.005, .seed = 1})};
+              .cloud = sample_surface({.primitives = primitives_, .tree = truth_},
+                                      {.count = 20'000, .noise = 0.005, .seed = 1})};
     std::vector<RankClassesRequest> requests{{.primitives = test::all_of(primitives_)}};
     for (PrimitiveIndex p = 0; p < k_count; ++p) {
       RankClassesRequest window{.primitives = {}, .owners = {p}};

@@ -168,10 +168,9 @@ std::ptrdiff_t folded_triangles(const TriangleMesh& mesh, const CsgTree& tree, c
 
 TEST(MeshSurface, WithoutCornersFirstNoTriangleLooksTheWrongWay) {
   const Model model = read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / "m2.json");
-  const AlignedBox bounds = bounds_of(*model.tree, model.primitives);
+  const AlignedBox bounds = bounds_of(model);
   const auto folded = [&](bool corners_first) {
-    const TriangleMesh mesh =
-        mesh_surface(*model.tree, model.primitives, bounds, {.resolution = 32, .corners_first = corners_first});
+    const TriangleMesh mesh = mesh_surface(model, bounds, {.resolution = 32, .corners_first = corners_first});
     EXPECT_TRUE(is_watertight(mesh));
     return folded_triangles(mesh, *model.tree, model.primitives);
   };
@@ -181,16 +180,18 @@ TEST(MeshSurface, WithoutCornersFirstNoTriangleLooksTheWrongWay) {
 
 TEST(MeshSurface, CutsUnboundedSolidsAtTheBounds) {
   const PrimitiveSet primitives{at(HalfSpace{}, {0, 0, 0.25})};
-  const TriangleMesh mesh = mesh_surface(CsgTree::leaf(0), primitives, cube(1), {.resolution = 32});
+  const TriangleMesh mesh =
+      mesh_surface({.primitives = primitives, .tree = CsgTree::leaf(0)}, cube(1), {.resolution = 32});
   EXPECT_TRUE(is_watertight(mesh));
   EXPECT_NEAR(volume_of(mesh), 4 * 1.25, 1e-9);
-  EXPECT_NEAR(volume_of(mesh_surface(CsgTree::full(), primitives, cube(1), {.resolution = 32})), 8, 1e-9);
+  EXPECT_NEAR(volume_of(mesh_surface({.primitives = primitives, .tree = CsgTree::full()}, cube(1), {.resolution = 32})),
+              8, 1e-9);
 }
 
 TEST(MeshSurface, CutsBoundedSolidsAtTheBounds) {
   const PrimitiveSet primitives{at(Sphere{.radius = 1})};
   const AlignedBox half(Eigen::Vector3d(-2, -2, 0), Eigen::Vector3d(2, 2, 2));
-  const TriangleMesh mesh = mesh_surface(CsgTree::leaf(0), primitives, half);
+  const TriangleMesh mesh = mesh_surface({.primitives = primitives, .tree = CsgTree::leaf(0)}, half);
   EXPECT_TRUE(is_watertight(mesh));
   EXPECT_NEAR(volume_of(mesh), 2.0 / 3.0 * k_pi, 2e-3);
 }
@@ -216,9 +217,9 @@ TEST(MeshSurface, FarFromTheOriginIsAsGood) {
 
 TEST(MeshSurface, ThreadsDoNotChangeTheMesh) {
   const Model model = read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / "m3.json");
-  const AlignedBox bounds = bounds_of(*model.tree, model.primitives);
+  const AlignedBox bounds = bounds_of(model);
   const auto mesh_with = [&](int threads) {
-    return mesh_surface(*model.tree, model.primitives, bounds, {.resolution = 48}, {.threads = threads});
+    return mesh_surface(model, bounds, {.resolution = 48}, {.threads = threads});
   };
   const TriangleMesh one = mesh_with(1);
   const TriangleMesh three = mesh_with(3);
@@ -230,7 +231,8 @@ TEST(MeshSurface, ThreadsDoNotChangeTheMesh) {
 TEST(MeshSurface, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW((void)mesh_surface(CsgTree::leaf(0), {at(Sphere{.radius = 1})}, cube(1), {}, {.stop = stop.get_token()}),
+  EXPECT_THROW((void)mesh_surface({.primitives = {at(Sphere{.radius = 1})}, .tree = CsgTree::leaf(0)}, cube(1), {},
+                                  {.stop = stop.get_token()}),
                Cancelled);
 }
 
@@ -240,7 +242,7 @@ RC_GTEST_PROP(MeshSurface, EveryTreeIsWatertightAndHasItsVolume, ()) {
   for (std::size_t i = 0; i < count; ++i) primitives.push_back(any_primitive());
   const CsgTree tree = any_tree(count);
   const AlignedBox bounds = cube(1.2);
-  const TriangleMesh mesh = mesh_surface(tree, primitives, bounds, {.resolution = 40});
+  const TriangleMesh mesh = mesh_surface({.primitives = primitives, .tree = tree}, bounds, {.resolution = 40});
   RC_ASSERT(is_watertight(mesh));
 
   // The volume once more, by counting points spread evenly (Roberts' sequence, which no face is parallel to).

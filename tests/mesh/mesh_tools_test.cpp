@@ -61,7 +61,7 @@ TEST(BoundsOfTree, FollowsTheFormula) {
   const CsgTree b = CsgTree::leaf(1);
   const CsgTree half_space = CsgTree::leaf(2);
   const auto x_range = [&](const CsgTree& tree) {
-    const AlignedBox box = bounds_of(tree, primitives);
+    const AlignedBox box = bounds_of({.primitives = primitives, .tree = tree});
     return std::pair(box.min().x(), box.max().x());
   };
   EXPECT_EQ(x_range(unite(a, b)), std::pair(-1.0, 2.0));
@@ -73,8 +73,8 @@ TEST(BoundsOfTree, FollowsTheFormula) {
   EXPECT_EQ(x_range(unite(a, CsgTree::empty())), std::pair(-1.0, 1.0));
   EXPECT_EQ(x_range(unite(b, intersect(a, CsgTree::leaf(3)))), std::pair(0.0, 2.0));
   EXPECT_TRUE(std::isinf(x_range(complement(a)).second));
-  EXPECT_TRUE(bounds_of(intersect(a, CsgTree::leaf(3)), primitives).isEmpty());
-  EXPECT_TRUE(bounds_of(CsgTree::empty(), primitives).isEmpty());
+  EXPECT_TRUE(bounds_of({.primitives = primitives, .tree = intersect(a, CsgTree::leaf(3))}).isEmpty());
+  EXPECT_TRUE(bounds_of({.primitives = primitives, .tree = CsgTree::empty()}).isEmpty());
 }
 
 TEST(CellTopology, EverySheetIsAClosedLoopForAllSignsAndJoins) {

@@ -19,7 +19,8 @@ inline Primitive at(Shape shape, const Eigen::Vector3d& position = Eigen::Vector
 }
 
 inline TriangleMesh mesh_of(const CsgTree& tree, const PrimitiveSet& primitives, int resolution = 64) {
-  return mesh_surface(tree, primitives, bounds_of(tree, primitives), {.resolution = resolution});
+  return mesh_surface({.primitives = primitives, .tree = tree}, bounds_of({.primitives = primitives, .tree = tree}),
+                      {.resolution = resolution});
 }
 
 inline TriangleMesh mesh_of(const Primitive& primitive, int resolution = 64) {

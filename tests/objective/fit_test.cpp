@@ -54,9 +54,11 @@ void expect_plain_fit(const CsgTree& tree, const PrimitiveSet& primitives, const
   const FitStatistics expected = plain_fit(tree, primitives, cloud);
   const SegmentationTolerances tolerances = segmentation_tolerances(k_options.segmentation, k_noise);
   for (const int threads : {1, 3}) {
-    const FitStatistics fit = measure_fit(tree, primitives, cloud, k_noise, k_options, {.threads = threads});
-    EXPECT_EQ(fit.unexplained_points,
-              unexplained_points(tree, primitives, cloud, tolerances, {.threads = threads}).size());
+    const FitStatistics fit =
+        measure_fit({.primitives = primitives, .tree = tree}, cloud, k_noise, k_options, {.threads = threads});
+    EXPECT_EQ(
+        fit.unexplained_points,
+        unexplained_points({.primitives = primitives, .tree = tree}, cloud, tolerances, {.threads = threads}).size());
     EXPECT_EQ(fit.unexplained_points, expected.unexplained_points);
     EXPECT_NEAR(fit.objective, expected.objective, 1e-9 * static_cast<double>(cloud.size()));
     EXPECT_NEAR(fit.rms_distance, expected.rms_distance, 1e-12 * expected.rms_distance);

@@ -64,7 +64,7 @@ TEST(OpenScadRoundTrip, OurScriptsAreReadAsTheyAre) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     RandomStream random(seed);
     const Model model = random_model(random);
-    const std::string text = to_openscad(*model.tree, model.primitives);
+    const std::string text = to_openscad(model);
     if (text.find("everything()") != std::string::npos) continue;
     if (primitives_of(*model.tree).empty() || text.find("empty solid") != std::string::npos) continue;
     SCOPED_TRACE(text);
@@ -81,7 +81,7 @@ TEST(OpenScadRoundTrip, OurScriptsAreReadAsOpenScadFlattensThem) {
   for (std::uint64_t seed = 100; seed < 120; ++seed) {
     RandomStream random(seed);
     const Model model = random_model(random);
-    write_text_file(scad, to_openscad(*model.tree, model.primitives));
+    write_text_file(scad, to_openscad(model));
     const std::string command = "openscad -o '" + csg.string() + "' '" + scad.string() + "' > /dev/null 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: our names
     SCOPED_TRACE(read_text_file(csg));
@@ -109,14 +109,14 @@ Model bored_plate() {
 TEST(OpenScadRoundTrip, LoopsKeepTheirSolids) {
   RandomStream random(1);
   const Model flange = test::flange();
-  const std::string circle = to_openscad(*flange.tree, flange.primitives);
+  const std::string circle = to_openscad(flange);
   ASSERT_NE(circle.find("for (i = [0 : "), std::string::npos);
   ASSERT_NE(circle.find("rotate(a = i * "), std::string::npos);
   const Model flange_again = parse_openscad(circle);
   expect_same_solid(flange, flange_again, random, {30, 20, 5}, 12);
   EXPECT_EQ(flange_again.primitives.size(), flange.primitives.size());
   const Model plate = bored_plate();
-  const std::string grid = to_openscad(*plate.tree, plate.primitives);
+  const std::string grid = to_openscad(plate);
   ASSERT_NE(grid.find(", j = [0 : "), std::string::npos);
   const Model plate_again = parse_openscad(grid);
   expect_same_solid(plate, plate_again, random);
@@ -126,7 +126,7 @@ TEST(OpenScadRoundTrip, LoopsKeepTheirSolids) {
 TEST(OpenScadRoundTrip, LoopsOverCombinationsKeepTheirSolids) {
   RandomStream random(1);
   const Model model = test::repeated_parts();
-  const std::string text = to_openscad(*model.tree, model.primitives);
+  const std::string text = to_openscad(model);
   for (const char* loop : {"for (i = [0, 1]) translate(2 * i * ", "intersection_for (i = "}) {
     ASSERT_NE(text.find(loop), std::string::npos) << loop << "\n" << text;
   }
@@ -151,7 +151,8 @@ Primitive solid_again(const std::string& text) {
 TEST(OpenScadRoundTrip, ToriWithoutAHoleAreReadInAnyUnit) {
   for (const double unit : {0.01, 1.0, 10'000.0}) {
     const PrimitiveSet ring{{.id = "ring", .shape = Torus{.major_radius = unit, .minor_radius = unit}}};
-    for (const std::string& text : {to_openscad(CsgTree::leaf(0), ring), to_openscad_csg(CsgTree::leaf(0), ring)}) {
+    for (const std::string& text : {to_openscad({.primitives = ring, .tree = CsgTree::leaf(0)}),
+                                    to_openscad_csg({.primitives = ring, .tree = CsgTree::leaf(0)})}) {
       SCOPED_TRACE(text);
       const Primitive torus = solid_again(text);
       EXPECT_DOUBLE_EQ(std::get<Torus>(torus.shape).major_radius, unit);
@@ -167,18 +168,18 @@ TEST(OpenScadRoundTrip, ToriWithoutAHoleAreReadInAnyUnit) {
 TEST(OpenScadRoundTrip, FewFacetsAreCorners) {
   const PrimitiveSet pin{{.id = "pin", .shape = Cylinder{.radius = 1, .height = 2}}};
   const auto again = [&pin](int facets) {
-    return solid_again(to_openscad(CsgTree::leaf(0), pin, {.facets = facets})).shape;
+    return solid_again(to_openscad({.primitives = pin, .tree = CsgTree::leaf(0)}, {.facets = facets})).shape;
   };
   EXPECT_TRUE(std::holds_alternative<Polytope>(again(8)));
   EXPECT_TRUE(std::holds_alternative<Cylinder>(again(9)));
-  EXPECT_TRUE(
-      std::holds_alternative<Cylinder>(solid_again(to_openscad_csg(CsgTree::leaf(0), pin, {.facets = 8})).shape));
+  EXPECT_TRUE(std::holds_alternative<Cylinder>(
+      solid_again(to_openscad_csg({.primitives = pin, .tree = CsgTree::leaf(0)}, {.facets = 8})).shape));
 }
 
 TEST(OpenScadRoundTrip, TheShippedModelsKeepTheirSolids) {
   for (const char* name : {"m0.json", "m3.json"}) {
     const Model model = read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / name);
-    const Model again = parse_openscad(to_openscad(*model.tree, model.primitives));
+    const Model again = parse_openscad(to_openscad(model));
     RandomStream random(1);
     expect_same_solid(model, again, random);
     EXPECT_EQ(leaf_count(*again.tree), leaf_count(*model.tree));

@@ -15,7 +15,7 @@ class PaperMethod : public ::testing::Test {
  protected:
   PaperMethod()
       : model_(read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / "m1.json")),
-        cloud_(sample_surface(*model_.tree, model_.primitives, {.count = 300, .noise = 0.01})) {}
+        cloud_(sample_surface(model_, {.count = 300, .noise = 0.01})) {}
 
   /// As text, so that a difference can be read.
   [[nodiscard]] std::string tree_by_points(const ExtractOptions& options, int threads = 1) const {

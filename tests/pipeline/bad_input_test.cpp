@@ -19,7 +19,7 @@ PrimitiveSet ball() {
 }
 
 PointCloud cloud_of_ball() {
-  return sample_surface(CsgTree::leaf(0), ball(), {.count = 300});
+  return sample_surface({.primitives = ball(), .tree = CsgTree::leaf(0)}, {.count = 300});
 }
 
 Error::Parts error_of(const std::function<void()>& body) {
@@ -144,8 +144,8 @@ TEST(BadInput, TheDefaultsAreValid) {
 TEST(BadInput, ManyPointsOnNoPrimitiveAreWarnedAbout) {
   const PrimitiveSet primitives{test::placed("known", Box{{1, 1, 1}}, {0, 0, 0}),
                                 test::placed("missing", Sphere{0.5}, {2, 0, 0})};
-  const PointCloud cloud =
-      sample_surface(unite(CsgTree::leaf(0), CsgTree::leaf(1)), primitives, {.count = 2000, .noise = 0.002});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))},
+                                          {.count = 2000, .noise = 0.002});
   const Extraction result = extract_csg(cloud, {primitives[0]});
   EXPECT_EQ(result.tree(), CsgTree::leaf(0));
   ASSERT_EQ(result.statistics.warnings.size(), 1U);
@@ -158,7 +158,7 @@ TEST(BadInput, PointsOffTheResultAreWarnedAbout) {
   const Model model = test::paper_model("m0");
   std::size_t warned = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 6, .noise = 0.01, .seed = seed});
+    const PointCloud cloud = sample_surface(model, {.count = 6, .noise = 0.01, .seed = seed});
     const Extraction result = extract_csg(cloud, model.primitives);
     const ExtractStatistics& statistics = result.statistics;
     if (is_constant(result.tree()) || 10 * statistics.unassigned_points > statistics.points) continue;

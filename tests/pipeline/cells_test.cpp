@@ -53,8 +53,7 @@ TEST_P(PaperByCells, IsRightAndAsSmallAsTheTruth) {
   constexpr std::size_t k_points = 10'000;
   const auto& [name, noise] = GetParam();
   const Model model = test::paper_model(name);
-  const PointCloud cloud =
-      sample_surface(*model.tree, model.primitives, {.count = k_points, .noise = noise, .seed = 3});
+  const PointCloud cloud = sample_surface(model, {.count = k_points, .noise = noise, .seed = 3});
   const Extraction result = extract_csg(cloud, model.primitives, {.strategy = Strategy::cells});
   expect_truth(result, model, k_points);
   EXPECT_EQ(result.statistics.strategy, Strategy::cells);
@@ -72,14 +71,13 @@ INSTANTIATE_TEST_SUITE_P(Models, FamilyByCells,
 TEST_P(FamilyByCells, IsRightAndAsSmallAsTheTruth) {
   constexpr std::size_t k_points = 40'000;
   const Model model = make_family(GetParam(), {.primitives = 40});
-  const PointCloud cloud =
-      sample_surface(*model.tree, model.primitives, {.count = k_points, .noise = 0.005, .seed = 1});
+  const PointCloud cloud = sample_surface(model, {.count = k_points, .noise = 0.005, .seed = 1});
   expect_truth(extract_csg(cloud, model.primitives, {.strategy = Strategy::cells}), model, k_points);
 }
 
 TEST_P(FamilyByCells, IsTheSameOnAnyNumberOfThreads) {
   const Model model = make_family(GetParam(), {.primitives = 30, .seed = 2});
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 40'000, .noise = 0.01, .seed = 1});
+  const PointCloud cloud = sample_surface(model, {.count = 40'000, .noise = 0.01, .seed = 1});
   const auto extract = [&](int threads) {
     return extract_csg(cloud, model.primitives, {.strategy = Strategy::cells}, {.threads = threads});
   };
@@ -97,7 +95,7 @@ TEST_P(FamilyByCells, IsTheSameOnAnyNumberOfThreads) {
 /// The same solid whatever it is called by, and whatever else was detected.
 TEST(ByCells, LeavesOutWhatIsNotThere) {
   Model model = test::paper_model("m0");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 6000, .noise = 0.005, .seed = 3});
+  const PointCloud cloud = sample_surface(model, {.count = 6000, .noise = 0.005, .seed = 3});
   const std::size_t leaves = leaf_count(simplify(*model.tree));
   const std::size_t given = model.primitives.size();
   for (std::size_t k = 0; k < given; k += 3) {
@@ -124,7 +122,7 @@ class MissingPrimitive : public ::testing::TestWithParam<Incomplete> {
  protected:
   MissingPrimitive() {
     const Model model = test::paper_model(GetParam().model);
-    cloud_ = sample_surface(*model.tree, model.primitives, {.count = 5000, .seed = 1});
+    cloud_ = sample_surface(model, {.count = 5000, .seed = 1});
     std::ranges::copy_if(model.primitives, std::back_inserter(primitives_),
                          [](const Primitive& primitive) { return primitive.id != GetParam().missing; });
   }
@@ -179,7 +177,8 @@ TEST(MissingFirstOperand, LeavesABoundedTree) {
                          sphere("d", {-2.4, 0, 0}, 0.5)};
   const CsgTree truth =
       subtract(unite(subtract(CsgTree::leaf(0), CsgTree::leaf(1)), CsgTree::leaf(2)), CsgTree::leaf(3));
-  const PointCloud cloud = sample_surface(truth, all, {.count = 20'000, .noise = 0.01, .seed = 1});
+  const PointCloud cloud =
+      sample_surface({.primitives = all, .tree = truth}, {.count = 20'000, .noise = 0.01, .seed = 1});
   const PrimitiveSet given(all.begin() + 1, all.end());
   const auto is_unbounded = [&](const ExtractOptions& options) {
     return contains(extract_csg(cloud, given, options).tree(), std::vector<bool>(given.size(), false));
@@ -193,8 +192,7 @@ TEST(NoisyCloud, IsClimbedOnByAllPoints) {
   std::size_t climbed = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Model model = make_family(Family::random, {.primitives = 12, .seed = seed});
-    const PointCloud cloud =
-        sample_surface(*model.tree, model.primitives, {.count = 5000, .noise = 0.08, .seed = seed});
+    const PointCloud cloud = sample_surface(model, {.count = 5000, .noise = 0.08, .seed = seed});
     const auto objective_by = [&](const ExtractOptions& options) {
       return extract_csg(cloud, model.primitives, options).statistics.fit.objective;
     };
@@ -213,7 +211,7 @@ TEST(NoisyCloud, IsClimbedOnByAllPoints) {
 
 nlohmann::json json_of(const Strategy strategy) {
   const Model model = test::paper_model("m2");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 3000, .noise = 0.01, .seed = 3});
+  const PointCloud cloud = sample_surface(model, {.count = 3000, .noise = 0.01, .seed = 3});
   return nlohmann::json::parse(to_json(extract_csg(cloud, model.primitives, {.strategy = strategy}).statistics));
 }
 

@@ -41,7 +41,7 @@ Ending ending_of(const PointCloud& cloud, std::optional<double> seconds = {}) {
 }
 
 PointCloud points_of(const Model& model, std::size_t count) {
-  PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = count, .noise = k_scatter, .seed = 3});
+  PointCloud cloud = sample_surface(model, {.count = count, .noise = k_scatter, .seed = 3});
   cloud.normals = {};
   return cloud;
 }

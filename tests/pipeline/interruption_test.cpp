@@ -22,7 +22,7 @@ struct Input {
 
 Input small_input(const char* name) {
   Input input{.model = test::paper_model(name), .cloud = {}};
-  input.cloud = sample_surface(*input.model.tree, input.model.primitives, {.count = 2000, .noise = 0.01, .seed = 5});
+  input.cloud = sample_surface(input.model, {.count = 2000, .noise = 0.01, .seed = 5});
   return input;
 }
 

@@ -39,7 +39,7 @@ Known lattice_of_spheres(int columns, int rows, int layers) {
     }
   }
   known.truth = subtract(unite_all(added), unite_all(removed));
-  known.cloud = sample_surface(known.truth, known.primitives,
+  known.cloud = sample_surface({.primitives = known.primitives, .tree = known.truth},
                                {.count = 300 * known.primitives.size(), .noise = 0.004, .seed = 3});
   return known;
 }
@@ -71,7 +71,7 @@ Known plate_with_features(int columns, int rows) {
     }
   }
   known.truth = subtract(plate, unite_all(cuts));
-  known.cloud = sample_surface(known.truth, known.primitives,
+  known.cloud = sample_surface({.primitives = known.primitives, .tree = known.truth},
                                {.count = 300 * known.primitives.size(), .noise = 0.004, .seed = 5});
   return known;
 }
@@ -188,7 +188,7 @@ Known row_of_bores_that_are_filled(int blocks) {
     known.primitives.back().pose.orientation = along_x;
     known.truth = subtract(known.truth, CsgTree::leaf(p + 1));
   }
-  known.cloud = sample_surface(known.truth, known.primitives,
+  known.cloud = sample_surface({.primitives = known.primitives, .tree = known.truth},
                                {.count = 500 * known.primitives.size(), .noise = 0.004, .seed = 3});
   return known;
 }
@@ -221,7 +221,7 @@ Known row_of_intersections(int count) {
     if (i > 0) parts.push_back(intersect(CsgTree::leaf(p - 1), CsgTree::leaf(p)));
   }
   known.truth = unite_all(parts);
-  known.cloud = sample_surface(known.truth, known.primitives,
+  known.cloud = sample_surface({.primitives = known.primitives, .tree = known.truth},
                                {.count = 400 * known.primitives.size(), .noise = 0.003, .seed = 3});
   return known;
 }

@@ -18,7 +18,8 @@ PrimitiveSet a_chain() {
 }
 
 PointCloud cloud_of(const char* formula, const PrimitiveSet& primitives) {
-  return sample_surface(parse_tree(formula, primitives), primitives, {.count = 8000, .noise = 0.004, .seed = 3});
+  return sample_surface({.primitives = primitives, .tree = parse_tree(formula, primitives)},
+                        {.count = 8000, .noise = 0.004, .seed = 3});
 }
 
 class Chain : public ::testing::TestWithParam<const char*> {};

@@ -29,7 +29,7 @@ ExtractOptions short_options(Strategy strategy, std::uint64_t seed) {
 class Modes : public ::testing::TestWithParam<const char*> {
  protected:
   Modes() : model_(test::paper_model(GetParam())) {
-    cloud_ = sample_surface(*model_.tree, model_.primitives, {.count = 2000, .noise = 0.01, .seed = 5});
+    cloud_ = sample_surface(model_, {.count = 2000, .noise = 0.01, .seed = 5});
   }
 
   [[nodiscard]] Extraction extract(const ExtractOptions& options, int threads) const {

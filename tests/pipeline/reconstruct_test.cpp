@@ -33,7 +33,7 @@ Model plate() {
 }
 
 PointCloud raw_cloud(const Model& model, double noise, std::size_t count = 20'000) {
-  return sample_surface(*model.tree, model.primitives, {.count = count, .noise = noise, .seed = 5});
+  return sample_surface(model, {.count = count, .noise = noise, .seed = 5});
 }
 
 TEST(Reconstruct, FindsThePlateWithItsHolesAndBoss) {
@@ -90,7 +90,7 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
 /// Its ground is not seen, nor are parts of its holes.
 TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
   const Model truth = plate();
-  const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.on_table = true, .count = 60'000});
+  const PointCloud scan = scan_model(truth, {.on_table = true, .count = 60'000});
   const Extraction result = reconstruct(scan);
   EXPECT_GT(test::iou(result, truth), 0.97);
   EXPECT_TRUE(test::mentions(result.statistics.warnings, "closed by a plane"));
@@ -102,7 +102,7 @@ TEST(Reconstruct, TakesTheWallsOfADeepBoreToGoOn) {
   const Model truth{.primitives = {test::placed("bar", Box{{2, 2, 12}}, {0, 0, 0}),
                                    test::placed("bore", Cylinder{.radius = 0.6, .height = 14}, {0, 0, 0})},
                     .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))};
-  const PointCloud scan = scan_model(*truth.tree, truth.primitives, {.count = 60'000});
+  const PointCloud scan = scan_model(truth, {.count = 60'000});
   const Extraction result = reconstruct(scan);
   EXPECT_EQ(leaf_count(result.tree()), 2U);
   EXPECT_GT(test::iou(result, truth), 0.97);
@@ -120,7 +120,7 @@ TEST(Reconstruct, TakesHolesOfTwoEarsForNoBore) {
       .tree = {}};
   truth.primitives[3].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
   truth.tree = parse_tree("(base | ear | other) - pin", truth.primitives);
-  const Extraction result = reconstruct(scan_model(*truth.tree, truth.primitives, {.count = 60'000}));
+  const Extraction result = reconstruct(scan_model(truth, {.count = 60'000}));
   EXPECT_GT(test::iou(result, truth), 0.98);
   EXPECT_FALSE(test::mentions(result.statistics.warnings, "no sensor saw"));
   EXPECT_EQ(result.statistics.finding->added_points, 0U);
@@ -130,8 +130,10 @@ TEST(Reconstruct, NamesWhatItLeavesOut) {
   const Model truth{.primitives = {test::placed("block", Box{{4, 4, 4}}, {0, 0, 0}),
                                    test::placed("ball", Sphere{.radius = 0.1}, {4, 0, 0})},
                     .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
-  PointCloud cloud = sample_surface(CsgTree::leaf(0), truth.primitives, {.count = 20'000, .seed = 5});
-  const PointCloud ball = sample_surface(CsgTree::leaf(1), truth.primitives, {.count = 400, .seed = 6});
+  PointCloud cloud =
+      sample_surface({.primitives = truth.primitives, .tree = CsgTree::leaf(0)}, {.count = 20'000, .seed = 5});
+  const PointCloud ball =
+      sample_surface({.primitives = truth.primitives, .tree = CsgTree::leaf(1)}, {.count = 400, .seed = 6});
   for (std::size_t i = 0; i < ball.size(); ++i) {
     cloud.positions.push_back(ball.positions[i]);
     cloud.normals.push_back(ball.normals[i]);
@@ -206,7 +208,7 @@ TEST(Reconstruct, MeasuresTheFitOfTheTreeThatItGives) {
     const Extraction result = reconstruct(is_wavy ? raw_cloud(wavy, 0.0, 3000) : raw_cloud(plate(), 0.005));
     EXPECT_EQ(result.statistics.cells.has_value(), !is_wavy);
     const double noise = result.statistics.noise;
-    const FitStatistics fit = measure_fit(result.tree(), result.model.primitives, result.cloud, noise, {}, {});
+    const FitStatistics fit = measure_fit(result.model, result.cloud, noise, {}, {});
     EXPECT_NEAR(result.statistics.fit.rms_distance, fit.rms_distance, 1e-9);
     EXPECT_NEAR(result.statistics.fit.objective / fit.objective, 1, 1e-9);
   }

@@ -11,7 +11,7 @@ namespace cloud2csg {
 namespace {
 
 PointCloud noisy_cloud(const Model& model, double noise, std::uint64_t seed, std::size_t count = 10'000) {
-  return sample_surface(*model.tree, model.primitives, {.count = count, .noise = noise, .seed = seed});
+  return sample_surface(model, {.count = count, .noise = noise, .seed = seed});
 }
 
 using ModelAndSeed = std::tuple<const char*, std::uint64_t>;
@@ -75,7 +75,8 @@ TEST(ExtractCsg, UnitesComponentsThatDoNotTouch) {
       test::placed("c", Cylinder{0.5, 1}, {5, 0, 0}), test::placed("d", Cylinder{0.2, 2}, {5, 0, 0}),
       test::placed("e", Sphere{0.3}, {0, 5, 0})};
   const CsgTree truth = parse_tree("(a - b) | (c - d) | e", primitives);
-  const PointCloud cloud = sample_surface(truth, primitives, {.count = 6000, .noise = 0.003, .seed = 1});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = truth}, {.count = 6000, .noise = 0.003, .seed = 1});
   for (const ExtractOptions& options : test::all_strategies()) {
     const Extraction result = extract_csg(cloud, primitives, options);
     EXPECT_EQ(test::membership_iou(result.tree(), truth, primitives, 60), 1.0) << to_text(result.tree(), primitives);
@@ -87,7 +88,8 @@ TEST(ExtractCsg, UnitesComponentsThatDoNotTouch) {
 
 TEST(ExtractCsg, SolvesASinglePrimitive) {
   const PrimitiveSet primitives{test::placed("ball", Sphere{1}, {0, 0, 0})};
-  const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 500, .noise = 0.01});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = CsgTree::leaf(0)}, {.count = 500, .noise = 0.01});
   for (const ExtractOptions& options : test::all_strategies()) {
     EXPECT_EQ(extract_csg(cloud, primitives, options).tree(), CsgTree::leaf(0));
   }
@@ -109,7 +111,8 @@ TEST(ExtractCsg, CutsWithHalfSpaces) {
   PrimitiveSet primitives{test::placed("ball", Sphere{1}, {0, 0, 0}), test::placed("below", HalfSpace{}, {0, 0, 0.3}),
                           test::placed("post", Cylinder{0.3, 4}, {0, 0, 0})};
   const CsgTree truth = parse_tree("(ball & below) - post", primitives);
-  const PointCloud cloud = sample_surface(truth, primitives, {.count = 5000, .noise = 0.004, .seed = 4});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = truth}, {.count = 5000, .noise = 0.004, .seed = 4});
   for (const ExtractOptions& options : test::all_strategies()) {
     const Extraction result = extract_csg(cloud, primitives, options);
     EXPECT_EQ(test::membership_iou(result.tree(), truth, primitives), 1.0) << to_text(result.tree(), primitives);
@@ -154,7 +157,8 @@ TEST(ExtractCsg, GivesTheSameTreeAtEveryScale) {
 /// Thousands of candidates that are not there must not drown what else is to be said.
 TEST(ExtractCsg, NamesOnlyTheFirstOfManyPrimitivesThatNoPointSupports) {
   PrimitiveSet primitives{test::placed("a", Box{{1, 1, 1}}, {0, 0, 0})};
-  const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 1000, .noise = 0.002, .seed = 1});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = CsgTree::leaf(0)}, {.count = 1000, .noise = 0.002, .seed = 1});
   for (int k = 0; k < 500; ++k) {
     std::string id("far");
     id += std::to_string(k);
@@ -174,7 +178,8 @@ TEST(ExtractCsg, DropsPrimitivesThatNoPointSupports) {
   PrimitiveSet primitives{test::placed("nowhere", Sphere{0.2}, {9, 9, 9}), test::placed("a", Box{{1, 1, 1}}, {0, 0, 0}),
                           test::placed("hidden", Sphere{0.2}, {0, 0, 0}), test::placed("b", Sphere{0.4}, {0.5, 0, 0})};
   const CsgTree truth = parse_tree("a - b", primitives);
-  const PointCloud cloud = sample_surface(truth, primitives, {.count = 3000, .noise = 0.002, .seed = 1});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = truth}, {.count = 3000, .noise = 0.002, .seed = 1});
   for (const ExtractOptions& options : test::all_strategies()) {
     const Extraction result = extract_csg(cloud, primitives, options);
     EXPECT_EQ(result.tree(), truth);

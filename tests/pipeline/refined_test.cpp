@@ -21,7 +21,7 @@ PrimitiveSet wrong_sizes(PrimitiveSet primitives) {
 
 TEST(ExtractRefined, ExplainsThePointsBetter) {
   const Model model = test::paper_model("m0");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 8000, .noise = 0.005, .seed = 1});
+  const PointCloud cloud = sample_surface(model, {.count = 8000, .noise = 0.005, .seed = 1});
   const PrimitiveSet given = wrong_sizes(model.primitives);
   const Extraction plain = extract_csg(cloud, given);
   const Extraction refined = extract_refined_csg(cloud, given);
@@ -36,7 +36,7 @@ TEST(ExtractRefined, ExplainsThePointsBetter) {
 
 TEST(ExtractRefined, IsTheSameForAnyThreads) {
   const Model model = test::paper_model("m2");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 3000, .noise = 0.005, .seed = 2});
+  const PointCloud cloud = sample_surface(model, {.count = 3000, .noise = 0.005, .seed = 2});
   const PrimitiveSet given = wrong_sizes(model.primitives);
   const Extraction one = extract_refined_csg(cloud, given, {}, {}, {.threads = 1});
   const Extraction two = extract_refined_csg(cloud, given, {}, {}, {.threads = 2});
@@ -48,7 +48,7 @@ TEST(ExtractRefined, IsTheSameForAnyThreads) {
 
 TEST(ExtractRefined, StopsBeforeTheFirstTreeAsExtractDoes) {
   const Model model = test::paper_model("m2");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 1000, .noise = 0.005, .seed = 2});
+  const PointCloud cloud = sample_surface(model, {.count = 1000, .noise = 0.005, .seed = 2});
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW((void)extract_refined_csg(cloud, model.primitives, {}, {}, {.stop = stop.get_token()}), Cancelled);
@@ -56,7 +56,7 @@ TEST(ExtractRefined, StopsBeforeTheFirstTreeAsExtractDoes) {
 
 TEST(ExtractRefined, SaysThatItsTimeWasOver) {
   const Model model = test::paper_model("m2");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 2000, .noise = 0.005, .seed = 2});
+  const PointCloud cloud = sample_surface(model, {.count = 2000, .noise = 0.005, .seed = 2});
   const PrimitiveSet given = wrong_sizes(model.primitives);
   const Extraction result = extract_refined_csg(cloud, given, {.time_limit_seconds = 1e-9});
   EXPECT_FALSE(result.statistics.complete);
@@ -67,7 +67,7 @@ TEST(ExtractRefined, SaysThatItsTimeWasOver) {
 /// A stop while refining leaves the tree that was there.
 TEST(ExtractRefined, StoppedWhileRefiningGivesTheFirstTree) {
   const Model model = test::paper_model("m2");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 2000, .noise = 0.005, .seed = 2});
+  const PointCloud cloud = sample_surface(model, {.count = 2000, .noise = 0.005, .seed = 2});
   const PrimitiveSet given = wrong_sizes(model.primitives);
   std::stop_source stop;
   const RunContext run{.stop = stop.get_token(), .on_progress = [&stop](const Progress& progress) {

@@ -13,7 +13,7 @@ namespace {
 
 Extraction extraction_of(const char* name, const ExtractOptions& options = {}) {
   const Model model = test::paper_model(name);
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 5000, .noise = 0.01, .seed = 2});
+  const PointCloud cloud = sample_surface(model, {.count = 5000, .noise = 0.01, .seed = 2});
   return extract_csg(cloud, model.primitives, options, {.threads = 2});
 }
 
@@ -93,7 +93,7 @@ TEST(Statistics, FitIsThatOfTheNoise) {
 
 TEST(Statistics, ObjectiveIsThatOfTheReference) {
   const Model model = test::paper_model("m0");
-  const PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = 2000, .noise = 0.01, .seed = 2});
+  const PointCloud cloud = sample_surface(model, {.count = 2000, .noise = 0.01, .seed = 2});
   const Extraction result = extract_csg(cloud, model.primitives);
   std::vector<std::uint32_t> all(cloud.size());
   std::iota(all.begin(), all.end(), 0U);

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 /// Points on a shipped model, noise as a share of the diagonal, with the exact normals.
 inline PointCloud model_cloud(const std::string& name, std::size_t points, double noise = 0.0) {
   const Model model = read_model(std::filesystem::path(CLOUD2CSG_DATA_DIR) / "models" / (name + ".json"));
-  PointCloud cloud = sample_surface(*model.tree, model.primitives, {.count = points});
+  PointCloud cloud = sample_surface(model, {.count = points});
   const double sigma = noise * bounds_of(cloud.positions).diagonal().norm();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     RandomStream random(7, 1, i);

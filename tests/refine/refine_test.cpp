@@ -63,7 +63,7 @@ Model bored_plate() {
 }
 
 PointCloud cloud_of(const Model& model, double noise = k_noise, std::uint64_t seed = 1) {
-  return sample_surface(*model.tree, model.primitives, {.count = 4000, .noise = noise, .seed = seed});
+  return sample_surface(model, {.count = 4000, .noise = noise, .seed = seed});
 }
 
 class ShippedModel : public testing::TestWithParam<const char*> {};

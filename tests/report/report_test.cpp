@@ -22,7 +22,7 @@ Model shipped(const std::string& name) {
 
 Report report_of(const Model& model, std::size_t points, double noise) {
   Report report{.title = "a cloud", .model = model};
-  report.cloud = sample_surface(*model.tree, model.primitives, {.count = points, .noise = noise});
+  report.cloud = sample_surface(model, {.count = points, .noise = noise});
   return report;
 }
 
@@ -58,7 +58,7 @@ std::vector<double> distances_of(const test::Decoded& data) {
 TEST(Report, FiguresAreThoseOfTheFit) {
   const Report report = report_of(shipped("m1.json"), 5000, 0.01);
   const auto all = gathered(report).text["deviation"]["all"];
-  const FitStatistics fit = measure_fit(*report.model.tree, report.model.primitives, *report.cloud, 0.01, {}, {});
+  const FitStatistics fit = measure_fit(report.model, *report.cloud, 0.01, {}, {});
   EXPECT_EQ(all["points"], 5000);
   EXPECT_DOUBLE_EQ(all["rms"].get<double>(), fit.rms_distance);
   EXPECT_DOUBLE_EQ(all["p95"].get<double>(), fit.p95_distance);
@@ -138,7 +138,7 @@ TEST(Report, EveryNodeOfAShippedModelHasAMesh) {
 TEST(Report, TheMeshOfTheWholeIsAsLargeAsTheSolid) {
   const Report report{.model = shipped("m1.json")};
   const auto text = gathered(report).text;
-  const AlignedBox box = bounds_of(*report.model.tree, report.model.primitives);
+  const AlignedBox box = bounds_of(report.model);
   const auto& mesh = text["solid"]["meshes"][text["solid"]["nodes"][0]["mesh"].get<std::size_t>()];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_GE(mesh["least"][axis].get<double>(), box.min()[static_cast<int>(axis)] - 1e-2);

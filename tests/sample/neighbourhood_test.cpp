@@ -24,7 +24,7 @@ RC_GTEST_PROP(Neighbourhood, ContainsWhatTheWholeTreeDoes, (std::uint64_t seed))
   const CsgTree tree = random_formula(primitives.size(), 1 + random.below(24), random);
   const std::vector<PrimitiveIndex> used = primitives_of(tree);
   constexpr double k_margin = 0.01;
-  const std::vector<Neighbourhood> all = neighbourhoods(tree, primitives, used, k_margin);
+  const std::vector<Neighbourhood> all = neighbourhoods({.primitives = primitives, .tree = tree}, used, k_margin);
   RC_ASSERT(all.size() == used.size());
   for (std::size_t i = 0; i < used.size(); ++i) {
     AlignedBox reach = bounds(primitives[used[i]]);
@@ -48,7 +48,7 @@ TEST(Neighbourhood, LeavesOutWhatIsFarAway) {
   }
   row.push_back({.id = "h", .shape = HalfSpace{}});
   const CsgTree tree = subtract(unite_all(leaves), CsgTree::leaf(9));
-  const std::vector<Neighbourhood> all = neighbourhoods(tree, row, primitives_of(tree), 0.01);
+  const std::vector<Neighbourhood> all = neighbourhoods({.primitives = row, .tree = tree}, primitives_of(tree), 0.01);
   EXPECT_EQ(all[4].members, (std::vector<PrimitiveIndex>{3, 4, 5, 9}));
   EXPECT_EQ(all[4].tree, parse_tree("(p | q | r) - h", {{.id = "p", .shape = Sphere{1}},
                                                         {.id = "q", .shape = Sphere{1}},

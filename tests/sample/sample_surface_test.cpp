@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 PointCloud sample(const KnownSolid& solid, const SampleOptions& options = {}) {
-  return sample_surface(solid.tree, solid.primitives, options);
+  return sample_surface(solid.model(), options);
 }
 
 std::vector<KnownSolid> all_solids() {
@@ -101,8 +101,8 @@ TEST(SampleSurface, DensityGivesThePointsOfTheArea) {
 TEST(SampleSurface, SameSeedSameCloudForAnyNumberOfThreads) {
   const KnownSolid solid = combined_solids()[5];
   const SampleOptions options{.count = 30'000, .noise = 0.01, .normal_noise_deg = 2.0, .seed = 7};
-  const PointCloud one = sample_surface(solid.tree, solid.primitives, options, {.threads = 1});
-  const PointCloud many = sample_surface(solid.tree, solid.primitives, options, {.threads = 4});
+  const PointCloud one = sample_surface(solid.model(), options, {.threads = 1});
+  const PointCloud many = sample_surface(solid.model(), options, {.threads = 4});
   EXPECT_EQ(one.positions.x, many.positions.x);
   EXPECT_EQ(one.positions.z, many.positions.z);
   EXPECT_EQ(one.normals.y, many.normals.y);
@@ -145,7 +145,7 @@ TEST(SampleSurface, DisplacedSolidsAreFollowed) {
   Primitive bumpy = at("a", Box{{4, 4, 4}}, {0, 0, 0});
   bumpy.displacement = Displacement{.frequency = 3.0};
   const PrimitiveSet primitives{bumpy};
-  const PointCloud cloud = sample_surface(CsgTree::leaf(0), primitives, {.count = 3000});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = CsgTree::leaf(0)}, {.count = 3000});
   double farthest = 0.0;
   for (const double value : signed_distance(bumpy, cloud.positions)) ASSERT_NEAR(value, 0.0, 1e-10);
   for (const double value : signed_distance(at("a", Box{{4, 4, 4}}, {0, 0, 0}), cloud.positions)) {
@@ -157,7 +157,7 @@ TEST(SampleSurface, DisplacedSolidsAreFollowed) {
 void expect_refused(const CsgTree& tree, const PrimitiveSet& primitives, const SampleOptions& options,
                     const std::string& where, const std::string& expected) {
   try {
-    (void)sample_surface(tree, primitives, options);
+    (void)sample_surface({.primitives = primitives, .tree = tree}, options);
     FAIL() << "no error: " << expected;
   } catch (const Error& error) {
     EXPECT_EQ(error.parts().where, where);
@@ -187,7 +187,7 @@ TEST(SampleSurface, HonoursTheStopToken) {
   std::stop_source stop;
   stop.request_stop();
   const KnownSolid solid = plain_solids()[0];
-  EXPECT_THROW((void)sample_surface(solid.tree, solid.primitives, {}, {.stop = stop.get_token()}), Cancelled);
+  EXPECT_THROW((void)sample_surface(solid.model(), {}, {.stop = stop.get_token()}), Cancelled);
 }
 
 }  // namespace

@@ -73,9 +73,9 @@ TEST(Scan, PerfectPointsLieOnTheSolid) {
                                    at("s", Sphere{0.6}, {-0.9, 0.4, 0.5})},
                     .tree = subtract(unite(CsgTree::leaf(0), CsgTree::leaf(2)), CsgTree::leaf(1))});
   for (const KnownSolid& solid : solids) {
-    const PointCloud cloud = scan_model(solid.tree, solid.primitives, perfect(500));
+    const PointCloud cloud = scan_model(solid.model(), perfect(500));
     ASSERT_EQ(cloud.size(), 500U) << solid.name;
-    const double size = bounds_of(solid.tree, solid.primitives).diagonal().norm();
+    const double size = bounds_of(solid.model()).diagonal().norm();
     const Points gradients = implicit_gradient(solid.tree, solid.primitives, cloud.positions);
     const std::vector<double> values = implicit_value(solid.tree, solid.primitives, cloud.positions);
     std::size_t agreeing_normals = 0;
@@ -107,7 +107,8 @@ TEST(Scan, WhatIsFarFromTheOriginIsAsExact) {
 
 TEST(Scan, CavitiesStayDarkAndAllThatIsOutsideIsSeen) {
   const PrimitiveSet primitives{at("b", Box{{2, 2, 2}}, {0, 0, 0}), at("s", Sphere{0.8}, {0, 0, 0})};
-  const PointCloud cloud = scan_model(subtract(CsgTree::leaf(0), CsgTree::leaf(1)), primitives, perfect());
+  const PointCloud cloud =
+      scan_model({.primitives = primitives, .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))}, perfect());
   std::array<std::size_t, 6> on_face{};
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vector3d position = cloud.positions[i];
@@ -123,7 +124,7 @@ TEST(Scan, NothingIsBetweenAPointAndItsSensor) {
   const PrimitiveSet primitives{at("a", Sphere{0.5}, {0, 0, 0}), at("b", Sphere{0.5}, {1.2, 0, 0}),
                                 at("c", Box{{0.2, 2, 2}}, {0.6, 0, 1.2})};
   const CsgTree tree = unite(unite(CsgTree::leaf(0), CsgTree::leaf(1)), CsgTree::leaf(2));
-  const PointCloud cloud = scan_model(tree, primitives, perfect());
+  const PointCloud cloud = scan_model({.primitives = primitives, .tree = tree}, perfect());
   Points on_the_way;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     for (int step = 1; step < 50; ++step) {
@@ -170,7 +171,7 @@ TEST(Scan, SeesNothingOfTheUndersideOnATable) {
   }
   EXPECT_EQ(views, options.views);
   const PrimitiveSet block{{.id = "block", .shape = Box{{4, 3, 3}}}};
-  EXPECT_GT(std::ranges::min(scan_model(CsgTree::leaf(0), block, options).normals.z), -0.1);
+  EXPECT_GT(std::ranges::min(scan_model({.primitives = block, .tree = CsgTree::leaf(0)}, options).normals.z), -0.1);
 }
 
 TEST(Scan, GivesAsManyPointsAsWanted) {
@@ -280,7 +281,7 @@ TEST(Scan, MixedPixelsLieBetweenTwoSurfacesAtEdgesOnly) {
   const CsgTree tree = unite(CsgTree::leaf(0), CsgTree::leaf(1));
   ScanOptions options = perfect(20'000);
   options.mixed_pixels = 1.0;
-  const PointCloud cloud = scan_model(tree, primitives, options);
+  const PointCloud cloud = scan_model({.primitives = primitives, .tree = tree}, options);
   const std::vector<double> values = implicit_value(tree, primitives, cloud.positions);
   std::size_t mixed = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -338,14 +339,14 @@ TEST(Scan, IsTheSameForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
   const KnownSolid torus = plain_solids().at(5);
   ScanOptions options{.count = 20'000};
   options.meshing.resolution = 48;
-  const PointCloud one = scan_model(torus.tree, torus.primitives, options, {.threads = 1});
-  const PointCloud two = scan_model(torus.tree, torus.primitives, options, {.threads = 2});
+  const PointCloud one = scan_model(torus.model(), options, {.threads = 1});
+  const PointCloud two = scan_model(torus.model(), options, {.threads = 2});
   EXPECT_EQ(one.positions.x, two.positions.x);
   EXPECT_EQ(one.positions.y, two.positions.y);
   EXPECT_EQ(one.positions.z, two.positions.z);
   EXPECT_EQ(one.sensor_positions.x, two.sensor_positions.x);
   options.seed = 2;
-  EXPECT_NE(scan_model(torus.tree, torus.primitives, options).positions.x, one.positions.x);
+  EXPECT_NE(scan_model(torus.model(), options).positions.x, one.positions.x);
 }
 
 TEST(Scan, RefusesOptionsOutOfRangeByName) {
@@ -379,8 +380,9 @@ TEST(Scan, RefusesWhatCannotBeSeen) {
   EXPECT_THROW((void)scan_mesh({}), Error);
   EXPECT_THROW((void)scan_mesh({.vertices = Points(3), .triangles = {{0, 1, 2}}}), Error);  // no area
   const PrimitiveSet primitives{at("h", HalfSpace{}, {0, 0, 0}), at("s", Sphere{1}, {0, 0, 0})};
-  EXPECT_THROW((void)scan_model(CsgTree::leaf(0), primitives), Error);
-  EXPECT_THROW((void)scan_model(subtract(CsgTree::leaf(1), CsgTree::leaf(1)), primitives), Error);
+  EXPECT_THROW((void)scan_model({.primitives = primitives, .tree = CsgTree::leaf(0)}), Error);
+  EXPECT_THROW((void)scan_model({.primitives = primitives, .tree = subtract(CsgTree::leaf(1), CsgTree::leaf(1))}),
+               Error);
 }
 
 TEST(Scan, StopsAndReports) {

@@ -18,6 +18,8 @@ struct KnownSolid {
   CsgTree tree = CsgTree::leaf(0);
   double area = 0.0;
   double volume = 0.0;
+
+  [[nodiscard]] Model model() const { return {.primitives = primitives, .tree = tree}; }
 };
 
 [[nodiscard]] inline Pose some_pose() {

@@ -19,7 +19,8 @@ PrimitiveSet balls(const std::vector<std::string>& ids) {
 /// The tree's part of the program: from the paragraph that is no parameters to the first module.
 std::string tree_part(const std::string& formula) {
   const PrimitiveSet primitives = balls({"a", "b", "c", "d"});
-  const std::string text = to_openscad(parse_tree(formula, primitives), primitives, {.patterns = false});
+  const std::string text =
+      to_openscad({.primitives = primitives, .tree = parse_tree(formula, primitives)}, {.patterns = false});
   std::size_t begin = text.find("\n\n") + 2;
   while (text.compare(begin, 2, "/*") == 0 || text.compare(begin, 2, "//") == 0) begin = text.find("\n\n", begin) + 2;
   return text.substr(begin, text.find("\nmodule", begin) - begin);
@@ -49,7 +50,7 @@ TEST(OpenScadTree, ConstantsVanishWhereTheyCan) {
 
 TEST(OpenScadTree, FlatIntersectionsAreOfTwo) {
   const PrimitiveSet primitives = balls({"a", "b", "c", "d"});
-  std::string text = to_openscad_csg(parse_tree("(a & b & c) - d", primitives), primitives);
+  std::string text = to_openscad_csg({.primitives = primitives, .tree = parse_tree("(a & b & c) - d", primitives)});
   const std::string ball =
       "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { sphere($fn = 0, $fa = 5.625, $fs = 0.01, "
       "r = 1); }";
@@ -63,14 +64,14 @@ TEST(OpenScadTree, LongChainsNeedNoStack) {
   const PrimitiveSet primitives = balls({"a", "b"});
   CsgTree tree = CsgTree::leaf(0);
   for (int i = 0; i < 3000; ++i) tree = i % 2 == 0 ? unite(CsgTree::leaf(1), tree) : intersect(CsgTree::leaf(1), tree);
-  EXPECT_LT(to_openscad(tree, primitives).size(), 2'000'000U);
+  EXPECT_LT(to_openscad({.primitives = primitives, .tree = tree}).size(), 2'000'000U);
 }
 
 TEST(OpenScadNames, AreUniqueAndAllowed) {
   const PrimitiveSet primitives = balls({"sphere", "a b", "a_b", "9", "everything", "a_b_2", "caf\xc3\xa9\nx"});
   CsgTree tree = CsgTree::leaf(0);
   for (PrimitiveIndex i = 1; i < primitives.size(); ++i) tree = unite(tree, CsgTree::leaf(i));
-  const std::string text = to_openscad(tree, primitives);
+  const std::string text = to_openscad({.primitives = primitives, .tree = tree});
   for (const char* name : {"sphere_2", "a_b", "a_b_2", "solid_9", "everything_2", "a_b_2_2", "caf___x"}) {
     EXPECT_NE(text.find(std::string("module ") + name + "() {"), std::string::npos) << name << "\n" << text;
   }
@@ -79,7 +80,7 @@ TEST(OpenScadNames, AreUniqueAndAllowed) {
 
 /// The values of a solid, then its statement.
 std::string solid_lines(Shape shape, const Pose& pose = {}) {
-  const std::string text = to_openscad(CsgTree::leaf(0), {named("p", std::move(shape), pose)});
+  const std::string text = to_openscad({.primitives = {named("p", std::move(shape), pose)}, .tree = CsgTree::leaf(0)});
   const std::size_t values = text.find("/* [p] */\n") + 10;
   const std::size_t begin = text.find("module p() {\n  ") + 15;
   return text.substr(values, text.find("\n\n", values) + 1 - values) + text.substr(begin, text.rfind("\n}") - begin);
@@ -120,7 +121,7 @@ TEST(OpenScadSolids, AreShort) {
 TEST(OpenScadSolids, VariablesAreUnique) {
   const PrimitiveSet primitives{named("a", Torus{.major_radius = 1, .minor_radius = 0.25}),
                                 named("a_major", Sphere{.radius = 7})};
-  const std::string text = to_openscad(unite(CsgTree::leaf(0), CsgTree::leaf(1)), primitives);
+  const std::string text = to_openscad({.primitives = primitives, .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))});
   EXPECT_NE(text.find("a_major_radius = 1;"), std::string::npos) << text;
   EXPECT_NE(text.find("a_major_radius_2 = 7;"), std::string::npos) << text;
   EXPECT_NE(text.find("sphere(r = a_major_radius_2)"), std::string::npos) << text;
@@ -128,7 +129,8 @@ TEST(OpenScadSolids, VariablesAreUnique) {
 
 TEST(OpenScadTree, FlatCirclesHaveTheFacetsAskedForInAnyUnit) {
   const auto flat = [](double radius, int facets) {
-    return to_openscad_csg(CsgTree::leaf(0), {named("p", Sphere{.radius = radius})}, {.facets = facets});
+    return to_openscad_csg({.primitives = {named("p", Sphere{.radius = radius})}, .tree = CsgTree::leaf(0)},
+                           {.facets = facets});
   };
   // By angle, which FreeCAD reads as round, where no facet is shorter than the least that OpenSCAD makes by angle.
   EXPECT_NE(flat(1, 64).find("sphere($fn = 0, $fa = 5.625, $fs = 0.01, "), std::string::npos);
@@ -144,27 +146,31 @@ TEST(OpenScadLoops, AreWrittenForThreeOrMore) {
     holes.push_back(named("hole_" + std::to_string(i + 1), Sphere{.radius = 1}, {.position = {20.0 * i, 0, 0}}));
     if (i > 0) tree = unite(tree, CsgTree::leaf(static_cast<PrimitiveIndex>(i)));
   }
-  const std::string text = to_openscad(tree, holes);
+  const std::string text = to_openscad({.primitives = holes, .tree = tree});
   EXPECT_NE(text.find("hole_1_count = 3;\nhole_1_step = [20, 0, 0];\n"), std::string::npos) << text;
   EXPECT_NE(text.find("  for (i = [0 : hole_1_count - 1]) translate(i * hole_1_step) hole_1();\n"), std::string::npos);
   EXPECT_EQ(text.find("module hole_2"), std::string::npos);
   EXPECT_NE(text.find("as hole_2, hole_3"), std::string::npos) << "which primitives it stands for";
-  EXPECT_NE(to_openscad(tree, holes, {.patterns = false}).find("module hole_2"), std::string::npos);
+  EXPECT_NE(to_openscad({.primitives = holes, .tree = tree}, {.patterns = false}).find("module hole_2"),
+            std::string::npos);
   // Two have a step, but no pattern; what the tree has twice stays alone.
-  EXPECT_EQ(to_openscad(unite(CsgTree::leaf(0), CsgTree::leaf(1)), holes).find("for ("), std::string::npos);
-  EXPECT_EQ(to_openscad(unite(tree, subtract(CsgTree::leaf(0), CsgTree::leaf(1))), holes).find("for ("),
+  EXPECT_EQ(to_openscad({.primitives = holes, .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))}).find("for ("),
+            std::string::npos);
+  EXPECT_EQ(to_openscad({.primitives = holes, .tree = unite(tree, subtract(CsgTree::leaf(0), CsgTree::leaf(1)))})
+                .find("for ("),
             std::string::npos);
 }
 
 TEST(OpenScadText, HeadIsComment) {
-  const std::string text = to_openscad(CsgTree::leaf(0), balls({"a"}), {.facets = 12, .comment = "one\ntwo */ three"});
+  const std::string text = to_openscad({.primitives = balls({"a"}), .tree = CsgTree::leaf(0)},
+                                       {.facets = 12, .comment = "one\ntwo */ three"});
   EXPECT_EQ(text.rfind("// one\n// two */ three\n$fn = 12;", 0), 0U) << text;
 }
 
 TEST(OpenScadText, RefusesBadOptions) {
   const PrimitiveSet primitives = balls({"a"});
-  EXPECT_THROW((void)to_openscad(CsgTree::leaf(0), primitives, {.facets = 2}), Error);
-  EXPECT_THROW((void)to_openscad(CsgTree::leaf(0), primitives, {.mesh_resolution = 1}), Error);
+  EXPECT_THROW((void)to_openscad({.primitives = primitives, .tree = CsgTree::leaf(0)}, {.facets = 2}), Error);
+  EXPECT_THROW((void)to_openscad({.primitives = primitives, .tree = CsgTree::leaf(0)}, {.mesh_resolution = 1}), Error);
 }
 
 }  // namespace

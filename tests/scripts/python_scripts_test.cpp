@@ -23,7 +23,7 @@ struct Probe {
 };
 
 Probe probe_of(const Model& model) {
-  const AlignedBox extent = model_extent(*model.tree, model.primitives);
+  const AlignedBox extent = model_extent(model);
   const Points all = test::lattice(extent, 10);
   const std::vector<double> values = implicit_value(*model.tree, model.primitives, all);
   Probe probe;
@@ -99,8 +99,9 @@ TEST(PythonScripts, MakeHollowAndSeveralShells) {
 TEST(PythonScripts, RefuseTheEmptySolid) {
   const Model model = model_of(R"({"id": "a", "type": "sphere", "radius": 2})", "a & empty");
   for (const auto to_script : {to_freecad_macro, to_cadquery}) {
-    EXPECT_THROW((void)to_script(*model.tree, model.primitives, {}), Error);
-    EXPECT_THROW((void)to_script(CsgTree::leaf(0), model.primitives, {.facet_resolution = 2}), Error);
+    EXPECT_THROW((void)to_script(model, {}), Error);
+    EXPECT_THROW((void)to_script({.primitives = model.primitives, .tree = CsgTree::leaf(0)}, {.facet_resolution = 2}),
+                 Error);
   }
 }
 
@@ -111,13 +112,13 @@ TEST(PythonScripts, LongChainsNeedNoStack) {
   CsgTree tree = CsgTree::leaf(0);
   for (int i = 0; i < 3000; ++i) tree = i % 2 == 0 ? unite(CsgTree::leaf(1), tree) : intersect(CsgTree::leaf(1), tree);
   for (const auto to_script : {to_freecad_macro, to_cadquery}) {
-    EXPECT_LT(to_script(tree, model.primitives, {}).size(), 1'000'000U);
+    EXPECT_LT(to_script({.primitives = model.primitives, .tree = tree}, {}).size(), 1'000'000U);
   }
 }
 
 TEST(CadQueryScript, HasItsValuesAtTheTop) {
   const Model model = test::flange();
-  const std::string text = to_cadquery(*model.tree, model.primitives);
+  const std::string text = to_cadquery(model);
   EXPECT_LT(text.find("bore_radius = 6\n"), text.find("def ")) << text;
   EXPECT_NE(text.find("bore = cylinder(bore_radius, bore_height, bore_position)\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("def sphere"), std::string::npos) << "what is not used is not there";
@@ -131,8 +132,7 @@ std::string freecad() {
 }
 
 double volume_of_mesh(const Model& model) {
-  return volume_of(
-      mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives), {.resolution = 128}));
+  return volume_of(mesh_surface(model, bounds_of(model), {.resolution = 128}));
 }
 
 TEST(FreeCadProgram, ReadsTheFlatLanguageWithTrueSolids) {

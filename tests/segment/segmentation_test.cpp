@@ -37,8 +37,8 @@ void add_outliers(PointCloud& cloud, RandomStream& random) {
 TEST(EstimateNoise, RecoversTheSigmaOfAScan) {
   const PrimitiveSet primitives = boxes_and_spheres();
   for (const double sigma : {0.002, 0.005, 0.01, 0.02, 0.05}) {
-    const PointCloud cloud =
-        sample_surface(all_united(primitives), primitives, {.count = 20'000, .noise = sigma, .seed = 5});
+    const PointCloud cloud = sample_surface({.primitives = primitives, .tree = all_united(primitives)},
+                                            {.count = 20'000, .noise = sigma, .seed = 5});
     EXPECT_NEAR(estimate_noise(cloud, primitives), sigma, 0.1 * sigma);
   }
 }
@@ -47,7 +47,8 @@ TEST(EstimateNoise, SurvivesATenthOfOutliers) {
   const PrimitiveSet primitives = boxes_and_spheres();
   RandomStream random(1);
   for (const double sigma : {0.002, 0.005, 0.01, 0.02, 0.05}) {
-    PointCloud cloud = sample_surface(all_united(primitives), primitives, {.count = 20'000, .noise = sigma, .seed = 6});
+    PointCloud cloud = sample_surface({.primitives = primitives, .tree = all_united(primitives)},
+                                      {.count = 20'000, .noise = sigma, .seed = 6});
     add_outliers(cloud, random);
     EXPECT_NEAR(estimate_noise(cloud, primitives), sigma, 0.1 * sigma);
   }
@@ -56,14 +57,17 @@ TEST(EstimateNoise, SurvivesATenthOfOutliers) {
 TEST(EstimateNoise, ScalesWithTheCloud) {
   const PrimitiveSet unit{test::placed("ball", Sphere{1}, {0, 0, 0})};
   const PrimitiveSet large{test::placed("ball", Sphere{1000}, {0, 0, 0})};
-  const double of_unit = estimate_noise(sample_surface(CsgTree::leaf(0), unit, {.noise = 0.01, .seed = 3}), unit);
-  const double of_large = estimate_noise(sample_surface(CsgTree::leaf(0), large, {.noise = 10, .seed = 3}), large);
+  const double of_unit =
+      estimate_noise(sample_surface({.primitives = unit, .tree = CsgTree::leaf(0)}, {.noise = 0.01, .seed = 3}), unit);
+  const double of_large =
+      estimate_noise(sample_surface({.primitives = large, .tree = CsgTree::leaf(0)}, {.noise = 10, .seed = 3}), large);
   EXPECT_NEAR(of_large / of_unit, 1000, 100);
 }
 
 TEST(EstimateNoise, APerfectCloudHasTheFloor) {
   const PrimitiveSet primitives = boxes_and_spheres();
-  const PointCloud cloud = sample_surface(all_united(primitives), primitives, {.count = 4000, .seed = 4});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = all_united(primitives)}, {.count = 4000, .seed = 4});
   const double diagonal = bounds_of(cloud.positions).diagonal().norm();
   const double noise = estimate_noise(cloud, primitives);
   EXPECT_GT(noise, 0.99e-5 * diagonal);
@@ -148,8 +152,8 @@ TEST(SegmentPoints, APointOnAnEdgeBelongsToBothSolids) {
 TEST(SegmentPoints, ASubtractedSolidShowsItsSurfaceFromInside) {
   const PrimitiveSet primitives{test::placed("block", Box{{2, 2, 2}}, {0, 0, 0}),
                                 test::placed("bore", Cylinder{0.5, 3}, {0, 0, 0})};
-  const PointCloud cloud =
-      sample_surface(subtract(CsgTree::leaf(0), CsgTree::leaf(1)), primitives, {.count = 5000, .seed = 2});
+  const PointCloud cloud = sample_surface(
+      {.primitives = primitives, .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))}, {.count = 5000, .seed = 2});
   const Segmentation result = segment_points(cloud, primitives, {.distance = 1e-6, .cosine = 0.99});
   EXPECT_EQ(result.unassigned, 0U);
   // The wall of the bore is 2 pi of 24 - pi / 2 + 2 pi in all.
@@ -159,7 +163,7 @@ TEST(SegmentPoints, ASubtractedSolidShowsItsSurfaceFromInside) {
 
 TEST(SegmentPoints, StopsWhenAsked) {
   const PrimitiveSet primitives = boxes_and_spheres();
-  const PointCloud cloud = sample_surface(all_united(primitives), primitives, {.count = 100});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = all_united(primitives)}, {.count = 100});
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW((void)segment_points(cloud, primitives, {.distance = 1, .cosine = 0}, {.stop = stop.get_token()}),
@@ -168,7 +172,7 @@ TEST(SegmentPoints, StopsWhenAsked) {
 
 TEST(SegmentPoints, ReportsEachPrimitive) {
   const PrimitiveSet primitives = boxes_and_spheres();
-  const PointCloud cloud = sample_surface(all_united(primitives), primitives, {.count = 100});
+  const PointCloud cloud = sample_surface({.primitives = primitives, .tree = all_united(primitives)}, {.count = 100});
   std::vector<std::size_t> done;
   (void)segment_points(cloud, primitives, {.distance = 1, .cosine = 0}, {.on_progress = [&done](const Progress& p) {
                          EXPECT_EQ(p.stage, "segment");
@@ -203,7 +207,8 @@ TEST(DealPoints, MeasuresTheDistanceFromFreeForms) {
   Primitive form = test::placed("form", Expression{"5 * (sqrt(x^2 + y^2 + z^2) - 1)", {}}, {0, 0, 0});
   std::get<Expression>(form.shape).bounds = AlignedBox(Eigen::Vector3d(-2, -2, -2), Eigen::Vector3d(2, 2, 2));
   const PrimitiveSet plain{test::placed("ball", Sphere{1.0}, {0, 0, 0})};
-  const PointCloud cloud = sample_surface(CsgTree::leaf(0), plain, {.count = 5000, .noise = 0.01, .seed = 2});
+  const PointCloud cloud =
+      sample_surface({.primitives = plain, .tree = CsgTree::leaf(0)}, {.count = 5000, .noise = 0.01, .seed = 2});
   const SurfacePoints own = deal_points(cloud, {form}, {.distance = 0.05, .cosine = 0.9})[0];
   EXPECT_EQ(own.points.size(), cloud.size());
   EXPECT_NEAR(own.rms, 0.01, 0.0005);
@@ -223,7 +228,8 @@ TEST(DealPoints, LeavesOutWhatIsFarOrTurned) {
 
 TEST(DealPoints, IsTheSameOnAnyNumberOfThreads) {
   const PrimitiveSet primitives = boxes_and_spheres();
-  const PointCloud cloud = sample_surface(all_united(primitives), primitives, {.count = 5000, .noise = 0.01});
+  const PointCloud cloud =
+      sample_surface({.primitives = primitives, .tree = all_united(primitives)}, {.count = 5000, .noise = 0.01});
   const SegmentationTolerances tolerances{.distance = 0.03, .cosine = 0.9};
   const auto one = deal_points(cloud, primitives, tolerances, {.threads = 1});
   const auto two = deal_points(cloud, primitives, tolerances, {.threads = 2});

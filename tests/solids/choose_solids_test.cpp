@@ -27,7 +27,8 @@ struct Part {
 Part part_of(PrimitiveSet solids, const std::string& formula, double noise = 0.002) {
   Part part{.solids = std::move(solids), .tree = {}, .cloud = {}, .surfaces = {}};
   part.tree = parse_tree(formula, part.solids);
-  part.cloud = sample_surface(part.tree, part.solids, {.count = 6000, .noise = noise, .seed = 3});
+  part.cloud =
+      sample_surface({.primitives = part.solids, .tree = part.tree}, {.count = 6000, .noise = noise, .seed = 3});
   part.surfaces = test::known_surfaces(part.solids, part.cloud, std::max(4 * noise, 1e-3));
   return part;
 }
@@ -89,7 +90,8 @@ Part plate_with_rows_of_holes(int count) {
   Part part{.solids = std::move(solids), .tree = {}, .cloud = {}, .surfaces = {}};
   part.tree = parse_tree(formula, part.solids);
   const auto points = static_cast<std::size_t>(300 * count * count);
-  part.cloud = sample_surface(part.tree, part.solids, {.count = points, .noise = 0.002, .seed = 3});
+  part.cloud =
+      sample_surface({.primitives = part.solids, .tree = part.tree}, {.count = points, .noise = 0.002, .seed = 3});
   part.surfaces = test::known_surfaces(part.solids, part.cloud, 0.008, 30);
   return part;
 }

@@ -28,7 +28,7 @@ const Scene& scene() {
         test::placed("a", Box{{4, 3, 1}}, {0, 0, 0}), test::placed("b", Box{{1, 1, 2}}, {1, 0, 1}),
         test::placed("c", Cylinder{0.5, 3}, {-1, 0, 0}), test::placed("d", Sphere{0.6}, {-0.6, 0.3, 0.4})};
     const CsgTree tree = parse_tree("((a | b) - c) | d", solids);
-    const PointCloud cloud = sample_surface(tree, solids, {.count = 3000, .seed = 2});
+    const PointCloud cloud = sample_surface({.primitives = solids, .tree = tree}, {.count = 3000, .seed = 2});
     Scene result;
     result.places = label_places(cloud, {.noise = 0.0, .volume_places = 3000, .surface_points = 1000});
     result.space = make_term_space(cloud, test::known_surfaces(solids, cloud, 0.01), result.places, 0.01);

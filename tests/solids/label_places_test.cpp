@@ -20,7 +20,8 @@ CsgTree tree() {
 }
 
 LabelledPlaces places_of(const CsgTree& of, double noise) {
-  const PointCloud cloud = sample_surface(of, k_solids, {.count = 10'000, .noise = noise, .seed = 7});
+  const PointCloud cloud =
+      sample_surface({.primitives = k_solids, .tree = of}, {.count = 10'000, .noise = noise, .seed = 7});
   return label_places(cloud, {.noise = noise, .volume_places = 8000, .surface_points = 2000});
 }
 
@@ -63,7 +64,7 @@ TEST(LabelPlaces, WeighsTheVolumeOfTheSolidAsOne) {
 }
 
 TEST(LabelPlaces, RefusesACloudWithoutAnInside) {
-  PointCloud cloud = sample_surface(tree(), k_solids, {.count = 2000, .seed = 1});
+  PointCloud cloud = sample_surface({.primitives = k_solids, .tree = tree()}, {.count = 2000, .seed = 1});
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.normals.set(i, -cloud.normals[i]);
   EXPECT_THROW((void)label_places(cloud), Error);
   EXPECT_THROW((void)label_places({}), Error);

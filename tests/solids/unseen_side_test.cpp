@@ -28,7 +28,8 @@ class BoredBlock : public ::testing::Test {
   template <class IsMissing>
   [[nodiscard]] PointCloud cloud_without(IsMissing is_missing) const {
     const CsgTree tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1));
-    const PointCloud whole = sample_surface(tree, solids_, {.count = 20'000, .noise = 0.002, .seed = 3});
+    const PointCloud whole =
+        sample_surface({.primitives = solids_, .tree = tree}, {.count = 20'000, .noise = 0.002, .seed = 3});
     std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < whole.size(); ++i) {
       const Vector3d normal = turn_.orientation.conjugate() * whole.normals[i];

@@ -16,10 +16,11 @@ constexpr double k_pi = std::numbers::pi;
 TEST(BalanceFacets, BringsTheVolumeOfFewFacetsNearTheTruth) {
   const PrimitiveSet primitives{test::placed("ball", Sphere{.radius = 1}, {0.1, 0.2, 0.3})};
   const CsgTree ball = CsgTree::leaf(0);
-  TriangleMesh mesh = mesh_surface(ball, primitives, bounds_of(ball, primitives), {.resolution = 12});
+  TriangleMesh mesh = mesh_surface({.primitives = primitives, .tree = ball},
+                                   bounds_of({.primitives = primitives, .tree = ball}), {.resolution = 12});
   const double expected = 4 * k_pi / 3;
   ASSERT_GT(std::abs(volume_of(mesh) / expected - 1), 0.005);
-  balance_facets(mesh, ball, primitives);
+  balance_facets(mesh, {.primitives = primitives, .tree = ball});
   EXPECT_NEAR(volume_of(mesh) / expected, 1, 0.001);
   EXPECT_TRUE(is_watertight(mesh));
 }
@@ -27,8 +28,9 @@ TEST(BalanceFacets, BringsTheVolumeOfFewFacetsNearTheTruth) {
 TEST(BalanceFacets, LeavesFlatFacesAsTheyAre) {
   const PrimitiveSet primitives{test::placed("box", Box{.size = {1, 2, 3}}, {0, 0, 0})};
   const CsgTree box = CsgTree::leaf(0);
-  TriangleMesh mesh = mesh_surface(box, primitives, bounds_of(box, primitives), {.resolution = 12});
-  balance_facets(mesh, box, primitives);
+  TriangleMesh mesh = mesh_surface({.primitives = primitives, .tree = box},
+                                   bounds_of({.primitives = primitives, .tree = box}), {.resolution = 12});
+  balance_facets(mesh, {.primitives = primitives, .tree = box});
   EXPECT_NEAR(volume_of(mesh), 6, 1e-9);
 }
 

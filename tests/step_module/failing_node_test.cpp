@@ -28,7 +28,8 @@ TEST(FailingNode, IsNamedAndGetsFacets) {
                                 test::placed("ball", Sphere{.radius = 1}, {0, 0, 0}),
                                 test::placed("rod", Cylinder{.radius = 0.25, .height = 4}, {1.5, 1.5, 0})};
   const CsgTree tree = parse_tree("plate - (ball & plate) | rod", primitives);
-  const AlignedBox extent = model_extent(tree, primitives);
+  const Model model{.primitives = primitives, .tree = tree};
+  const AlignedBox extent = model_extent(model);
   KernelJob job;
   job.plan = plan_solid(tree);
   job.levels = levels_of(job.plan);
@@ -39,7 +40,7 @@ TEST(FailingNode, IsNamedAndGetsFacets) {
   job.names = {"plate", "ball", "rod"};
   const BrepOptions options;
   const RunContext run;
-  DoubtfulHost host(job, tree, primitives, extent, options, run);
+  DoubtfulHost host(job, model, extent, options, run);
   host.doubted = job.plan.nodes[job.plan.root].kept.front();
   ASSERT_EQ(to_text(tree_of(job.plan, host.doubted), primitives), "plate - (ball & plate)");
 

@@ -26,7 +26,7 @@ class WriteBrep : public ::testing::Test {
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 
   BrepReport step(const CsgTree& tree, const PrimitiveSet& primitives, const BrepOptions& options = {}) {
-    BrepReport report = write_step(path("x.step"), tree, primitives, options);
+    BrepReport report = write_step(path("x.step"), {.primitives = primitives, .tree = tree}, options);
     read_ = test::read_step(path("x.step"));
     return report;
   }
@@ -213,7 +213,7 @@ TEST_F(WriteBrep, PrimitivesAreComponentsWhenAskedFor) {
   const CsgTree tree = parse_tree("plate - ball", primitives);
   const BrepReport report = step(tree, primitives, {.with_primitives = true});
   // All of the file is checked, the part is told of.
-  const BrepReport alone = write_step(path("alone.step"), tree, primitives);
+  const BrepReport alone = write_step(path("alone.step"), {.primitives = primitives, .tree = tree});
   EXPECT_TRUE(report.is_valid);
   EXPECT_EQ(report.solids, 1U);
   EXPECT_NEAR(report.volume, alone.volume, 1e-6 * alone.volume);
@@ -223,7 +223,8 @@ TEST_F(WriteBrep, PrimitivesAreComponentsWhenAskedFor) {
 
 TEST_F(WriteBrep, BrepFilesHoldTheSameSolid) {
   const PrimitiveSet primitives = plate_ball_rod();
-  const BrepReport report = write_brep(path("x.brep"), parse_tree("plate - ball", primitives), primitives);
+  const BrepReport report =
+      write_brep(path("x.brep"), {.primitives = primitives, .tree = parse_tree("plate - ball", primitives)});
   const test::ReadBack read = test::read_brep(path("x.brep"));
   EXPECT_TRUE(read.is_valid);
   EXPECT_NEAR(read.volume, 16 - k_pi * (1 - 1.0 / 12), 1e-6);
@@ -238,8 +239,8 @@ std::string data_of(const std::filesystem::path& file) {
 
 TEST_F(WriteBrep, ThreadsMakeNoDifference) {
   const Model model = test::paper_model("m0");
-  write_step(path("one.step"), *model.tree, model.primitives, {.name = "m0"}, {.threads = 1});
-  write_step(path("many.step"), *model.tree, model.primitives, {.name = "m0"}, {.threads = 4});
+  write_step(path("one.step"), model, {.name = "m0"}, {.threads = 1});
+  write_step(path("many.step"), model, {.name = "m0"}, {.threads = 4});
   EXPECT_EQ(data_of(path("one.step")), data_of(path("many.step")));
 }
 
@@ -247,8 +248,8 @@ TEST_F(WriteBrep, EmptySolidsAreRefusedAndOlderFilesStay) {
   const PrimitiveSet primitives = plate_ball_rod();
   std::ofstream(path("x.step")) << "older";
   const CsgTree nothing = parse_tree("ball & rod", primitives);
-  EXPECT_THROW(write_step(path("x.step"), nothing, primitives), Error);
-  EXPECT_THROW(write_step(path("x.step"), CsgTree::empty(), primitives), Error);
+  EXPECT_THROW(write_step(path("x.step"), {.primitives = primitives, .tree = nothing}), Error);
+  EXPECT_THROW(write_step(path("x.step"), {.primitives = primitives, .tree = CsgTree::empty()}), Error);
   EXPECT_EQ(test::content_of(path("x.step")), "older");
 }
 
@@ -258,7 +259,7 @@ TEST_F(WriteBrep, OptionsOutOfRangeAreNamed) {
                                        std::pair{BrepOptions{.volume_tolerance = 0}, "volume_tolerance"},
                                        std::pair{BrepOptions{.volume_tolerance = std::nan("")}, "volume_tolerance"}}) {
     try {
-      write_step(path("x.step"), CsgTree::leaf(0), primitives, options);
+      write_step(path("x.step"), {.primitives = primitives, .tree = CsgTree::leaf(0)}, options);
       ADD_FAILURE() << field;
     } catch (const Error& error) {
       EXPECT_EQ(error.parts().where, field);
@@ -273,7 +274,7 @@ TEST_F(WriteBrep, StopsWhenAsked) {
                          EXPECT_EQ(progress.stage, "solid");
                          if (progress.done > 5) stop.request_stop();
                        }};
-  EXPECT_THROW(write_step(path("x.step"), *model.tree, model.primitives, {}, run), Cancelled);
+  EXPECT_THROW(write_step(path("x.step"), model, {}, run), Cancelled);
   EXPECT_FALSE(std::filesystem::exists(path("x.step")));
 }
 

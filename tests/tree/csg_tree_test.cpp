@@ -120,7 +120,7 @@ TEST(CsgTree, CopesWithDeepTrees) {
   EXPECT_TRUE(test::is_well_formed(changed));
   Points point(1);
   EXPECT_EQ(implicit_value(deep, primitives, point).size(), 1U);
-  EXPECT_FALSE(to_graphviz(deep, primitives).empty());
+  EXPECT_FALSE(to_graphviz({.primitives = primitives, .tree = deep}).empty());
 }
 
 TEST(StructuralHash, ForgetsTheOrderOfOperands) {
@@ -219,7 +219,7 @@ RC_GTEST_PROP(StructuralHash, OfASubtreeIsThatOfItsCopy, (const CsgTree& tree)) 
 TEST(Graphviz, DrawsABoxANodeAndAnEdgeAChild) {
   PrimitiveSet primitives = test::sphere_row(2);
   primitives[1].id = "a \"b\"";
-  const std::string text = to_graphviz(subtract(a(), complement(b())), primitives);
+  const std::string text = to_graphviz({.primitives = primitives, .tree = subtract(a(), complement(b()))});
   EXPECT_NE(text.find("n3 [label=\"difference\"]"), std::string::npos) << text;
   EXPECT_NE(text.find("n1 [label=\"a \\\"b\\\"\""), std::string::npos) << text;
   EXPECT_LT(text.find("n3 -> n0"), text.find("n3 -> n2")) << "the first child comes first";

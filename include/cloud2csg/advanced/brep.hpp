@@ -96,12 +96,12 @@ void require_brep(const std::filesystem::path& file);
 /// The same for any number of threads.
 /// @throws Error when OpenCASCADE is missing, for options out of range, when the file cannot be written or the solid is
 /// empty; Cancelled
-BrepReport write_step(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
-                      const BrepOptions& options = {}, const RunContext& run = {});
+BrepReport write_step(const std::filesystem::path& file, const Model& model, const BrepOptions& options = {},
+                      const RunContext& run = {});
 
 /// The same as a BREP file, OpenCASCADE's own: no names, no units.
-BrepReport write_brep(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
-                      const BrepOptions& options = {}, const RunContext& run = {});
+BrepReport write_brep(const std::filesystem::path& file, const Model& model, const BrepOptions& options = {},
+                      const RunContext& run = {});
 
 struct BrepMesh {
   TriangleMesh mesh;
@@ -111,7 +111,6 @@ struct BrepMesh {
 /// The surface of the same solid as triangles: planes are flat and edges true, and as few triangles as the deviation
 /// allows. Closed, where the solid is valid. The same for any number of threads.
 /// @throws as write_step(), but for files
-[[nodiscard]] BrepMesh mesh_brep(const CsgTree& tree, const PrimitiveSet& primitives, const BrepOptions& options = {},
-                                 const RunContext& run = {});
+[[nodiscard]] BrepMesh mesh_brep(const Model& model, const BrepOptions& options = {}, const RunContext& run = {});
 
 }  // namespace cloud2csg

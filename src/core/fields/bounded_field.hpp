@@ -4,14 +4,9 @@
 
 namespace cloud2csg {
 
-/// A tree and its primitives, every value of which means something everywhere.
-struct BoundedField {
-  CsgTree tree;
-  PrimitiveSet primitives;  ///< the caller's, and boxes added for cutting
-};
-
-/// Every leaf that is an expression becomes its intersection with the box of its bounds, beyond which its formula means
-/// nothing. O(size x expressions)
-[[nodiscard]] BoundedField bounded_field(const CsgTree& tree, const PrimitiveSet& primitives);
+/// The same solid, every value of which means something everywhere: each leaf that is an expression becomes its
+/// intersection with the box of its bounds, beyond which its formula means nothing. The boxes follow the primitives of
+/// `solid`. O(size x expressions)
+[[nodiscard]] Model bounded_field(const Model& solid);
 
 }  // namespace cloud2csg

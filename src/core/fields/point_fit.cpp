@@ -15,14 +15,19 @@ namespace {
 /// tree without all primitives farther than r has a value below r, the whole tree has the same.
 class FitMeasure {
  public:
-  FitMeasure(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud, double noise,
-             const PointFitOptions& options, const RunContext& run)
-      : tree_(tree), restriction_(tree), primitives_(primitives), cloud_(cloud), run_(run), order_(options.order) {
+  FitMeasure(const Model& model, const PointCloud& cloud, double noise, const PointFitOptions& options,
+             const RunContext& run)
+      : tree_(tree_of(model)),
+        restriction_(tree_),
+        primitives_(model.primitives),
+        cloud_(cloud),
+        run_(run),
+        order_(options.order) {
     fit_.signed_distances.resize(cloud.size());
     if (cloud.has_normals()) fit_.angles.resize(cloud.size());
     if (options.with_owners) fit_.owners.assign(cloud.size(), k_no_owner);
     tie_ = options.tie * bounds_of(cloud.positions).diagonal().norm();
-    const std::vector<PrimitiveIndex> used = primitives_of(tree);
+    const std::vector<PrimitiveIndex> used = primitives_of(tree_);
     if (used.size() > k_few_primitives) {
       const double diagonal = bounds_of(cloud.positions).diagonal().norm();
       double radius = std::max(k_first_radius * noise, 1e-9 * diagonal);
@@ -136,9 +141,9 @@ std::vector<PrimitiveIndex> owners_of(std::span<const double> values, const CsgT
   return owners;
 }
 
-PointFit measure_points(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud, double noise,
-                        const PointFitOptions& options, const RunContext& run) {
-  return FitMeasure(tree, primitives, cloud, noise, options, run).measure();
+PointFit measure_points(const Model& model, const PointCloud& cloud, double noise, const PointFitOptions& options,
+                        const RunContext& run) {
+  return FitMeasure(model, cloud, noise, options, run).measure();
 }
 
 double root_mean_square(std::span<const double> values) {

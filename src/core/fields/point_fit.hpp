@@ -29,8 +29,8 @@ struct PointFitOptions {
 /// Measures a tree at all points. `noise` tells how near most are to the surface: a large tree is evaluated by what of
 /// it is that near first, block by block in the order given, which is fast where neighbours are near each other.
 /// @throws Cancelled
-[[nodiscard]] PointFit measure_points(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
-                                      double noise, const PointFitOptions& options = {}, const RunContext& run = {});
+[[nodiscard]] PointFit measure_points(const Model& model, const PointCloud& cloud, double noise,
+                                      const PointFitOptions& options = {}, const RunContext& run = {});
 
 /// The primitive whose value, or its negative, the tree takes at each point: the one whose surface is the solid's
 /// there. Of several whose value is that but for a `tolerance`, as where surfaces coincide, the first. `values` are

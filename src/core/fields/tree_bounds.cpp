@@ -33,11 +33,11 @@ Bounds bounds_of_leaf(const CsgNode& node, const PrimitiveSet& primitives) {
 
 }  // namespace
 
-AlignedBox bounds_of(const CsgTree& tree, const PrimitiveSet& primitives) {
+AlignedBox bounds_of(const Model& model) {
   std::vector<Bounds> stack;
-  for (const CsgNode& node : tree.nodes()) {
+  for (const CsgNode& node : tree_of(model).nodes()) {
     if (node.is_leaf()) {
-      stack.push_back(bounds_of_leaf(node, primitives));
+      stack.push_back(bounds_of_leaf(node, model.primitives));
       continue;
     }
     const Bounds last = stack.back();

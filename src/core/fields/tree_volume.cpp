@@ -21,8 +21,8 @@ constexpr std::size_t k_chunk = 1024;
 
 class Sampler {
  public:
-  Sampler(const CsgTree& tree, const PrimitiveSet& primitives, const RunContext& run)
-      : field_(bounded_field(tree, primitives)), steepness_(lipschitz_bound(tree, primitives)), run_(run) {}
+  Sampler(const Model& model, const RunContext& run)
+      : field_(bounded_field(model)), steepness_(lipschitz_bound(*field_.tree, model.primitives)), run_(run) {}
 
   VolumeEstimate estimate(const AlignedBox& box, int levels) {
     const bool is_known = std::isfinite(steepness_);
@@ -97,7 +97,7 @@ class Sampler {
   }
 
   [[nodiscard]] std::vector<double> values_at(PointsView points) const {
-    return implicit_value(field_.tree, field_.primitives, points);
+    return implicit_value(*field_.tree, field_.primitives, points);
   }
 
   template <typename Work>
@@ -106,7 +106,7 @@ class Sampler {
                    [&](std::size_t chunk) { work(chunk * k_chunk, std::min(k_chunk, count - chunk * k_chunk)); });
   }
 
-  BoundedField field_;
+  Model field_;
   double steepness_;
   const RunContext& run_;
   double whole_ = 0;  ///< volume of the cells that are wholly inside
@@ -114,10 +114,9 @@ class Sampler {
 
 }  // namespace
 
-VolumeEstimate tree_volume(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& box, int levels,
-                           const RunContext& run) {
+VolumeEstimate tree_volume(const Model& model, const AlignedBox& box, int levels, const RunContext& run) {
   if (box.isEmpty() || box.sizes().minCoeff() <= 0) return {};
-  return Sampler(tree, primitives, run).estimate(box, levels);
+  return Sampler(model, run).estimate(box, levels);
 }
 
 }  // namespace cloud2csg

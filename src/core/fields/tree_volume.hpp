@@ -20,7 +20,6 @@ struct VolumeEstimate {
 /// meshes by the same columns, so that what is common to both is exact to the columns; measure_volumes() counts places
 /// by cell of the arrangement, all cells at once.
 /// @throws Cancelled
-[[nodiscard]] VolumeEstimate tree_volume(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& box,
-                                         int levels, const RunContext& run);
+[[nodiscard]] VolumeEstimate tree_volume(const Model& model, const AlignedBox& box, int levels, const RunContext& run);
 
 }  // namespace cloud2csg

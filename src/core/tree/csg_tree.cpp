@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "cloud2csg/error.hpp"
 #include "core/tree/join.hpp"
 
 namespace cloud2csg {
@@ -198,6 +199,14 @@ bool contains(const CsgTree& tree, const std::vector<bool>& inside_primitive) {
     }
   }
   return values.back();
+}
+
+const CsgTree& tree_of(const Model& model, const std::string& file) {
+  if (model.tree) return *model.tree;
+  throw Error({.file = file,
+               .where = "/tree",
+               .expected = "expected a model with a tree, found primitives only",
+               .remedy = "extract a tree first, or add a \"tree\" that combines the primitives"});
 }
 
 }  // namespace cloud2csg

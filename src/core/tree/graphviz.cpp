@@ -24,14 +24,15 @@ std::string label(CsgNode node, const PrimitiveSet& primitives) {
 
 }  // namespace
 
-std::string to_graphviz(const CsgTree& tree, const PrimitiveSet& primitives) {
+std::string to_graphviz(const Model& model) {
   // ordering=out keeps the first child of a difference on the left.
   std::string text = "digraph csg {\n  graph [ordering=out];\n  node [shape=box];\n";
+  const CsgTree& tree = tree_of(model);
   // From the root down, so that the file reads like the picture.
   for (std::size_t i = tree.size(); i-- > 0;) {
     const CsgNode node = tree.nodes()[i];
     const char* style = node.operation() == Operation::primitive ? ", style=rounded" : "";
-    text += fmt::format("  n{} [label=\"{}\"{}];\n", i, label(node, primitives), style);
+    text += fmt::format("  n{} [label=\"{}\"{}];\n", i, label(node, model.primitives), style);
     if (arity(node.operation()) == 2) text += fmt::format("  n{} -> n{};\n", i, tree.first_child(i));
     if (arity(node.operation()) > 0) text += fmt::format("  n{} -> n{};\n", i, tree.second_child(i));
   }

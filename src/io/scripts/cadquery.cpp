@@ -186,13 +186,13 @@ std::string cadquery_functions(const std::string& statements) {
 
 }  // namespace
 
-std::string to_cadquery(const CsgTree& tree, const PrimitiveSet& primitives, const ScriptOptions& options) {
+std::string to_cadquery(const Model& model, const ScriptOptions& options) {
   validate(options);
-  const script::Plan plan = script::plan_script(tree, primitives);
+  const script::Plan plan = script::plan_script(model);
   const script::NumberFormat number(plan.everything.sizes().maxCoeff());
   script::UniqueNames names(cadquery_reserved_names());
   const script::PythonBody body =
-      script::python_body(plan, primitives, options.facet_resolution, names, dialect(names, number));
+      script::python_body(plan, model.primitives, options.facet_resolution, names, dialect(names, number));
   return script::comment(options.comment, "# ") + k_cadquery_head + body.parameters + cadquery_functions(body.solids) +
          "\n\n" + body.solids + "\n" + body.operations + k_cadquery_tail;
 }

@@ -181,11 +181,12 @@ std::string freecad_functions(const std::string& statements) {
 
 }  // namespace
 
-std::string to_freecad_macro(const CsgTree& tree, const PrimitiveSet& primitives, const ScriptOptions& options) {
+std::string to_freecad_macro(const Model& model, const ScriptOptions& options) {
   validate(options);
-  const script::Plan plan = script::plan_script(tree, primitives);
+  const script::Plan plan = script::plan_script(model);
   script::UniqueNames names(freecad_reserved_names());
-  const script::PythonBody body = script::python_body(plan, primitives, options.facet_resolution, names, dialect());
+  const script::PythonBody body =
+      script::python_body(plan, model.primitives, options.facet_resolution, names, dialect());
   return script::comment(options.comment, "# ") + k_freecad_head + freecad_functions(body.solids + body.operations) +
          "\n\n" + body.parameters + body.solids + "\n" + body.operations + k_freecad_tail;
 }

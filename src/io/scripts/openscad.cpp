@@ -123,10 +123,10 @@ class ProgramWriter {
 
 }  // namespace
 
-std::string to_openscad(const CsgTree& tree, const PrimitiveSet& primitives, const OpenScadOptions& options) {
+std::string to_openscad(const Model& model, const OpenScadOptions& options) {
   validate(options);
-  const script::Plan plan = script::plan_script(tree, primitives);
-  const Program program = ProgramWriter(plan, primitives, options).write();
+  const script::Plan plan = script::plan_script(model);
+  const Program program = ProgramWriter(plan, model.primitives, options).write();
   std::string text = script::comment(options.comment, "// ");
   text += fmt::format("$fn = {};  // facets of a full circle\n", options.facets);
   if (!program.parameters.empty()) text += "\n// Lengths are in the model's units, angles in degrees.\n";

@@ -91,9 +91,9 @@ std::string statement(const brep::KernelSolid& solid, const script::NumberFormat
 
 }  // namespace
 
-std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives, const OpenScadOptions& options) {
+std::string to_openscad_csg(const Model& model, const OpenScadOptions& options) {
   validate(options);
-  const script::Plan plan = script::plan_script(tree, primitives);
+  const script::Plan plan = script::plan_script(model);
   const script::NumberFormat number(plan.everything.sizes().maxCoeff());
   const brep::KernelSolid everything{.shape = Box{.size = plan.everything.sizes()},
                                      .pose = {.position = plan.everything.center()}};
@@ -106,7 +106,7 @@ std::string to_openscad_csg(const CsgTree& tree, const PrimitiveSet& primitives,
   };
   const auto statement_of = [&](std::size_t step) {
     const bool is_primitive = plan.steps[step].kind == Kind::primitive;
-    return statement(is_primitive ? solid_of(primitives[plan.steps[step].primitive]) : everything, number,
+    return statement(is_primitive ? solid_of(model.primitives[plan.steps[step].primitive]) : everything, number,
                      options.facets);
   };
   const auto no_loop = [](std::size_t /*step*/) { return std::optional<std::string>(""); };

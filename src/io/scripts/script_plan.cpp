@@ -72,11 +72,12 @@ void bound(std::vector<Step>& steps, bool is_complement) {
 
 }  // namespace
 
-Plan plan_script(const CsgTree& tree, const PrimitiveSet& primitives) {
+Plan plan_script(const Model& model) {
   // No script has a word for an empty or an infinite solid, so constants go as far as the formula allows.
+  const CsgTree& tree = tree_of(model);
   const brep::SolidPlan solid = brep::plan_solid(has_constants(tree) ? simplify(tree) : tree);
-  Plan plan{.steps = steps_of(solid), .everything = model_extent(tree, primitives)};
-  if (solid.is_complement || cut_at(tree, primitives, plan.everything)) bound(plan.steps, solid.is_complement);
+  Plan plan{.steps = steps_of(solid), .everything = model_extent(model)};
+  if (solid.is_complement || cut_at(model, plan.everything)) bound(plan.steps, solid.is_complement);
   return plan;
 }
 

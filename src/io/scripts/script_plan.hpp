@@ -26,7 +26,7 @@ struct Plan {
 
 /// Without complements: what goes on without end is taken from, or cut at, the box of everything. Chains of the same
 /// operation are one step. O(size), no recursion
-[[nodiscard]] Plan plan_script(const CsgTree& tree, const PrimitiveSet& primitives);
+[[nodiscard]] Plan plan_script(const Model& model);
 
 /// Whether there is nothing to write: the solid is empty.
 [[nodiscard]] bool is_empty(const Plan& plan);

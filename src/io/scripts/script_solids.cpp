@@ -43,10 +43,9 @@ brep::Facets facets_of(Primitive primitive, const AlignedBox& everything, int re
                                  .orientation = primitive.pose.orientation.conjugate()},
                         .half_size = 0.5 * everything.sizes()};
   primitive.pose = Pose();
-  const CsgTree leaf = CsgTree::leaf(0);
-  TriangleMesh mesh =
-      mesh_surface(leaf, {primitive}, enclosing_box(box), {.resolution = resolution, .corners_first = false});
-  brep::balance_facets(mesh, leaf, {primitive});
+  const Model solid{.primitives = {primitive}, .tree = CsgTree::leaf(0)};
+  TriangleMesh mesh = mesh_surface(solid, enclosing_box(box), {.resolution = resolution, .corners_first = false});
+  brep::balance_facets(mesh, solid);
   return brep::kernel_facets(mesh, {});
 }
 

@@ -10,9 +10,9 @@ namespace cloud2csg::brep {
 namespace {
 
 /// How far the surface is from points, along its normal there, outward positive; 0 where that is not known.
-std::vector<double> offsets_of_surface(const BoundedField& field, const Points& points) {
-  const std::vector<double> values = implicit_value(field.tree, field.primitives, points);
-  const Points gradients = implicit_gradient(field.tree, field.primitives, points);
+std::vector<double> offsets_of_surface(const Model& field, const Points& points) {
+  const std::vector<double> values = implicit_value(*field.tree, field.primitives, points);
+  const Points gradients = implicit_gradient(*field.tree, field.primitives, points);
   std::vector<double> offsets(points.size(), 0.0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double steepness = gradients[i].norm();
@@ -44,9 +44,9 @@ struct Share {
 
 }  // namespace
 
-void balance_facets(TriangleMesh& mesh, const CsgTree& tree, const PrimitiveSet& primitives) {
+void balance_facets(TriangleMesh& mesh, const Model& model) {
   constexpr int k_rounds = 2;
-  const BoundedField field = bounded_field(tree, primitives);
+  const Model field = bounded_field(model);
   for (int round = 0; round < k_rounds; ++round) {
     const std::vector<double> at_middles = offsets_of_surface(field, middles_of(mesh));
     const std::vector<double> at_vertices = offsets_of_surface(field, mesh.vertices);

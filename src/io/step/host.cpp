@@ -15,48 +15,47 @@
 
 namespace cloud2csg::brep {
 
-ModelHost::ModelHost(const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives,
-                     const AlignedBox& extent, const BrepOptions& options, const RunContext& run,
-                     std::vector<std::string> names)
+ModelHost::ModelHost(const KernelJob& job, const Model& model, const AlignedBox& extent, const BrepOptions& options,
+                     const RunContext& run, std::vector<std::string> names)
     : job_(job),
-      primitives_(primitives),
+      primitives_(model.primitives),
       extent_(extent),
       options_(options),
       run_(run),
       quiet_{.stop = run.stop, .on_progress = {}, .threads = 1},
-      used_(primitives_of(tree)),
+      used_(primitives_of(tree_of(model))),
       names_(std::move(names)) {}
 
 KernelSolid ModelHost::solid_of(PrimitiveIndex primitive) const {
   if (has_exact_surfaces(primitives_[primitive])) return kernel_solid(primitives_[primitive], extent_, job_.frame);
-  return {.shape = facets_of(CsgTree::leaf(primitive))};
+  return {.shape = facets_of({.primitives = primitives_, .tree = CsgTree::leaf(primitive)})};
 }
 
 std::optional<VolumeEstimate> ModelHost::volume_of(std::size_t node) const {
   constexpr int k_coarse = 6;
   constexpr int k_fine = 8;
-  const CsgTree tree = tree_of(job_.plan, node);
-  const AlignedBox box = cloud2csg::bounds_of(tree, primitives_);
+  const Model part{.primitives = primitives_, .tree = tree_of(job_.plan, node)};
+  const AlignedBox box = cloud2csg::bounds_of(part);
   if (box.isEmpty()) return VolumeEstimate();
   if (!is_finite(box)) return {};
   const double cube = std::pow(job_.frame.scale, 3);
   VolumeEstimate estimate;
   for (int levels = k_coarse; levels <= k_fine; ++levels) {
-    estimate = tree_volume(tree, primitives_, box, levels, quiet_);
+    estimate = tree_volume(part, box, levels, quiet_);
     if (estimate.error <= 0.2 * options_.volume_tolerance * estimate.volume) break;
   }
   return VolumeEstimate{.volume = estimate.volume / cube, .error = estimate.error / cube};
 }
 
 Facets ModelHost::facets_of(std::size_t node) const {
-  return facets_of(tree_of(job_.plan, node));
+  return facets_of({.primitives = primitives_, .tree = tree_of(job_.plan, node)});
 }
 
-Facets ModelHost::facets_of(const CsgTree& tree) const {
+Facets ModelHost::facets_of(const Model& part) const {
   // Overlapping triangles, as they come with exact corners, would make an invalid solid.
-  TriangleMesh mesh = mesh_surface(tree, primitives_, extent_,
-                                   {.resolution = options_.facet_resolution, .corners_first = false}, quiet_);
-  balance_facets(mesh, tree, primitives_);
+  TriangleMesh mesh =
+      mesh_surface(part, extent_, {.resolution = options_.facet_resolution, .corners_first = false}, quiet_);
+  balance_facets(mesh, part);
   return kernel_facets(mesh, job_.frame);
 }
 

@@ -9,8 +9,8 @@ namespace cloud2csg::brep {
 class ModelHost : public KernelHost {
  public:
   /// All but `names`, which STEP files have in place of tokens, must outlive this.
-  ModelHost(const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
-            const BrepOptions& options, const RunContext& run, std::vector<std::string> names = {});
+  ModelHost(const KernelJob& job, const Model& model, const AlignedBox& extent, const BrepOptions& options,
+            const RunContext& run, std::vector<std::string> names = {});
 
   [[nodiscard]] KernelSolid solid_of(PrimitiveIndex primitive) const override;
   [[nodiscard]] std::optional<VolumeEstimate> volume_of(std::size_t node) const override;
@@ -20,7 +20,7 @@ class ModelHost : public KernelHost {
   [[nodiscard]] const RunContext& run() const override { return run_; }
 
  private:
-  [[nodiscard]] Facets facets_of(const CsgTree& tree) const;
+  [[nodiscard]] Facets facets_of(const Model& part) const;
 
   const KernelJob& job_;
   const PrimitiveSet& primitives_;

@@ -44,10 +44,9 @@ std::vector<std::string> names_in_file(const std::filesystem::path& file, const 
   return names;
 }
 
-KernelJob job_of(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
-                 const BrepOptions& options, KernelFormat format) {
+KernelJob job_of(const Model& model, const AlignedBox& extent, const BrepOptions& options, KernelFormat format) {
   KernelJob job;
-  job.plan = brep::plan_solid(tree);
+  job.plan = brep::plan_solid(tree_of(model));
   job.format = format;
   job.levels = brep::levels_of(job.plan);
   job.frame = brep::work_frame(extent);
@@ -57,8 +56,9 @@ KernelJob job_of(const CsgTree& tree, const PrimitiveSet& primitives, const Alig
   job.program = "cloud2csg " CLOUD2CSG_VERSION;
   job.part_name = brep::name_token(k_part);
   job.assembly_name = brep::name_token(k_assembly);
-  for (std::size_t i = 0; i < primitives.size(); ++i) job.names.push_back(brep::name_token(k_first_primitive + i));
-  if (options.with_primitives) job.components = primitives_of(tree);
+  for (std::size_t i = 0; i < model.primitives.size(); ++i)
+    job.names.push_back(brep::name_token(k_first_primitive + i));
+  if (options.with_primitives) job.components = primitives_of(*model.tree);
   return job;
 }
 
@@ -71,29 +71,27 @@ std::string shortened(std::string text) {
   return text.substr(0, end) + "...";
 }
 
-BrepReport report_of(const KernelResult& result, const KernelJob& job, const CsgTree& tree,
-                     const PrimitiveSet& primitives) {
+BrepReport report_of(const KernelResult& result, const KernelJob& job, const Model& model) {
   BrepReport report{.volume = result.volume,
                     .is_valid = result.is_valid,
                     .solids = result.solids,
                     .faces = result.faces,
                     .healed_faces = result.healed_faces};
-  for (const PrimitiveIndex index : primitives_of(tree)) {
-    if (!brep::has_exact_surfaces(primitives[index])) report.faceted.push_back(index);
+  for (const PrimitiveIndex index : primitives_of(*model.tree)) {
+    if (!brep::has_exact_surfaces(model.primitives[index])) report.faceted.push_back(index);
   }
   for (const brep::KernelFailure& failure : result.failures) {
     report.failed.push_back(
-        {.node = shortened(to_text(tree_of(job.plan, failure.node), primitives)), .reason = failure.reason});
+        {.node = shortened(to_text(tree_of(job.plan, failure.node), model.primitives)), .reason = failure.reason});
   }
   return report;
 }
 
-VolumeEstimate volume_within(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
-                             const RunContext& run) {
+VolumeEstimate volume_within(const Model& model, const AlignedBox& extent, const RunContext& run) {
   constexpr int k_levels = 8;
-  const AlignedBox own = bounds_of(tree, primitives);
+  const AlignedBox own = bounds_of(model);
   if (own.isEmpty()) return {};
-  return tree_volume(tree, primitives, own.intersection(extent), k_levels, run);
+  return tree_volume(model, own.intersection(extent), k_levels, run);
 }
 
 /// What the kernel made, and what is to be said of it.
@@ -102,9 +100,9 @@ struct Made {
   BrepReport report;
 };
 
-Made make(const std::filesystem::path& file, const KernelJob& job, const CsgTree& tree, const PrimitiveSet& primitives,
-          const AlignedBox& extent, const BrepOptions& options, const RunContext& run) {
-  const brep::ModelHost host(job, tree, primitives, extent, options, run, names_in_file(file, primitives, options));
+Made make(const std::filesystem::path& file, const KernelJob& job, const Model& model, const AlignedBox& extent,
+          const BrepOptions& options, const RunContext& run) {
+  const brep::ModelHost host(job, model, extent, options, run, names_in_file(file, model.primitives, options));
   Made made;
   KernelResult& result = made.result;
   kernel_for(file).run(&job, &host, &result);
@@ -112,23 +110,23 @@ Made make(const std::filesystem::path& file, const KernelJob& job, const CsgTree
   if (!result.error.empty()) {
     throw Error({.file = file.string(), .expected = result.error});
   }
-  made.report = report_of(result, job, tree, primitives);
-  const VolumeEstimate estimate = volume_within(tree, primitives, extent, run);
+  made.report = report_of(result, job, model);
+  const VolumeEstimate estimate = volume_within(model, extent, run);
   made.report.tree_volume = estimate.volume;
   made.report.tree_volume_error = estimate.error;
-  made.report.cut_at = cut_at(tree, primitives, extent);
+  made.report.cut_at = cut_at(model, extent);
   return made;
 }
 
-BrepReport write(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
-                 const BrepOptions& options, KernelFormat format, const RunContext& run) {
+BrepReport write(const std::filesystem::path& file, const Model& model, const BrepOptions& options, KernelFormat format,
+                 const RunContext& run) {
   validate(options);
   require_brep(file);
-  const AlignedBox extent = model_extent(tree, primitives);
-  KernelJob job = job_of(tree, primitives, extent, options, format);
+  const AlignedBox extent = model_extent(model);
+  KernelJob job = job_of(model, extent, options, format);
   const ScratchFile scratch;
   job.file = scratch.path();
-  Made made = make(file, job, tree, primitives, extent, options, run);
+  Made made = make(file, job, model, extent, options, run);
   write_text_file(file, read_text_file(scratch.path()));
   return std::move(made.report);
 }
@@ -165,24 +163,23 @@ void require_brep(const std::filesystem::path& file) {
   (void)kernel_for(file);
 }
 
-BrepReport write_step(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
-                      const BrepOptions& options, const RunContext& run) {
-  return write(file, tree, primitives, options, KernelFormat::step, run);
+BrepReport write_step(const std::filesystem::path& file, const Model& model, const BrepOptions& options,
+                      const RunContext& run) {
+  return write(file, model, options, KernelFormat::step, run);
 }
 
-BrepReport write_brep(const std::filesystem::path& file, const CsgTree& tree, const PrimitiveSet& primitives,
-                      const BrepOptions& options, const RunContext& run) {
-  return write(file, tree, primitives, options, KernelFormat::brep, run);
+BrepReport write_brep(const std::filesystem::path& file, const Model& model, const BrepOptions& options,
+                      const RunContext& run) {
+  return write(file, model, options, KernelFormat::brep, run);
 }
 
-BrepMesh mesh_brep(const CsgTree& tree, const PrimitiveSet& primitives, const BrepOptions& options,
-                   const RunContext& run) {
+BrepMesh mesh_brep(const Model& model, const BrepOptions& options, const RunContext& run) {
   validate(options);
   require_brep({});
-  const AlignedBox extent = model_extent(tree, primitives);
-  KernelJob job = job_of(tree, primitives, extent, options, KernelFormat::mesh);
+  const AlignedBox extent = model_extent(model);
+  KernelJob job = job_of(model, extent, options, KernelFormat::mesh);
   job.mesh_deviation = options.mesh_deviation * job.size;
-  Made made = make({}, job, tree, primitives, extent, options, run);
+  Made made = make({}, job, model, extent, options, run);
   TriangleMesh mesh{.vertices = {}, .triangles = std::move(made.result.mesh.triangles)};
   for (std::size_t i = 0; i < made.result.mesh.vertices.size(); ++i) {
     mesh.vertices.push_back(job.frame.scale * made.result.mesh.vertices[i] + job.frame.offset);

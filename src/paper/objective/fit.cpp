@@ -26,11 +26,10 @@ class Explanation {
 
 }  // namespace
 
-std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const PrimitiveSet& primitives,
-                                              const PointCloud& cloud, const SegmentationTolerances& tolerances,
-                                              const RunContext& run) {
+std::vector<std::uint32_t> unexplained_points(const Model& model, const PointCloud& cloud,
+                                              const SegmentationTolerances& tolerances, const RunContext& run) {
   const std::vector<std::uint32_t> order = spatial_order(cloud.positions, bounds_of(cloud.positions), run);
-  const PointFit points = measure_points(tree, primitives, cloud, tolerances.distance, {.order = order}, run);
+  const PointFit points = measure_points(model, cloud, tolerances.distance, {.order = order}, run);
   const Explanation explanation(tolerances);
   std::vector<std::uint32_t> unexplained;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
@@ -39,12 +38,12 @@ std::vector<std::uint32_t> unexplained_points(const CsgTree& tree, const Primiti
   return unexplained;
 }
 
-FitStatistics measure_fit(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud, double noise,
-                          const ExtractOptions& options, const RunContext& run, std::span<const std::uint32_t> order) {
+FitStatistics measure_fit(const Model& model, const PointCloud& cloud, double noise, const ExtractOptions& options,
+                          const RunContext& run, std::span<const std::uint32_t> order) {
   const Objective objective = resolve(options.objective, cloud.size(), noise);
-  PointFit points = measure_points(tree, primitives, cloud, noise, {.order = order}, run);
+  PointFit points = measure_points(model, cloud, noise, {.order = order}, run);
   FitStatistics fit;
-  fit.objective = -objective.alpha * static_cast<double>(tree.size());
+  fit.objective = -objective.alpha * static_cast<double>(tree_of(model).size());
   for (double& distance : points.signed_distances) distance = std::abs(distance);
   const Explanation explanation(segmentation_tolerances(options.segmentation, noise));
   for (std::size_t i = 0; i < cloud.size(); ++i) {

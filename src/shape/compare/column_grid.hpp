@@ -69,7 +69,7 @@ struct ColumnCuts {
 /// the depth. Precondition: the solid lies in the grid's box.
 class ModelColumns {
  public:
-  ModelColumns(const CsgTree& tree, const PrimitiveSet& primitives, const ColumnGrid& grid);
+  ModelColumns(const Model& model, const ColumnGrid& grid);
   [[nodiscard]] ColumnCuts cuts(std::size_t first, std::size_t count) const;
 
  private:

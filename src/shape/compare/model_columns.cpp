@@ -43,11 +43,11 @@ double depth_of_zero(const Piece& piece) {
 
 }  // namespace
 
-ModelColumns::ModelColumns(const CsgTree& tree, const PrimitiveSet& primitives, const ColumnGrid& grid)
-    : tree_(tree),
-      primitives_(primitives),
+ModelColumns::ModelColumns(const Model& model, const ColumnGrid& grid)
+    : tree_(tree_of(model)),
+      primitives_(model.primitives),
       grid_(grid),
-      steepest_(lipschitz_estimate(tree, primitives)),
+      steepest_(lipschitz_estimate(tree_, primitives_)),
       smallest_gap_(k_smallest_gap_spacings * grid.spacing()) {}
 
 std::vector<double> ModelColumns::values_at(const Points& places) const {

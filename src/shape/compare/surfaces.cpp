@@ -53,7 +53,7 @@ std::vector<double> distances_to_feet(const Model& model, const Points& points) 
   const std::vector<double> values = implicit_value(*model.tree, model.primitives, points);
   const Points gradients = implicit_gradient(*model.tree, model.primitives, points);
   constexpr double k_relative_epsilon = 1e-7;
-  const double epsilon = k_relative_epsilon * bounds_of(*model.tree, model.primitives).diagonal().norm();
+  const double epsilon = k_relative_epsilon * bounds_of(model).diagonal().norm();
   Points outer(points.size());
   Points inner(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -83,8 +83,7 @@ std::vector<double> distances_to_model(const Model& model, const Points& points,
   // Where the field may fall faster, a nearer part of the surface may be hidden: look at the mesh for all points.
   const bool is_exact = lipschitz_bound(*model.tree, model.primitives) == 1;
   if (is_exact && std::ranges::find(distances, k_no_foot) == distances.end()) return distances;
-  const TriangleMesh surface =
-      mesh_surface(*model.tree, model.primitives, bounds_of(*model.tree, model.primitives), {}, run);
+  const TriangleMesh surface = mesh_surface(model, bounds_of(model), {}, run);
   const RayCaster caster(surface);
   return for_each_point(points.size(), run, [&](std::size_t i) {
     const double foot = distances[i];
@@ -99,9 +98,7 @@ std::vector<double> distances_to_model(const Model& model, const Points& points,
 Points surface_points(const Shape3d& shape, const CompareOptions& options, const RunContext& run) {
   if (shape.cloud) return shape.cloud->positions;
   if (shape.mesh) return sample_mesh(*shape.mesh, options);
-  return sample_surface(*shape.model->tree, shape.model->primitives,
-                        {.count = options.surface_samples, .seed = options.seed}, run)
-      .positions;
+  return sample_surface(*shape.model, {.count = options.surface_samples, .seed = options.seed}, run).positions;
 }
 
 std::vector<double> distances_to(const Shape3d& shape, const Points& points, const RunContext& run) {

@@ -19,7 +19,7 @@ constexpr std::size_t k_chunk_columns = 1024;
 AlignedBox volume_bounds(const Shape3d& shape) {
   if (shape.mesh) return bounds_of(shape.mesh->vertices.view());
   if (!shape.model) return {};
-  const AlignedBox box = bounds_of(*shape.model->tree, shape.model->primitives);
+  const AlignedBox box = bounds_of(*shape.model);
   if (!box.isEmpty() && !is_finite(box)) {
     throw Error({.where = "tree",
                  .expected = "the solid is unbounded: it has no volume",
@@ -32,7 +32,7 @@ AlignedBox volume_bounds(const Shape3d& shape) {
 class SolidColumns {
  public:
   SolidColumns(const Shape3d& shape, const ColumnGrid& grid, const RunContext& run) {
-    if (shape.model) model_.emplace(*shape.model->tree, shape.model->primitives, grid);
+    if (shape.model) model_.emplace(*shape.model, grid);
     if (shape.mesh) mesh_.emplace(*shape.mesh, grid, run);
     // A column may graze an edge and count one triangle too many or too few; a hole leaves many open.
     constexpr double k_tolerated_share = 1e-3;

@@ -8,9 +8,10 @@
 
 namespace cloud2csg {
 
-BoundedSolid bound_solid(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& bounds) {
-  const AlignedBox own_bounds = bounds_of(tree, primitives);
-  BoundedSolid solid{bounded_field(tree, primitives), own_bounds.intersection(bounds)};
+BoundedSolid bound_solid(const Model& model, const AlignedBox& bounds) {
+  const AlignedBox own_bounds = bounds_of(model);
+  Model field = bounded_field(model);
+  BoundedSolid solid{std::move(*field.tree), std::move(field.primitives), own_bounds.intersection(bounds)};
   if (own_bounds.isEmpty() || solid.bounds.isEmpty()) return {};
   if (!is_finite(solid.bounds)) {
     throw Error({.where = "bounds",

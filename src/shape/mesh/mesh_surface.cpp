@@ -5,11 +5,11 @@
 #include "shape/mesh/untangle.hpp"
 
 namespace cloud2csg {
-TriangleMesh mesh_surface(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& bounds,
-                          const MeshingOptions& options, const RunContext& run) {
+TriangleMesh mesh_surface(const Model& model, const AlignedBox& bounds, const MeshingOptions& options,
+                          const RunContext& run) {
   constexpr std::size_t k_steps = 4;
   validate(options);
-  const BoundedSolid solid = bound_solid(tree, primitives, bounds);
+  const BoundedSolid solid = bound_solid(model, bounds);
   if (solid.bounds.isEmpty()) return {};
   run.report("mesh", 0, k_steps);
   const SparseField field(solid, options.resolution, run);

@@ -32,15 +32,15 @@ Points points_on_faces(const AlignedBox& box) {
 
 }  // namespace
 
-AlignedBox model_extent(const CsgTree& tree, const PrimitiveSet& primitives) {
+AlignedBox model_extent(const Model& model) {
   constexpr double k_room = 0.25;  // on each side, as a part of the largest size
   AlignedBox extent;
-  for (const PrimitiveIndex index : primitives_of(tree)) {
-    const AlignedBox box = bounds(primitives[index]);
+  for (const PrimitiveIndex index : primitives_of(tree_of(model))) {
+    const AlignedBox box = bounds(model.primitives[index]);
     if (is_finite(box)) {
       extent.extend(box);
     } else {
-      extent.extend(primitives[index].pose.position);  // a half-space: at least show where its face is
+      extent.extend(model.primitives[index].pose.position);  // a half-space: at least show where its face is
     }
   }
   if (extent.isEmpty()) extent = AlignedBox(Eigen::Vector3d::Zero().eval());
@@ -48,10 +48,10 @@ AlignedBox model_extent(const CsgTree& tree, const PrimitiveSet& primitives) {
   return grown(extent, largest > 0 ? k_room * largest : 1.0);
 }
 
-std::optional<AlignedBox> cut_at(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent) {
-  if (extent.contains(bounds_of(tree, primitives))) return {};
-  const BoundedField field = bounded_field(tree, primitives);
-  const std::vector<double> values = implicit_value(field.tree, field.primitives, points_on_faces(extent));
+std::optional<AlignedBox> cut_at(const Model& model, const AlignedBox& extent) {
+  if (extent.contains(bounds_of(model))) return {};
+  const Model field = bounded_field(model);
+  const std::vector<double> values = implicit_value(*field.tree, field.primitives, points_on_faces(extent));
   const bool goes_on = std::any_of(values.begin(), values.end(), [](double value) { return value < 0; });
   return goes_on ? std::optional(extent) : std::nullopt;
 }

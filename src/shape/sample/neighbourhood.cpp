@@ -43,16 +43,15 @@ std::vector<std::vector<PrimitiveIndex>> meeting_bounds(const PrimitiveSet& prim
   return meeting;
 }
 
-std::vector<Neighbourhood> neighbourhoods(const CsgTree& tree, const PrimitiveSet& primitives,
-                                          std::span<const PrimitiveIndex> used, double margin) {
-  std::vector<std::vector<PrimitiveIndex>> meeting = meeting_bounds(primitives, used, margin);
-  const TreeRestriction restriction(tree);
+std::vector<Neighbourhood> neighbourhoods(const Model& model, std::span<const PrimitiveIndex> used, double margin) {
+  std::vector<std::vector<PrimitiveIndex>> meeting = meeting_bounds(model.primitives, used, margin);
+  const TreeRestriction restriction(tree_of(model));
   std::vector<Neighbourhood> result;
   result.reserve(used.size());
   for (const PrimitiveIndex p : used) {
     Neighbourhood& here = result.emplace_back();
     here.members = std::move(meeting[p]);
-    for (const PrimitiveIndex member : here.members) here.primitives.push_back(primitives[member]);
+    for (const PrimitiveIndex member : here.members) here.primitives.push_back(model.primitives[member]);
     here.tree = localised(restriction.restrict_to(here.members), here.members);
   }
   return result;

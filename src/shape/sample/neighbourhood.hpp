@@ -23,7 +23,7 @@ struct Neighbourhood {
 
 /// The neighbourhoods of the primitives of `used`, in their order. Where a point is within `margin` of the bounds of
 /// the primitive, the tree of its neighbourhood contains it if and only if the whole tree does.
-[[nodiscard]] std::vector<Neighbourhood> neighbourhoods(const CsgTree& tree, const PrimitiveSet& primitives,
-                                                        std::span<const PrimitiveIndex> used, double margin);
+[[nodiscard]] std::vector<Neighbourhood> neighbourhoods(const Model& model, std::span<const PrimitiveIndex> used,
+                                                        double margin);
 
 }  // namespace cloud2csg

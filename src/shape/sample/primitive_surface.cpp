@@ -33,7 +33,8 @@ PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& regi
   const AlignedBox limits = grown(bounds(primitive), room).intersection(grown(region, room));
   if (limits.isEmpty()) return {};
   const int resolution = mesh_resolution(primitive, limits);
-  const TriangleMesh mesh = mesh_surface(CsgTree::leaf(0), {primitive}, limits, {.resolution = resolution}, run);
+  const TriangleMesh mesh =
+      mesh_surface({.primitives = {primitive}, .tree = CsgTree::leaf(0)}, limits, {.resolution = resolution}, run);
   const auto sampler = std::make_shared<const TriangleSampler>(mesh.vertices, mesh.triangles);
   const auto draw = [sampler](RandomStream& random) {
     const TriangleSampler::Draw drawn = sampler->draw(random);

@@ -85,10 +85,9 @@ std::optional<OptionConflict> conflict_in(const SampleOptions& options) {
   return OptionConflict{"count", "expected at least one point"};
 }
 
-PointCloud sample_surface(const CsgTree& tree, const PrimitiveSet& primitives, const SampleOptions& options,
-                          const RunContext& run) {
+PointCloud sample_surface(const Model& model, const SampleOptions& options, const RunContext& run) {
   validate(options);
-  const SurfaceSampler sampler(tree, primitives, options.seed, run);
+  const SurfaceSampler sampler(model, options.seed, run);
   PointCloud cloud = draw_points(sampler, options, run);
   if (options.noise > 0.0 || options.normal_noise_deg > 0.0) add_noise(cloud, options);
   return cloud;

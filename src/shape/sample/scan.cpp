@@ -163,15 +163,14 @@ PointCloud scan_mesh(const TriangleMesh& mesh, const ScanOptions& options, const
   return scan_surface(mesh, {}, options, run);
 }
 
-PointCloud scan_model(const CsgTree& tree, const PrimitiveSet& primitives, const ScanOptions& options,
-                      const RunContext& run) {
+PointCloud scan_model(const Model& model, const ScanOptions& options, const RunContext& run) {
   constexpr double k_reach_cells = 3.0;
   validate(options);
-  const AlignedBox bounds = finite_bounds(tree, primitives);
-  const TriangleMesh mesh = mesh_surface(tree, primitives, bounds, options.meshing, run);
+  const AlignedBox bounds = finite_bounds(model);
+  const TriangleMesh mesh = mesh_surface(model, bounds, options.meshing, run);
   if (mesh.triangles.empty()) refuse_without_surface();
   const double reach = k_reach_cells * bounds.sizes().maxCoeff() / options.meshing.resolution;
-  return scan_surface(mesh, settle_on_solid(tree, primitives, reach), options, run);
+  return scan_surface(mesh, settle_on_solid(model, reach), options, run);
 }
 
 }  // namespace cloud2csg

@@ -97,8 +97,8 @@ std::optional<RayHit> search_surface(const Solid& solid, const Ray& ray, double 
 
 }  // namespace
 
-SettleHits settle_on_solid(const CsgTree& tree, const PrimitiveSet& primitives, double reach) {
-  const Solid solid{.tree = &tree, .primitives = &primitives, .reach = reach};
+SettleHits settle_on_solid(const Model& model, double reach) {
+  const Solid solid{.tree = &tree_of(model), .primitives = &model.primitives, .reach = reach};
   return [solid](std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) {
     for (const std::size_t i : step_to_surface(solid, rays, hits)) {
       hits[i] = search_surface(solid, rays[i], hits[i]->range);

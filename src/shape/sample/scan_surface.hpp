@@ -16,6 +16,6 @@ using SettleHits = std::function<void(std::span<const Ray> rays, std::span<std::
 
 /// For a mesh that is no further than `reach` from the solid, and whose middle and diagonal say how precise to be. The
 /// solid must outlive the function.
-[[nodiscard]] SettleHits settle_on_solid(const CsgTree& tree, const PrimitiveSet& primitives, double reach);
+[[nodiscard]] SettleHits settle_on_solid(const Model& model, double reach);
 
 }  // namespace cloud2csg

@@ -48,8 +48,8 @@ void refuse_without_surface() {
   throw Error({.where = "tree", .expected = "the solid is empty: it has no surface"});
 }
 
-AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives) {
-  const AlignedBox region = bounds_of(tree, primitives);
+AlignedBox finite_bounds(const Model& model) {
+  const AlignedBox region = bounds_of(model);
   if (region.isEmpty()) refuse_without_surface();
   if (!is_finite(region)) {
     throw Error({.where = "tree",
@@ -59,18 +59,17 @@ AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives) {
   return region;
 }
 
-SurfaceSampler::SurfaceSampler(const CsgTree& tree, const PrimitiveSet& primitives, std::uint64_t seed,
-                               const RunContext& run)
-    : primitives_(primitives), used_(primitives_of(tree)), seed_(seed) {
-  const AlignedBox region = finite_bounds(tree, primitives);
+SurfaceSampler::SurfaceSampler(const Model& model, std::uint64_t seed, const RunContext& run)
+    : primitives_(model.primitives), used_(primitives_of(tree_of(model))), seed_(seed) {
+  const AlignedBox region = finite_bounds(model);
   epsilon_ = k_relative_epsilon * region.diagonal().norm();
   for (const PrimitiveIndex p : used_) {
-    surfaces_.push_back(make_surface(primitives[p], region, run));
+    surfaces_.push_back(make_surface(primitives_[p], region, run));
     area_ += surfaces_.back().area;
     cumulative_area_.push_back(area_);
   }
   if (!(area_ > 0.0)) refuse_without_surface();
-  neighbourhoods_ = neighbourhoods(tree, primitives, used_, k_steepest * epsilon_);
+  neighbourhoods_ = neighbourhoods(model, used_, k_steepest * epsilon_);
 }
 
 std::vector<PointCloud> SurfaceSampler::batches(std::size_t first, std::size_t count, const RunContext& run) const {

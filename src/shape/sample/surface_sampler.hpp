@@ -14,7 +14,7 @@ namespace cloud2csg {
 [[noreturn]] void refuse_without_surface();
 
 /// @throws Error when the solid is empty or has no bounds.
-[[nodiscard]] AlignedBox finite_bounds(const CsgTree& tree, const PrimitiveSet& primitives);
+[[nodiscard]] AlignedBox finite_bounds(const Model& model);
 
 /// Draws candidates from the primitives' own surfaces and keeps those on the surface of the whole solid.
 class SurfaceSampler {
@@ -22,7 +22,7 @@ class SurfaceSampler {
   static constexpr std::size_t k_batch_candidates = 4096;
 
   /// @throws Error when the solid is empty or unbounded; Cancelled. The primitives must outlive the sampler.
-  SurfaceSampler(const CsgTree& tree, const PrimitiveSet& primitives, std::uint64_t seed, const RunContext& run);
+  SurfaceSampler(const Model& model, std::uint64_t seed, const RunContext& run);
 
   /// Of all primitives' own surfaces, hidden or not.
   [[nodiscard]] double area() const { return area_; }

@@ -101,9 +101,7 @@ Image draw_picture(const Scene& scene, const PictureOptions& options, const RunC
   const bool has_cloud = scene.cloud && scene.cloud->size() > 0;
   TriangleMesh mesh;
   if (scene.model.tree) {
-    const CsgTree& tree = *scene.model.tree;
-    mesh = mesh_surface(tree, scene.model.primitives, model_extent(tree, scene.model.primitives),
-                        {.resolution = options.resolution}, run);
+    mesh = mesh_surface(scene.model, model_extent(scene.model), {.resolution = options.resolution}, run);
   }
   AlignedBox box;
   if (!mesh.triangles.empty()) box.extend(bounds_of(mesh.vertices));

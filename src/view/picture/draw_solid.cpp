@@ -50,7 +50,7 @@ void find_owners(std::vector<Hit>& hits, const Model& model, const View& view, c
   }
   if (places.positions.empty()) return;
   const double near = 2 * view.step;
-  const PointFit fit = measure_points(*model.tree, model.primitives, places, near, {.with_owners = true}, run);
+  const PointFit fit = measure_points(model, places, near, {.with_owners = true}, run);
   std::vector<std::vector<std::size_t>> of_primitive(model.primitives.size());
   for (std::size_t k = 0; k < fit.owners.size(); ++k) {
     // Where a solid without bounds was cut there is no primitive.

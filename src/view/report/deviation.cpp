@@ -76,7 +76,7 @@ Deviation measure_deviation(const Model& model, const PointCloud& cloud, const R
   const AlignedBox box = bounds_of(cloud.positions);
   deviation.order = spatial_order(cloud.positions, box, run);
   constexpr double k_near = 0.003;  // of the diagonal: farther than most points of most scans
-  deviation.fit = measure_points(*model.tree, model.primitives, cloud, k_near * box.diagonal().norm(),
+  deviation.fit = measure_points(model, cloud, k_near * box.diagonal().norm(),
                                  {.order = deviation.order, .with_owners = true}, run);
   const std::vector<double>& distances = deviation.fit.signed_distances;
   deviation.summary = summarise_deviation(distances);

@@ -106,7 +106,7 @@ std::string gather_payload(const Report& report, const ReportOptions& options, c
   Payload payload;
   Json json{{"program", "cloud2csg " CLOUD2CSG_VERSION}, {"title", report.title}, {"source", report.source}};
   json["primitives"] = Json::parse(to_json(Model{.primitives = model.primitives}))["primitives"];
-  const AlignedBox extent = model_extent(*model.tree, model.primitives);
+  const AlignedBox extent = model_extent(model);
   json["solid"] = solid_sections(model, extent, options, run, payload);
 
   loud.report("report", 1, k_steps);

@@ -79,8 +79,7 @@ PatchedMesh simplified(const PatchedMesh& fine, std::size_t most_triangles) {
 }
 
 /// Whose surface each triangle is. Where the solid was cut there is no surface: the tree's value is far from zero.
-std::vector<PrimitiveIndex> triangle_owners(const TriangleMesh& mesh, const CsgTree& tree,
-                                            const PrimitiveSet& primitives, const RunContext& run) {
+std::vector<PrimitiveIndex> triangle_owners(const TriangleMesh& mesh, const Model& model, const RunContext& run) {
   constexpr double k_reach = 0.004;  // of the diagonal: more than the mesh is off
   constexpr double k_tie = 1e-6;
   const double diagonal = bounds_of(mesh.vertices).diagonal().norm();
@@ -89,17 +88,16 @@ std::vector<PrimitiveIndex> triangle_owners(const TriangleMesh& mesh, const CsgT
     middles.positions.push_back((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3);
   }
   const std::vector<std::uint32_t> order = spatial_order(middles.positions, bounds_of(middles.positions), run);
-  PointFit fit = measure_points(tree, primitives, middles, k_reach * diagonal,
-                                {.order = order, .with_owners = true, .tie = k_tie}, run);
+  PointFit fit =
+      measure_points(model, middles, k_reach * diagonal, {.order = order, .with_owners = true, .tie = k_tie}, run);
   for (std::size_t i = 0; i < fit.owners.size(); ++i) {
     if (std::abs(fit.signed_distances[i]) > k_reach * diagonal) fit.owners[i] = k_no_owner;
   }
   return std::move(fit.owners);
 }
 
-PatchedMesh patched(const TriangleMesh& mesh, const CsgTree& tree, const PrimitiveSet& primitives,
-                    const RunContext& run) {
-  const std::vector<PrimitiveIndex> owners = triangle_owners(mesh, tree, primitives, run);
+PatchedMesh patched(const TriangleMesh& mesh, const Model& model, const RunContext& run) {
+  const std::vector<PrimitiveIndex> owners = triangle_owners(mesh, model, run);
   PatchedMesh patches;
   std::map<std::pair<std::uint32_t, PrimitiveIndex>, std::uint32_t> known;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -134,12 +132,12 @@ std::vector<std::uint16_t> quantised(PointsView points, const AlignedBox& box) {
   return steps;
 }
 
-LightMesh light_mesh(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent, int resolution,
-                     std::size_t most_triangles, const RunContext& run) {
-  const TriangleMesh fine = mesh_surface(tree, primitives, extent, {.resolution = resolution}, run);
+LightMesh light_mesh(const Model& model, const AlignedBox& extent, int resolution, std::size_t most_triangles,
+                     const RunContext& run) {
+  const TriangleMesh fine = mesh_surface(model, extent, {.resolution = resolution}, run);
   LightMesh light;
   if (fine.triangles.empty()) return light;
-  const PatchedMesh patches = simplified(patched(fine, tree, primitives, run), most_triangles);
+  const PatchedMesh patches = simplified(patched(fine, model, run), most_triangles);
   light.bounds = bounds_of(patches.mesh.vertices);
   light.positions = quantised(patches.mesh.vertices, light.bounds);
   for (const auto& triangle : patches.mesh.triangles) {

@@ -20,8 +20,8 @@ struct LightMesh {
 
 /// The surface of a solid, simplified where it is flat: no farther than about a thousandth of its size from the fine
 /// one, or as far as it takes to have no more than `most_triangles`. @throws as mesh_surface()
-[[nodiscard]] LightMesh light_mesh(const CsgTree& tree, const PrimitiveSet& primitives, const AlignedBox& extent,
-                                   int resolution, std::size_t most_triangles, const RunContext& run);
+[[nodiscard]] LightMesh light_mesh(const Model& model, const AlignedBox& extent, int resolution,
+                                   std::size_t most_triangles, const RunContext& run);
 
 /// Steps of 1/65535 of the box, three a point.
 [[nodiscard]] std::vector<std::uint16_t> quantised(PointsView points, const AlignedBox& box);

@@ -43,8 +43,8 @@ class MeshBudget {
     const std::size_t left = options_.most_triangles_in_all - std::min(options_.most_triangles_in_all, triangles_);
     if (meshes_.size() >= options_.most_meshes || left < k_fewest_triangles) return {};
     run_.throw_if_stopped();
-    const LightMesh mesh =
-        light_mesh(tree, model_.primitives, extent_, resolution, std::min(most_triangles, left), run_);
+    const LightMesh mesh = light_mesh({.primitives = model_.primitives, .tree = tree}, extent_, resolution,
+                                      std::min(most_triangles, left), run_);
     triangles_ += mesh.triangles();
     meshes_.push_back(mesh_json(mesh, payload_));
     return meshes_.size() - 1;
