@@ -126,8 +126,19 @@ class CsgTree {
 /// structural_hash of every subtree: one value per node index, in one pass. A part of a chain has the hash of
 /// the part as it is stored: b | c within a | (b | c), but not within (a | b) | c. O(size).
 [[nodiscard]] std::vector<std::uint64_t> structural_hashes(const CsgTree& tree);
-/// Equality up to commutation and association, exactly (no hashes are trusted). O(size log size).
-[[nodiscard]] bool structurally_equal(const CsgTree& a, const CsgTree& b);
+
+/// Rewrites by rules of set algebra to a fixed point: idempotence (a | a), absorption (a | (a & b)), double
+/// complement, De Morgan, complements turned into differences (a & ~b), empty and full, complementary pairs (a & ~a),
+/// nested differences (a - (a - b) = a & b), anything that follows from what surrounds it ((a | b) - b = a - b), common
+/// factors
+/// ((a & b) | (a & c) = a & (b | c), (a - c) | (b - c) = (a | b) - c). Uses only the formula, no geometry.
+///
+/// Membership never changes, the size never grows, and a second simplify changes nothing. The result has one shape for
+/// each formula: what is subtracted is united first (a - (b | c)), chains lean to the left, in the order of first
+/// appearance, and a complement stands at most at the root, where the solid is unbounded: n leaves make 2 n - 1 nodes,
+/// or 2 n. The result is a single node, empty or full, or holds neither. Mostly O(size log size), O(size^2) in the
+/// worst case.
+[[nodiscard]] CsgTree simplify(const CsgTree& tree);
 
 /// Text form, e.g. `(a | b) - c`: `|` union, `&` intersection, `-` difference, `~` complement, `empty`, `full`.
 /// `~` binds strongest, then `&`, then `|` and `-` alike, from the left. parse_tree(to_text(t)) is t up to association.

@@ -10,6 +10,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "support/any_solid.hpp"
+#include "support/structurally_equal.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -330,7 +331,7 @@ RC_GTEST_PROP(WriteModel, ReadsBackToTheLastBit, ()) {
   const Model again = parse_model(text);
   RC_ASSERT(to_json(again) == text);
   RC_ASSERT(again.description == model.description);
-  RC_ASSERT(structurally_equal(*again.tree, *model.tree));
+  RC_ASSERT(test::structurally_equal(*again.tree, *model.tree));
   for (std::size_t i = 0; i < count; ++i) {
     RC_ASSERT(again.primitives[i].id == model.primitives[i].id);
     RC_ASSERT(again.primitives[i].shape.index() == model.primitives[i].shape.index());

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "support/structurally_equal.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {
@@ -111,7 +112,7 @@ TEST(CsgTree, CopesWithDeepTrees) {
   EXPECT_EQ(depth(deep), k_deep - 1);
   EXPECT_EQ(leaf_count(deep), k_deep);
   EXPECT_EQ(structural_hashes(deep).size(), deep.size());
-  EXPECT_TRUE(structurally_equal(deep, deep));
+  EXPECT_TRUE(test::structurally_equal(deep, deep));
   const PrimitiveSet primitives = test::sphere_row(3);
   EXPECT_EQ(parse_tree(to_text(deep, primitives), primitives), deep);
   EXPECT_FALSE(contains(deep, {false, true, true}));
@@ -124,9 +125,9 @@ TEST(CsgTree, CopesWithDeepTrees) {
 }
 
 TEST(StructuralHash, ForgetsTheOrderOfOperands) {
-  EXPECT_TRUE(structurally_equal(unite(a(), unite(b(), c())), unite(unite(c(), a()), b())));
-  EXPECT_TRUE(structurally_equal(intersect(a(), b()), intersect(b(), a())));
-  EXPECT_TRUE(structurally_equal(subtract(subtract(a(), b()), c()), subtract(subtract(a(), c()), b())));
+  EXPECT_TRUE(test::structurally_equal(unite(a(), unite(b(), c())), unite(unite(c(), a()), b())));
+  EXPECT_TRUE(test::structurally_equal(intersect(a(), b()), intersect(b(), a())));
+  EXPECT_TRUE(test::structurally_equal(subtract(subtract(a(), b()), c()), subtract(subtract(a(), c()), b())));
 }
 
 TEST(StructuralHash, TellsOtherTreesApart) {
@@ -150,7 +151,7 @@ TEST(StructuralHash, TellsOtherTreesApart) {
   for (std::size_t i = 0; i < trees.size(); ++i) {
     for (std::size_t j = 0; j < trees.size(); ++j) {
       EXPECT_EQ(structural_hash(trees[i]) == structural_hash(trees[j]), i == j) << i << ' ' << j;
-      EXPECT_EQ(structurally_equal(trees[i], trees[j]), i == j) << i << ' ' << j;
+      EXPECT_EQ(test::structurally_equal(trees[i], trees[j]), i == j) << i << ' ' << j;
     }
   }
 }
@@ -200,13 +201,13 @@ RC_GTEST_PROP(StructuralHash, IsTheSameForShuffledTrees, (const CsgTree& tree, c
   const CsgTree other = shuffled(tree, shuffle);
   RC_ASSERT(other.size() == tree.size());
   RC_ASSERT(structural_hash(other) == structural_hash(tree));
-  RC_ASSERT(structurally_equal(other, tree));
+  RC_ASSERT(test::structurally_equal(other, tree));
 }
 
 RC_GTEST_PROP(StructuralHash, AgreesWithExactEquality, ()) {
   const CsgTree first = *rc::gen::resize(8, test::any_tree(2));
   const CsgTree second = *rc::gen::resize(8, test::any_tree(2));
-  RC_ASSERT((structural_hash(first) == structural_hash(second)) == structurally_equal(first, second));
+  RC_ASSERT((structural_hash(first) == structural_hash(second)) == test::structurally_equal(first, second));
 }
 
 RC_GTEST_PROP(StructuralHash, OfASubtreeIsThatOfItsCopy, (const CsgTree& tree)) {

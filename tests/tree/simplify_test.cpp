@@ -1,11 +1,10 @@
-#include "cloud2csg/advanced/simplify.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "cloud2csg/csg_tree.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {

@@ -6,6 +6,7 @@
 
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/error.hpp"
+#include "support/structurally_equal.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {
@@ -54,7 +55,7 @@ RC_GTEST_PROP(TreeText, ComesBackAsTheSameTreeUpToAssociation, (const CsgTree& t
   const PrimitiveSet primitives = test::sphere_row(6);
   const CsgTree back = parse_tree(to_text(tree, primitives), primitives);
   RC_ASSERT(test::is_well_formed(back));
-  RC_ASSERT(structurally_equal(back, tree));
+  RC_ASSERT(test::structurally_equal(back, tree));
 }
 
 struct Mistake {

@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
-#include "core/tree/interner.hpp"
 #include "core/tree/mix.hpp"
 
 /// Equality up to commutation and association. A **chain** is a maximal run of nodes of one operation: for unions and
@@ -44,67 +42,6 @@ ChainHash hash_of_binary(Operation operation, const ChainHash& first, bool joins
   return result;
 }
 
-/// Numbers the classes of equal subtrees, exactly; several trees may share the numbers.
-class EqualityClasses {
- public:
-  std::uint32_t class_of(const CsgTree& tree) {
-    operands_.clear();
-    counts_.clear();
-    const std::vector<bool> inside_chain = inside_chains(tree);
-    for (std::size_t i = 0; i < tree.size(); ++i) {
-      const CsgNode node = tree.nodes()[i];
-      const auto operation = static_cast<std::uint32_t>(node.operation());
-      if (node.is_leaf()) {
-        const bool is_primitive = node.operation() == Operation::primitive;
-        key_ = {operation, is_primitive ? node.primitive() : 0};
-        operands_.push_back(interner_.intern(key_));
-        counts_.push_back(1);
-        continue;
-      }
-      std::size_t count = 0;
-      for (int child = arity(node.operation()); child > 0; --child) {
-        count += counts_.back();
-        counts_.pop_back();
-      }
-      if (!inside_chain[i]) {
-        intern_chain(node.operation(), count);
-        count = 1;
-      }
-      counts_.push_back(count);
-    }
-    return operands_.back();
-  }
-
- private:
-  static std::vector<bool> inside_chains(const CsgTree& tree) {
-    std::vector<bool> inside(tree.size());
-    for (std::size_t i = 0; i < tree.size(); ++i) {
-      const Operation operation = tree.nodes()[i].operation();
-      if (arity(operation) != 2) continue;
-      const std::size_t first = tree.first_child(i);
-      const std::size_t second = tree.second_child(i);
-      inside[first] = continues_chain(operation, tree.nodes()[first].operation(), true);
-      inside[second] = continues_chain(operation, tree.nodes()[second].operation(), false);
-    }
-    return inside;
-  }
-
-  /// Replaces the last `count` operands, a whole chain's, by the chain's class.
-  void intern_chain(Operation operation, std::size_t count) {
-    const auto operands = std::span(operands_).last(count);
-    std::ranges::sort(operation == Operation::difference ? operands.subspan(1) : operands);
-    key_.assign(1, static_cast<std::uint32_t>(operation));
-    key_.insert(key_.end(), operands.begin(), operands.end());
-    operands_.resize(operands_.size() - count);
-    operands_.push_back(interner_.intern(key_));
-  }
-
-  Interner interner_;
-  std::vector<std::uint32_t> operands_;  ///< classes of the operands of all chains that are still open
-  std::vector<std::size_t> counts_;      ///< by subtree on the stack: how many operands it stands for
-  std::vector<std::uint32_t> key_;
-};
-
 }  // namespace
 
 std::vector<std::uint64_t> structural_hashes(const CsgTree& tree) {
@@ -133,12 +70,6 @@ std::vector<std::uint64_t> structural_hashes(const CsgTree& tree) {
 
 std::uint64_t structural_hash(const CsgTree& tree) {
   return structural_hashes(tree).back();
-}
-
-bool structurally_equal(const CsgTree& a, const CsgTree& b) {
-  if (a.size() != b.size() || structural_hash(a) != structural_hash(b)) return false;
-  EqualityClasses classes;
-  return classes.class_of(a) == classes.class_of(b);
 }
 
 }  // namespace cloud2csg
