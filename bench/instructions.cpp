@@ -11,7 +11,7 @@
 
 #include "cloud2csg/advanced/evolve.hpp"
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/extract.hpp"
 #include "random_solids.hpp"
 #include "scene.hpp"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "bench/families/family.hpp"
-#include "cloud2csg/advanced/normals.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "paper/evolve/random_tree.hpp"
 
 namespace cloud2csg::bench {

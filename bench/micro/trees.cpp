@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "micro/work.hpp"
 #include "scene.hpp"
 

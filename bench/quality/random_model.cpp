@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/base/random.hpp"
 
 namespace cloud2csg::bench {

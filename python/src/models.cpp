@@ -8,7 +8,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "cloud.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/view.hpp"

@@ -8,7 +8,7 @@
 #include "cells/label_costs.hpp"
 #include "cells/tree_cells.hpp"
 #include "cloud2csg/advanced/restrict.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/tree/local_search.hpp"
 
 namespace cloud2csg {

@@ -13,7 +13,7 @@
 #include "cells/formula_tables.hpp"
 #include "cells/reduced_function.hpp"
 #include "cloud2csg/advanced/formula.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
 

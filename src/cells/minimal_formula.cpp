@@ -3,7 +3,7 @@
 #include "cells/formula_search.hpp"
 #include "cells/reduced_function.hpp"
 #include "cloud2csg/advanced/formula.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
 namespace {

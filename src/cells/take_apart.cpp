@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cells/known_cells.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "paper/evolve/genetic_algorithm.hpp"

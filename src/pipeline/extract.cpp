@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"

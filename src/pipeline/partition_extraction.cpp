@@ -4,7 +4,7 @@
 #include <atomic>
 #include <mutex>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/base/without_stop.hpp"

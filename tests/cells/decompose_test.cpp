@@ -8,7 +8,7 @@
 #include <map>
 
 #include "cells/random_formulas.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
 namespace {

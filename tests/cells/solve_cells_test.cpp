@@ -9,7 +9,7 @@
 #include "bench/families/family.hpp"
 #include "cells/labelled.hpp"
 #include "cloud2csg/advanced/cells.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/base/random.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"

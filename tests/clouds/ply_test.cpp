@@ -1,7 +1,8 @@
+#include "io/clouds/ply.hpp"
+
 #include <gtest/gtest.h>
 
 #include "clouds/cloud_support.hpp"
-#include "io/clouds/ply_header.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -6,7 +6,7 @@
 #include <stop_token>
 
 #include "cloud2csg/advanced/evolve.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/sample.hpp"
 #include "paper/evolve/genetic_algorithm.hpp"
 #include "support/known_solids.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/base/random.hpp"
 #include "tree/random_trees.hpp"
 

@@ -10,7 +10,7 @@
 #include "cloud2csg/advanced/merge.hpp"
 #include "cloud2csg/advanced/overlap_graph.hpp"
 #include "cloud2csg/advanced/restrict.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/base/random.hpp"
 #include "tree/random_trees.hpp"
 

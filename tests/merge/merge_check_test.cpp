@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cloud2csg/advanced/restrict.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/sample.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {

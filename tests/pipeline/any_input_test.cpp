@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
 #include "pipeline/strategies.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/families/family.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/extract.hpp"
 #include "pipeline/strategies.hpp"
 #include "support/known_solids.hpp"

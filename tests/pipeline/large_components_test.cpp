@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/extract.hpp"
 #include "core/base/random.hpp"
 #include "pipeline/strategies.hpp"

@@ -1,7 +1,6 @@
-#include "cloud2csg/advanced/clean.hpp"
-
 #include <gtest/gtest.h>
 
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/error.hpp"
 #include "prepare/clouds.hpp"
 

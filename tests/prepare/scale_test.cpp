@@ -1,9 +1,8 @@
-#include "cloud2csg/advanced/scale.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/error.hpp"
 #include "prepare/clouds.hpp"
 

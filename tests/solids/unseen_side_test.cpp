@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "cloud2csg/advanced/scale.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/sample.hpp"
 #include "solids/known_surfaces.hpp"
 #include "support/known_solids.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/option_table.hpp"
-#include "cloud2csg/advanced/scale.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/surface.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/run_context.hpp"

@@ -1,5 +1,4 @@
-#include "cloud2csg/advanced/simplify.hpp"
-
+#include "cloud2csg/csg_tree.hpp"
 #include "core/tree/conjunction.hpp"
 #include "core/tree/factor.hpp"
 #include "core/tree/propagate.hpp"

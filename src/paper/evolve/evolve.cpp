@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "paper/evolve/genetic_algorithm.hpp"

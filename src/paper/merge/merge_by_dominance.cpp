@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "core/tree/folding.hpp"
 
 namespace cloud2csg {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
 namespace {

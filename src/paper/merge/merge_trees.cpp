@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/merge.hpp"
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "paper/merge/common_subtree.hpp"
 
 namespace cloud2csg {

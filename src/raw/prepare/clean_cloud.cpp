@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cloud2csg/advanced/clean.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/outliers.hpp"
 

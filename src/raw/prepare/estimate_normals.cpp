@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "cloud2csg/advanced/normals.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/winding_number.hpp"
 #include "core/base/parallel.hpp"
 #include "core/geometry/subset.hpp"

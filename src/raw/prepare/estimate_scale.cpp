@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "cloud2csg/advanced/scale.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/geometry/subset.hpp"

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "cloud2csg/advanced/scale.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "raw/prepare/neighbours.hpp"
 

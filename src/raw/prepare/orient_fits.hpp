@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cloud2csg/advanced/normals.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "raw/prepare/local_fit.hpp"
 
 namespace cloud2csg {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cloud2csg/advanced/scale.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "raw/prepare/local_fit.hpp"
 
 namespace cloud2csg {

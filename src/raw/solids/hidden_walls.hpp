@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/detect.hpp"
-#include "cloud2csg/advanced/scale.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/point_cloud.hpp"
 
 /// What of the walls of bores and cups no sensor could see.

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
 namespace {
