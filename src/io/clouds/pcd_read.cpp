@@ -1,17 +1,219 @@
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/clouds/cloud_assembly.hpp"
+#include "io/clouds/file_content.hpp"
 #include "io/clouds/formats.hpp"
 #include "io/clouds/lzf.hpp"
-#include "io/clouds/pcd_header.hpp"
+#include "io/clouds/scalar_type.hpp"
 #include "io/clouds/text_rows.hpp"
 
 namespace cloud2csg {
 namespace {
+
+struct PcdField {
+  std::string name;
+  ScalarType type;
+  std::size_t count;  ///< numbers of this field in each point
+
+  [[nodiscard]] std::size_t bytes() const { return count * size_of(type); }
+};
+
+enum class PcdData { ascii, binary, binary_compressed };
+
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  std::size_t points;
+  PcdData data;
+  std::size_t data_offset;  ///< first byte after the header
+  std::size_t line_count;   ///< lines of the header
+  std::size_t fields_line;
+  std::optional<Eigen::Vector3d> sensor_position = {};  ///< of all points; absent where VIEWPOINT says nothing
+
+  [[nodiscard]] std::size_t stride() const;   ///< bytes of a point
+  [[nodiscard]] std::size_t columns() const;  ///< numbers of a point
+};
+
+/// Far above any real file; keeps products of header numbers from overflowing.
+constexpr std::size_t k_most_columns = 1'000'000;
+constexpr std::size_t k_most_points = std::size_t{1} << 40;
+
+std::optional<ScalarType> scalar_type(std::string_view type, std::string_view size) {
+  if (type == "F") {
+    if (size == "4") return ScalarType::float32;
+    if (size == "8") return ScalarType::float64;
+  } else if (type == "I") {
+    if (size == "1") return ScalarType::int8;
+    if (size == "2") return ScalarType::int16;
+    if (size == "4") return ScalarType::int32;
+    if (size == "8") return ScalarType::int64;
+  } else if (type == "U") {
+    if (size == "1") return ScalarType::uint8;
+    if (size == "2") return ScalarType::uint16;
+    if (size == "4") return ScalarType::uint32;
+    if (size == "8") return ScalarType::uint64;
+  }
+  return std::nullopt;
+}
+
+/// The words that follow each keyword, and the line they stand in (0 = not there).
+struct Entry {
+  std::vector<std::string> values = {};
+  std::size_t line = 0;
+};
+
+class PcdHeaderParser {
+ public:
+  explicit PcdHeaderParser(const FileContent& content) : content_(content) {}
+
+  PcdHeader parse() {
+    while (data_.line == 0) parse_line();
+    PcdHeader header{.fields = {},
+                     .points = 0,
+                     .data = data_kind(),
+                     .data_offset = offset_,
+                     .line_count = line_,
+                     .fields_line = fields_.line,
+                     .sensor_position = sensor_position()};
+    header.fields = make_fields();
+    header.points = point_count();
+    return header;
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t line, std::string expected) const {
+    content_.fail({FilePosition::Unit::line, line}, std::move(expected), "is it a .pcd file?");
+  }
+
+  void parse_line() {
+    ++line_;
+    const std::string_view rest = content_.bytes().substr(offset_);
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos) fail(line_, "the header has no DATA line");
+    offset_ += end + 1;
+    std::vector<std::string> words = split_words(rest.substr(0, end));
+    if (words.empty() || words[0].starts_with('#') || words[0] == "VERSION") return;
+    for (const auto& [keyword, entry] : entries()) {
+      if (words[0] != keyword) continue;
+      if (words.size() < 2) fail(line_, fmt::format("expected values after {}", keyword));
+      words.erase(words.begin());
+      *entry = {.values = std::move(words), .line = line_};
+      return;
+    }
+    fail(line_, "expected VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS or DATA");
+  }
+
+  [[nodiscard]] std::vector<std::pair<std::string_view, Entry*>> entries() {
+    return {{"FIELDS", &fields_}, {"SIZE", &size_},           {"TYPE", &type_},
+            {"COUNT", &count_},   {"WIDTH", &width_},         {"HEIGHT", &height_},
+            {"POINTS", &points_}, {"VIEWPOINT", &viewpoint_}, {"DATA", &data_}};
+  }
+
+  /// Programs that do not know where the sensor was write 0 0 0 1 0 0 0.
+  [[nodiscard]] std::optional<Eigen::Vector3d> sensor_position() const {
+    if (viewpoint_.line == 0) return std::nullopt;
+    constexpr std::array<double, 7> k_unknown{0, 0, 0, 1, 0, 0, 0};
+    std::array<double, 7> numbers{};
+    bool is_good = viewpoint_.values.size() == numbers.size();
+    for (std::size_t i = 0; is_good && i < numbers.size(); ++i) {
+      const std::optional<double> number = parse_number(viewpoint_.values[i]);
+      is_good = number.has_value();
+      numbers[i] = number.value_or(0.0);
+    }
+    if (!is_good) fail(viewpoint_.line, "expected VIEWPOINT with a position and a quaternion: 7 finite numbers");
+    if (numbers == k_unknown) return std::nullopt;
+    return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+  }
+
+  [[nodiscard]] PcdData data_kind() const {
+    const std::string& kind = data_.values[0];
+    if (kind == "ascii") return PcdData::ascii;
+    if (kind == "binary") return PcdData::binary;
+    if (kind == "binary_compressed") return PcdData::binary_compressed;
+    fail(data_.line, "expected DATA ascii, binary or binary_compressed");
+  }
+
+  [[nodiscard]] std::vector<PcdField> make_fields() const {
+    if (fields_.line == 0) fail(line_, "the header has no FIELDS line");
+    const std::size_t field_count = fields_.values.size();
+    for (const Entry* entry : {&size_, &type_, &count_}) {
+      const bool may_be_absent = entry == &count_ && entry->line == 0;
+      if (!may_be_absent && entry->values.size() != field_count) {
+        fail(entry->line == 0 ? line_ : entry->line,
+             fmt::format("expected a SIZE, a TYPE and a COUNT for each of the {} fields", field_count));
+      }
+    }
+    std::vector<PcdField> fields;
+    std::size_t columns = 0;
+    for (std::size_t i = 0; i < field_count; ++i) {
+      const std::optional<ScalarType> type = scalar_type(type_.values[i], size_.values[i]);
+      if (!type) fail(type_.line, "expected TYPE F with SIZE 4 or 8, or I or U with SIZE 1, 2, 4 or 8");
+      const std::optional<std::size_t> count = count_.line == 0 ? 1 : parse_count(count_.values[i]);
+      if (!count || *count > k_most_columns || (columns += *count) > k_most_columns) {
+        fail(count_.line, "expected COUNT to be small whole numbers");
+      }
+      fields.push_back({.name = fields_.values[i], .type = *type, .count = *count});
+    }
+    return fields;
+  }
+
+  [[nodiscard]] std::size_t number_in(const Entry& entry, const char* keyword) const {
+    const std::optional<std::size_t> number = entry.line == 0 ? std::nullopt : parse_count(entry.values[0]);
+    if (!number || *number > k_most_points) {
+      fail(entry.line == 0 ? line_ : entry.line, fmt::format("expected {} with a number of points", keyword));
+    }
+    return *number;
+  }
+
+  [[nodiscard]] std::size_t point_count() const {
+    if (points_.line == 0) {
+      const std::size_t width = number_in(width_, "WIDTH");
+      const std::size_t height = number_in(height_, "HEIGHT");
+      if (height > 0 && width > k_most_points / height) fail(width_.line, "WIDTH times HEIGHT is too large");
+      return width * height;
+    }
+    const std::size_t points = number_in(points_, "POINTS");
+    if (width_.line != 0 && height_.line != 0) {
+      const std::size_t width = number_in(width_, "WIDTH");
+      const std::size_t height = number_in(height_, "HEIGHT");
+      const bool agrees = height == 0 ? points == 0 : points % height == 0 && points / height == width;
+      if (!agrees) fail(points_.line, fmt::format("expected POINTS to be WIDTH times HEIGHT, found {}", points));
+    }
+    return points;
+  }
+
+  const FileContent& content_;
+  std::size_t offset_ = 0;
+  std::size_t line_ = 0;
+  Entry fields_, size_, type_, count_, width_, height_, points_, viewpoint_, data_;
+};
+
+std::size_t PcdHeader::stride() const {
+  std::size_t bytes = 0;
+  for (const PcdField& field : fields) bytes += field.bytes();
+  return bytes;
+}
+
+std::size_t PcdHeader::columns() const {
+  std::size_t numbers = 0;
+  for (const PcdField& field : fields) numbers += field.count;
+  return numbers;
+}
+
+/// @throws Error naming the line.
+PcdHeader parse_pcd_header(const FileContent& content) {
+  return PcdHeaderParser(content).parse();
+}
 
 PointLayout find_fields(const FileContent& content, const PcdHeader& header) {
   std::vector<std::string> names;

@@ -5,7 +5,7 @@
 
 #include "io/clouds/cloud_assembly.hpp"
 #include "io/clouds/formats.hpp"
-#include "io/clouds/ply_records.hpp"
+#include "io/clouds/ply.hpp"
 
 namespace cloud2csg {
 namespace {

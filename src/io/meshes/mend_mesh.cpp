@@ -2,17 +2,203 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <numbers>
+#include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "cloud2csg/input.hpp"
+#include "cloud2csg/mesh.hpp"
 #include "core/geometry/place_text.hpp"
 #include "io/meshes/mesh_faults.hpp"
-#include "io/meshes/orient_pieces.hpp"
 
 namespace cloud2csg {
 namespace {
+
+/// What was turned to make the triangles of a mesh agree on which side is outside.
+struct TurnedTriangles {
+  std::size_t disagreeing = 0;  ///< triangles that disagreed with most of their piece
+  bool whole = false;           ///< the volume was negative then: all were turned
+  std::size_t pieces = 0;       ///< after that, closed pieces that were inside out and no cavities
+};
+
+using Eigen::Vector3d;
+using Piece = std::vector<std::uint32_t>;  // triangles
+
+/// Two triangles at an edge that no third one has.
+struct Neighbour {
+  std::uint32_t triangle;
+  bool agrees;  ///< they run through the edge in opposite directions
+};
+using Neighbours = std::vector<std::vector<Neighbour>>;  // by triangle
+
+Neighbours neighbours_of(const TriangleMesh& mesh) {
+  struct Side {
+    std::uint32_t low, high, triangle;
+    bool is_upward;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = mesh.triangles[t][i];
+      const std::uint32_t to = mesh.triangles[t][(i + 1) % 3];
+      sides.push_back({std::min(from, to), std::max(from, to), t, from < to});
+    }
+  }
+  std::ranges::sort(sides, {}, [](const Side& side) { return std::tuple(side.low, side.high, side.triangle); });
+  Neighbours neighbours(mesh.triangles.size());
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    const auto is_same = [&](const Side& side) {
+      return side.low == sides[begin].low && side.high == sides[begin].high;
+    };
+    while (end < sides.size() && is_same(sides[end])) ++end;
+    if (end - begin != 2) continue;
+    const Side& one = sides[begin];
+    const Side& other = sides[begin + 1];
+    neighbours[one.triangle].push_back({other.triangle, one.is_upward != other.is_upward});
+    neighbours[other.triangle].push_back({one.triangle, one.is_upward != other.is_upward});
+  }
+  return neighbours;
+}
+
+Vector3d doubled_area(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+}
+
+void turn(TriangleMesh& mesh, std::uint32_t triangle) {
+  std::swap(mesh.triangles[triangle][1], mesh.triangles[triangle][2]);
+}
+
+/// The piece of a triangle, and which of its triangles are to be turned to agree with that one.
+struct Reached {
+  Piece triangles;
+  std::vector<bool> is_against;
+};
+
+Reached reach_from(std::uint32_t first, const Neighbours& neighbours, std::vector<bool>& is_reached) {
+  Reached reached{{first}, {false}};
+  is_reached[first] = true;
+  for (std::size_t k = 0; k < reached.triangles.size(); ++k) {
+    for (const Neighbour& next : neighbours[reached.triangles[k]]) {
+      if (is_reached[next.triangle]) continue;
+      is_reached[next.triangle] = true;
+      reached.triangles.push_back(next.triangle);
+      reached.is_against.push_back(reached.is_against[k] == next.agrees);
+    }
+  }
+  return reached;
+}
+
+/// Turns the smaller part, by area. Returns how many triangles that were.
+std::size_t make_agree(TriangleMesh& mesh, const Reached& reached) {
+  double against = 0;
+  double all = 0;
+  for (std::size_t k = 0; k < reached.triangles.size(); ++k) {
+    const double area = doubled_area(mesh, reached.triangles[k]).norm();
+    all += area;
+    if (reached.is_against[k]) against += area;
+  }
+  const bool turned_are_against = 2 * against <= all;
+  std::size_t turned = 0;
+  for (std::size_t k = 0; k < reached.triangles.size(); ++k) {
+    if (reached.is_against[k] != turned_are_against) continue;
+    turn(mesh, reached.triangles[k]);
+    ++turned;
+  }
+  return turned;
+}
+
+double volume_of(const TriangleMesh& mesh, std::span<const std::uint32_t> piece) {
+  // Near the piece, so that far from the origin little is lost.
+  const Vector3d origin = mesh.vertices[mesh.triangles[piece.front()][0]];
+  double sum = 0;
+  for (const std::uint32_t t : piece) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    sum += (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));
+  }
+  return sum / 6;
+}
+
+/// How often the triangles of a piece go around a place, whichever way they are turned: the sum of the solid angles
+/// (Van Oosterom and Strackee 1983).
+double turns_around(const Vector3d& place, const TriangleMesh& mesh, std::span<const std::uint32_t> piece) {
+  double sum = 0;
+  for (const std::uint32_t t : piece) {
+    const Vector3d a = mesh.vertices[mesh.triangles[t][0]] - place;
+    const Vector3d b = mesh.vertices[mesh.triangles[t][1]] - place;
+    const Vector3d c = mesh.vertices[mesh.triangles[t][2]] - place;
+    const double below =
+        a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() + b.dot(c) * a.norm() + c.dot(a) * b.norm();
+    sum += 2 * std::atan2(a.dot(b.cross(c)), below);
+  }
+  return std::abs(sum) / (4 * std::numbers::pi);
+}
+
+/// Whether all of a piece's vertices are within the other; one that is not tells soon.
+bool is_within(const TriangleMesh& mesh, const Piece& piece, const Piece& other) {
+  return std::ranges::all_of(
+      piece, [&](std::uint32_t t) { return turns_around(mesh.vertices[mesh.triangles[t][0]], mesh, other) > 0.5; });
+}
+
+AlignedBox bounds_of(const TriangleMesh& mesh, const Piece& piece) {
+  AlignedBox box;
+  for (const std::uint32_t t : piece) {
+    for (const std::uint32_t corner : mesh.triangles[t]) box.extend(mesh.vertices[corner]);
+  }
+  return box;
+}
+
+/// Returns how many.
+std::size_t turn_pieces(TriangleMesh& mesh, const std::vector<Piece>& pieces) {
+  std::vector<AlignedBox> boxes;
+  boxes.reserve(pieces.size());
+  for (const Piece& piece : pieces) boxes.push_back(bounds_of(mesh, piece));
+  std::size_t turned = 0;
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    if (volume_of(mesh, pieces[p]) >= 0) continue;
+    bool is_cavity = false;
+    for (std::size_t q = 0; q < pieces.size() && !is_cavity; ++q) {
+      is_cavity = q != p && boxes[q].contains(boxes[p]) && is_within(mesh, pieces[p], pieces[q]);
+    }
+    if (is_cavity) continue;
+    for (const std::uint32_t t : pieces[p]) turn(mesh, t);
+    ++turned;
+  }
+  return turned;
+}
+
+/// Turns triangles such that neighbours across an edge of two agree, as most of the area of their piece has it; all, if
+/// the volume is negative then; and closed pieces whose own volume still is, but for those within another, which are
+/// cavities. A piece hangs together by edges of two triangles each. One that is not orientable keeps edges that
+/// disagree. O(triangles log triangles), and for each piece of negative volume its triangles times those around it.
+TurnedTriangles orient_pieces(TriangleMesh& mesh) {
+  const Neighbours neighbours = neighbours_of(mesh);
+  std::vector<bool> is_reached(mesh.triangles.size());
+  TurnedTriangles turned;
+  std::vector<Piece> pieces;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (is_reached[t]) continue;
+    Reached reached = reach_from(t, neighbours, is_reached);
+    turned.disagreeing += make_agree(mesh, reached);
+    pieces.push_back(std::move(reached.triangles));
+  }
+  turned.whole = volume_of(mesh) < 0;
+  if (turned.whole) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) turn(mesh, t);
+  }
+  // An open piece may be any part of a surface, and its volume says nothing.
+  std::erase_if(pieces, [&](const Piece& piece) {
+    return std::ranges::any_of(piece, [&](std::uint32_t t) { return neighbours[t].size() != 3; });
+  });
+  turned.pieces = turn_pieces(mesh, pieces);
+  return turned;
+}
 
 using CornerIndices = std::array<std::uint32_t, 3>;
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "io/clouds/ply_records.hpp"
+#include "io/clouds/ply.hpp"
 #include "io/meshes/formats.hpp"
 #include "io/meshes/mesh_assembly.hpp"
 

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cloud2csg/error.hpp"
+
 namespace cloud2csg {
 
 /// Keys and indices from a JSON value down to a field of it.
@@ -31,5 +33,15 @@ class SchemaValidator {
   struct Compiled;
   std::unique_ptr<Compiled> compiled_;
 };
+
+/// A JSON value in few words, for messages: numbers and short texts as they are, "a list of 3", "an object".
+[[nodiscard]] std::string brief(const nlohmann::json& value);
+
+/// Turns the places at which `value` breaks a definition into one message about the most telling of them: the path of
+/// the field, what the schema expects there (its "description") and what was found.
+/// `value_path` is the JSON pointer of `value` in its file. Precondition: `violations` is not empty.
+[[nodiscard]] Error::Parts explain_violation(const nlohmann::json& schema, std::string_view definition,
+                                             const nlohmann::json& value, const std::vector<FieldPath>& violations,
+                                             const std::string& value_path);
 
 }  // namespace cloud2csg

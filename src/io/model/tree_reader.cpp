@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cloud2csg/error.hpp"
-#include "io/model/schema_message.hpp"
+#include "io/model/schema_validator.hpp"
 
 namespace cloud2csg {
 namespace {

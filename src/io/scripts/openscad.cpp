@@ -10,7 +10,6 @@
 #include "io/scripts/openscad_blocks.hpp"
 #include "io/scripts/openscad_loops.hpp"
 #include "io/scripts/openscad_solids.hpp"
-#include "io/scripts/openscad_text.hpp"
 #include "io/scripts/script_plan.hpp"
 
 namespace cloud2csg {

@@ -8,7 +8,6 @@
 #include "cloud2csg/export.hpp"
 #include "io/scripts/openscad_blocks.hpp"
 #include "io/scripts/openscad_solids.hpp"
-#include "io/scripts/openscad_text.hpp"
 #include "io/scripts/script_plan.hpp"
 #include "io/scripts/script_solids.hpp"
 

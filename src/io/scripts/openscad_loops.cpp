@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "core/primitive/overloaded.hpp"
-#include "io/scripts/openscad_text.hpp"
+#include "io/scripts/openscad_solids.hpp"
 
 namespace cloud2csg::openscad {
 namespace {

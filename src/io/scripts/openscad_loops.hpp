@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/scripts/openscad_parameters.hpp"
+#include "io/scripts/openscad_solids.hpp"
 #include "io/scripts/patterns.hpp"
 #include "io/scripts/script_plan.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cloud2csg/advanced/simplify.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "io/step/solid_plan.hpp"
 #include "shape/mesh/model_extent.hpp"
 

@@ -7,9 +7,20 @@
 #include <vector>
 
 #include "cloud2csg/run_context.hpp"
-#include "shape/mesh/bounded_solid.hpp"
+#include "core/fields/bounded_field.hpp"
 
 namespace cloud2csg {
+
+/// A solid made fit for a grid: finite, and every value either a known Lipschitz function or known to be outside.
+struct BoundedSolid {
+  CsgTree tree = {};
+  PrimitiveSet primitives = {};
+  AlignedBox bounds;  ///< finite, encloses the solid; empty for an empty solid
+};
+
+/// The solid cut at `bounds`. Expressions are cut at their own bounds, beyond which their formula means nothing.
+/// @throws Error when neither the solid nor `bounds` is finite.
+[[nodiscard]] BoundedSolid bound_solid(const Model& model, const AlignedBox& bounds);
 
 /// Cells along each edge of a block.
 constexpr int k_block_cells = 8;

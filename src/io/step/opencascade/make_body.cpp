@@ -1,24 +1,242 @@
 #include "io/step/opencascade/make_body.hpp"
 
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRep_Builder.hxx>
+#include <Eigen/Core>
+#include <Geom_Circle.hxx>
+#include <Geom_SphericalSurface.hxx>
 #include <Precision.hxx>
+#include <ShapeFix_Shape.hxx>
 #include <TopLoc_Location.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <TopoDS_Wire.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gp_Ax2.hxx>
+#include <gp_Ax3.hxx>
+#include <gp_Pln.hxx>
+#include <gp_Pnt.hxx>
 #include <gp_Quaternion.hxx>
 #include <gp_Trsf.hxx>
+#include <map>
+#include <utility>
+#include <vector>
 
-#include "io/step/opencascade/facet_shells.hpp"
-#include "io/step/opencascade/split_sphere.hpp"
+#include "cloud2csg/geometry.hpp"
+#include "core/base/disjoint_sets.hpp"
+#include "io/step/kernel.hpp"
 
 namespace cloud2csg::brep {
 namespace {
+
+[[nodiscard]] inline gp_Pnt point_of(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+using CornerIndices = std::array<std::size_t, 3>;
+
+gp_Dir direction_of(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// Part of a great circle.
+TopoDS_Edge arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const TopoDS_Vertex& start,
+                const TopoDS_Vertex& end) {
+  const gp_Ax2 axes(gp_Pnt(0, 0, 0), direction_of(from.cross(to)), direction_of(from));
+  return BRepBuilderAPI_MakeEdge(new Geom_Circle(axes, from.norm()), start, end).Edge();
+}
+
+/// A sphere at the origin whose surface is four curved triangles. Each has its poles and its seam elsewhere, so that
+/// whatever is cut out of it has plain edges only: readers of STEP get spheres wrong that are cut around both poles.
+/// @throws Standard_Failure
+TopoDS_Shape split_sphere(double radius) {
+  // A tetrahedron that is turned such that nothing of it is along an axis.
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(0.83, 0.31, -0.23, 0.41).normalized();
+  constexpr std::array<std::array<int, 3>, 4> k_corners{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
+  constexpr std::array<CornerIndices, 4> k_faces{{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
+  std::array<Eigen::Vector3d, 4> corners;
+  std::array<TopoDS_Vertex, 4> vertices;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = turn * (radius * Eigen::Vector3d(k_corners[i][0], k_corners[i][1], k_corners[i][2]).normalized());
+    vertices[i] = BRepBuilderAPI_MakeVertex(point_of(corners[i])).Vertex();
+  }
+  std::array<std::array<TopoDS_Edge, 4>, 4> edges;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t j = i + 1; j < corners.size(); ++j) {
+      edges[i][j] = arc(corners[i], corners[j], vertices[i], vertices[j]);
+      edges[j][i] = TopoDS::Edge(edges[i][j].Reversed());
+    }
+  }
+  const BRep_Builder builder;
+  TopoDS_Shell shell;
+  builder.MakeShell(shell);
+  for (const auto& [a, b, c] : k_faces) {
+    const Eigen::Vector3d middle = corners[a] + corners[b] + corners[c];
+    const gp_Ax3 axes(gp_Pnt(0, 0, 0), direction_of(corners[a].cross(middle)), direction_of(-middle));
+    BRepBuilderAPI_MakeWire wire(edges[a][b], edges[b][c], edges[c][a]);
+    builder.Add(shell, BRepBuilderAPI_MakeFace(new Geom_SphericalSurface(axes, radius), wire.Wire(), true).Face());
+  }
+  shell.Closed(true);
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  builder.Add(solid, shell);
+  // Adds where the edges are in the parameters of the faces.
+  const Handle(ShapeFix_Shape) fix = new ShapeFix_Shape(solid);
+  fix->Perform();
+  return fix->Shape();
+}
+
+using Face = std::vector<std::uint32_t>;
+using EdgeKey = std::pair<std::uint32_t, std::uint32_t>;  ///< smaller corner first
+
+EdgeKey key_of(std::uint32_t from, std::uint32_t to) {
+  return {std::min(from, to), std::max(from, to)};
+}
+
+/// Twice the face's area along its normal.
+Eigen::Vector3d area_of(const Facets& facets, const Face& face) {
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d first = facets.corners[face[0]];
+  for (std::size_t i = 2; i < face.size(); ++i) {
+    area += (facets.corners[face[i - 1]] - first).cross(facets.corners[face[i]] - first);
+  }
+  return area;
+}
+
+/// Faces that hang together by edges, numbered from 0.
+std::vector<std::vector<std::size_t>> pieces_of(const Facets& facets) {
+  DisjointSets sets(facets.faces.size());
+  std::map<EdgeKey, std::size_t> first_face;
+  for (std::size_t f = 0; f < facets.faces.size(); ++f) {
+    const Face& face = facets.faces[f];
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const auto [entry, is_new] = first_face.try_emplace(key_of(face[i], face[(i + 1) % face.size()]), f);
+      if (!is_new) sets.join(f, entry->second);
+    }
+  }
+  std::map<std::size_t, std::vector<std::size_t>> by_root;
+  for (std::size_t f = 0; f < facets.faces.size(); ++f) by_root[sets.root(f)].push_back(f);
+  std::vector<std::vector<std::size_t>> pieces;
+  pieces.reserve(by_root.size());
+  for (auto& [_, faces] : by_root) pieces.push_back(std::move(faces));
+  return pieces;
+}
+
+/// Makes faces that share their edges.
+class ShellBuilder {
+ public:
+  explicit ShellBuilder(const Facets& facets) : facets_(facets), vertices_(facets.corners.size()) {}
+
+  TopoDS_Shell shell(const std::vector<std::size_t>& faces) {
+    TopoDS_Shell shell;
+    builder_.MakeShell(shell);
+    for (const std::size_t f : faces) {
+      const Face& face = facets_.faces[f];
+      const Eigen::Vector3d area = area_of(facets_, face);
+      if (area.norm() > k_least_area) builder_.Add(shell, make_face(face, area));
+    }
+    shell.Closed(true);
+    return shell;
+  }
+
+ private:
+  static constexpr double k_least_area = 1e-14;  // squares of the kernel's tolerance
+
+  TopoDS_Face make_face(const Face& corners, const Eigen::Vector3d& area) {
+    TopoDS_Wire wire;
+    builder_.MakeWire(wire);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      builder_.Add(wire, edge(corners[i], corners[(i + 1) % corners.size()]));
+    }
+    wire.Closed(true);
+    const gp_Pln plane(point_of(facets_.corners[corners[0]]), gp_Dir(area.x(), area.y(), area.z()));
+    return BRepBuilderAPI_MakeFace(plane, wire, true).Face();
+  }
+
+  TopoDS_Edge edge(std::uint32_t from, std::uint32_t to) {
+    TopoDS_Edge& edge = edges_[key_of(from, to)];
+    if (edge.IsNull()) edge = BRepBuilderAPI_MakeEdge(vertex(std::min(from, to)), vertex(std::max(from, to))).Edge();
+    return from < to ? edge : TopoDS::Edge(edge.Reversed());
+  }
+
+  const TopoDS_Vertex& vertex(std::uint32_t corner) {
+    TopoDS_Vertex& vertex = vertices_[corner];
+    if (vertex.IsNull()) vertex = BRepBuilderAPI_MakeVertex(point_of(facets_.corners[corner])).Vertex();
+    return vertex;
+  }
+
+  const Facets& facets_;
+  const BRep_Builder builder_ = {};
+  std::vector<TopoDS_Vertex> vertices_;
+  std::map<EdgeKey, TopoDS_Edge> edges_ = {};
+};
+
+/// A closed piece of the surface: volume is negative for a hollow.
+struct Piece {
+  TopoDS_Shell shell;
+  AlignedBox box;
+  double volume;
+};
+
+Piece make_piece(const Facets& facets, const std::vector<std::size_t>& faces, ShellBuilder& builder) {
+  Piece piece{.shell = builder.shell(faces), .box = {}, .volume = 0};
+  const Eigen::Vector3d origin = facets.corners[facets.faces[faces[0]][0]];
+  for (const std::size_t f : faces) {
+    for (const std::uint32_t corner : facets.faces[f]) piece.box.extend(facets.corners[corner]);
+    piece.volume += area_of(facets, facets.faces[f]).dot(facets.corners[facets.faces[f][0]] - origin) / 6;
+  }
+  return piece;
+}
+
+/// The smallest solid around a hollow, by boxes; none for one that stands alone.
+TopoDS_Solid* solid_around(const Piece& hollow, const std::vector<Piece>& outer, std::vector<TopoDS_Solid>& solids) {
+  std::size_t best = outer.size();
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    if (!outer[i].box.contains(hollow.box)) continue;
+    if (best == outer.size() || outer[i].box.volume() < outer[best].box.volume()) best = i;
+  }
+  return best == outer.size() ? nullptr : &solids[best];
+}
+
+/// Solids of flat faces. Pieces of the surface that do not hang together by edges become solids each; those that are
+/// turned inside out are hollows of the smallest solid around them. Faces too thin to have a plane are left out.
+/// O(faces + hollows x solids)
+/// @throws Standard_Failure
+std::vector<TopoDS_Shape> solids_of_facets(const Facets& facets) {
+  ShellBuilder shells(facets);
+  std::vector<Piece> outer;
+  std::vector<Piece> hollows;
+  for (const std::vector<std::size_t>& faces : pieces_of(facets)) {
+    Piece piece = make_piece(facets, faces, shells);
+    if (piece.volume != 0) (piece.volume > 0 ? outer : hollows).push_back(std::move(piece));
+  }
+  const BRep_Builder builder;
+  std::vector<TopoDS_Solid> solids(outer.size());
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    builder.MakeSolid(solids[i]);
+    builder.Add(solids[i], outer[i].shell);
+  }
+  for (const Piece& hollow : hollows) {
+    if (TopoDS_Solid* const solid = solid_around(hollow, outer, solids)) builder.Add(*solid, hollow.shell);
+  }
+  return {solids.begin(), solids.end()};
+}
 
 gp_Ax2 axis_from(double height) {
   return {gp_Pnt(0, 0, height), gp_Dir(0, 0, 1)};
