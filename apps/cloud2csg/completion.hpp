@@ -1,21 +1,15 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
+#include <span>
 #include <string>
 
-#include "catalogue.hpp"
-
-/// Scripts that complete the program's commands, options, values and files, for each shell. Made of the catalogue at
-/// the time of the build, so that a shell need not run the program.
 namespace cloud2csg::app {
 
-[[nodiscard]] std::string bash_completion(const CommandEntry& program);
-[[nodiscard]] std::string zsh_completion(const CommandEntry& program);
-[[nodiscard]] std::string fish_completion(const CommandEntry& program);
-
-/// As one word of a shell: in single quotes, which are themselves put as `quote`.
-[[nodiscard]] std::string quoted(const std::string& text, const std::string& quote);
-
-/// Endings of all files that a command takes by place, none twice.
-[[nodiscard]] std::vector<std::string> argument_endings(const CommandEntry& command);
+/// What the last of these words of a command line, which may be empty, can become: a line each, with a tab and what it
+/// means behind it. Instead of files stands one line: `:files:BEFORE:ENDINGS`, where BEFORE is what the word has before
+/// the name of the file ("--output="), and no ENDINGS (".ply .pcd") stand for any. The scripts of `completion` ask for
+/// it by `cloud2csg complete WORD...`.
+[[nodiscard]] std::string completions(CLI::App& program, std::span<const std::string> words);
 
 }  // namespace cloud2csg::app
