@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "config_file.hpp"
+#include "config.hpp"
 #include "usage.hpp"
 #include "values.hpp"
 

@@ -35,7 +35,7 @@ struct Command {
 [[nodiscard]] Command add_completion(CLI::App& program);
 [[nodiscard]] Command add_manual(CLI::App& program);
 
-/// Options that every subcommand with work to do has; with them go --config and --print-config (config_file.hpp).
+/// Options that every subcommand with work to do has; with them go --config and --print-config (config.hpp).
 struct RunOptions {
   int threads = 0;  ///< 0 = all cores
   bool quiet = false;

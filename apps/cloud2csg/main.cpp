@@ -16,7 +16,7 @@
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
 #include "completion.hpp"
-#include "config_file.hpp"
+#include "config.hpp"
 #include "core/base/visible_text.hpp"
 #include "installation.hpp"
 #include "interrupt.hpp"

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 
 namespace cloud2csg::app {
 
@@ -11,14 +12,9 @@ namespace cloud2csg::app {
 /// `seeds = false` for --no-seeds), lists for what may be repeated. They stand in the table of their command
 /// (`[extract]`, `[bench.paper]`), or before all tables, for every command that has them. What the command line says
 /// wins, also over what it excludes. A name that no command has is refused with its line and the nearest right one.
+///
+/// The reader of CLI11 is not used: it takes any text for TOML, ends values at a # within quotes, and names no lines.
 void add_config_options(CLI::App& command);
-
-/// Sets the options of `command` that the file gives and the command line did not.
-/// @throws CLI::ConfigError naming file, line and key
-void apply_config(CLI::App& command, const std::string& file);
-
-/// The command's options in force as such a file: those without a value are comments.
-[[nodiscard]] std::string config_text(CLI::App& command);
 
 /// Ends the parsing of a command line by which the configuration is to be printed: what() is its text.
 class PrintedConfig : public CLI::Success {
