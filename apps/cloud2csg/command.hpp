@@ -2,15 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
-#include "cloud2csg/run_context.hpp"
-#include "progress_display.hpp"
+#include "io/formats/formats.hpp"
+#include "session.hpp"
 
 namespace cloud2csg::app {
 
@@ -35,26 +37,14 @@ struct Command {
 [[nodiscard]] Command add_completion(CLI::App& program);
 [[nodiscard]] Command add_manual(CLI::App& program);
 
-/// Options that every subcommand with work to do has; with them go --config and --print-config (config.hpp).
-struct RunOptions {
-  int threads = 0;  ///< 0 = all cores
-  bool quiet = false;
-};
+/// What the last of these words of a command line, which may be empty, can become: a line each, with a tab and what it
+/// means behind it. Instead of files stands one line: `:files:BEFORE:ENDINGS`, where BEFORE is what the word has before
+/// the name of the file ("--output="), and no ENDINGS (".ply .pcd") stand for any. The scripts of `completion` ask for
+/// it by `cloud2csg complete WORD...`.
+[[nodiscard]] std::string completions(CLI::App& program, std::span<const std::string> words);
+
+/// RunOptions; with them go --config and --print-config (config.hpp).
 void add_run_options(CLI::App& options, RunOptions& values);
-
-/// Progress on standard error while it lives.
-class Session {
- public:
-  Session(const RunOptions& options, std::stop_token stop);
-  [[nodiscard]] const RunContext& run() const { return run_; }
-  [[nodiscard]] ProgressDisplay& display() { return display_; }
-  /// A note each.
-  void warn(const std::vector<std::string>& warnings);
-
- private:
-  ProgressDisplay display_;
-  RunContext run_;
-};
 
 /// `-o FILE`, as often as wanted, at least once.
 CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, const std::string& endings);
@@ -77,6 +67,27 @@ auto naming(const std::string& files, const Work& work) {
     throw Error(std::move(parts));
   }
 }
+
+/// What is wrong with the command line, and found only when the command runs.
+class WrongUsage : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Which command takes a file of this kind, where another one was given it.
+[[nodiscard]] const char* taker_of(FileKind kind);
+
+/// Whether a command was named that is only the first word of others, and nothing behind it.
+[[nodiscard]] bool lacks_command(const CLI::App& program);
+
+/// One line that says what is wrong with the command line, with the nearest right name for a wrong one.
+[[nodiscard]] std::string usage_message(const CLI::App& program, const CLI::ParseError& error);
+
+/// CLI11's message in clearer words, where it has none.
+[[nodiscard]] std::string reworded(const CLI::ParseError& error);
+
+/// The candidate nearest to `word`; empty when none is near enough to be meant.
+[[nodiscard]] std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
 
 /// The example that ends a subcommand's help.
 [[nodiscard]] std::string example(const std::string& lines);

@@ -1,5 +1,3 @@
-#include "completion.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,7 +8,7 @@
 
 #include "catalogue.hpp"
 #include "command.hpp"
-#include "values.hpp"
+#include "field_arguments.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "catalogue.hpp"
 #include "cloud2csg/error.hpp"
+#include "command.hpp"
 #include "core/base/atomic_file.hpp"
-#include "usage.hpp"
-#include "values.hpp"
+#include "field_arguments.hpp"
 
 namespace cloud2csg::app {
 namespace {

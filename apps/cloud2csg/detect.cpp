@@ -11,10 +11,10 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "core/base/output_set.hpp"
+#include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "raw_options.hpp"
-#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {

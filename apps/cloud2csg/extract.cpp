@@ -20,8 +20,6 @@
 #include "outputs.hpp"
 #include "raw_options.hpp"
 #include "reports.hpp"
-#include "summary.hpp"
-#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {

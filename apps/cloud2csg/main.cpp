@@ -15,12 +15,10 @@
 
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
-#include "completion.hpp"
 #include "config.hpp"
 #include "core/base/visible_text.hpp"
 #include "installation.hpp"
-#include "interrupt.hpp"
-#include "usage.hpp"
+#include "session.hpp"
 
 namespace cloud2csg::app {
 namespace {

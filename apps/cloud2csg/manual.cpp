@@ -9,7 +9,7 @@
 #include "catalogue.hpp"
 #include "command.hpp"
 #include "core/base/atomic_file.hpp"
-#include "values.hpp"
+#include "field_arguments.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -11,11 +11,11 @@
 
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
+#include "command.hpp"
 #include "core/base/atomic_file.hpp"
+#include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "reports.hpp"
-#include "usage.hpp"
-#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {

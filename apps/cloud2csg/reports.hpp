@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cloud2csg/extract.hpp"
 #include "cloud2csg/view.hpp"
 #include "core/base/output_set.hpp"
 
@@ -18,5 +19,9 @@ void check_report_page(const std::string& file);
 
 /// Writes the reports among `files`. @throws Error, Cancelled
 void add_reports(OutputSet& set, std::span<const std::string> files, const Report& report, const RunContext& run);
+
+/// What an extraction found, in a few lines: points, primitives, partitions, tree, fit, time by stage, files.
+[[nodiscard]] std::vector<std::string> summary_of(const ExtractStatistics& statistics,
+                                                  std::span<const std::string> files);
 
 }  // namespace cloud2csg::app

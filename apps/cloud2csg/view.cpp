@@ -6,13 +6,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "browser.hpp"
 #include "cloud2csg/input.hpp"
 #include "command.hpp"
+#include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "page_server.hpp"
 #include "reports.hpp"
-#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
