@@ -190,33 +190,34 @@ std::string FieldArguments::opposite_option(const OptionField& field) {
   return field.opposite.empty() ? std::string() : joined("--", field.opposite);
 }
 
-void FieldArguments::add_flags(const OptionField& field, bool now, bool paper, const std::string& group,
+void FieldArguments::add_flags(const OptionField& field, bool& now, bool paper, const std::string& group,
                                const std::string& path) {
   const std::string yes = long_option(field);
   const std::string no = opposite_option(field);
   const bool are_both = !yes.empty() && !no.empty();
-  const auto add = [&](const std::string& name, std::string_view text, bool value) {
+  const auto add = [&](const std::string& name, std::string_view text, bool value) -> CLI::Option* {
+    if (name.empty()) return nullptr;
     const char* const mark = !are_both ? "" : value == now ? " (default)" : value == paper ? " (paper)" : "";
     const std::string help = respelled(first_sentence(text), path) + mark;
-    return app_.add_flag(name, help)->group(group);
+    CLI::Option* const option = app_.add_flag(name, help)->group(group);
+    takes_.emplace_back([option, &now, value] {
+      if (option->count() > 0) now = value;
+    });
+    return option;
   };
-  CLI::Option* const on = yes.empty() ? nullptr : add(yes, field.text, true);
-  CLI::Option* const off = no.empty() ? nullptr : add(no, field.otherwise, false);
+  CLI::Option* const on = add(yes, field.text, true);
+  CLI::Option* const off = add(no, field.otherwise, false);
   if (are_both) off->excludes(on);
 }
 
-CLI::Option* FieldArguments::add_value(const OptionField& field, const ValueHelp& help, const std::string& group,
-                                       const std::string& path) {
+CLI::Option* FieldArguments::add_option(const OptionField& field, const ValueHelp& help, const std::string& group,
+                                        const std::string& path) {
   const std::string name = long_option(field);
-  if (app_.get_option_no_throw(name) != nullptr) return nullptr;
   const std::string names = field.letter == 0 ? name : joined("-", std::string_view(&field.letter, 1)) + "," + name;
-  CLI::Option* const option =
-      app_.add_option(names, CLI::callback_t(), respelled(first_sentence(field.text), path) + help.note);
-  return option->type_name(help.type)->group(group)->default_str(help.default_value);
-}
-
-bool FieldArguments::is_given(const std::string& option) const {
-  return !option.empty() && app_.get_option(option)->count() > 0;
+  return app_.add_option(names, CLI::callback_t(), respelled(first_sentence(field.text), path) + help.note)
+      ->type_name(help.type)
+      ->group(group)
+      ->default_str(help.default_value);
 }
 
 }  // namespace cloud2csg::app

@@ -134,10 +134,7 @@ class FieldArguments {
   void add(Options& options, const FieldPlace<std::type_identity_t<Options>>& place) {
     note_names<Options>(place.path);
     add_fields(options, place.paper.value_or(options), place);
-    takes_.emplace_back([this, &options, place] {
-      take_fields(options, place.only);
-      validate(options, place.path);
-    });
+    takes_.emplace_back([&options, path = place.path] { validate(options, path); });
   }
 
   /// Gives the structs what the command line gave. @throws CLI::ValidationError naming the option for values that are
@@ -171,41 +168,37 @@ class FieldArguments {
   }
 
   template <typename Options>
-  void add_fields(const Options& now, const Options& paper, const FieldPlace<Options>& place) {
+  void add_fields(Options& options, const Options& paper, const FieldPlace<Options>& place) {
     for_each_field<Options>([&](auto member, const OptionField& field) {
-      using Value = std::remove_cvref_t<decltype(now.*member)>;
-      if (field.option == k_no_option || !is_among(field.name, place.only)) return;
+      using Value = std::remove_cvref_t<decltype(options.*member)>;
+      const bool is_left_out = !place.only.empty() && std::ranges::find(place.only, field.name) == place.only.end();
+      if (field.option == k_no_option || is_left_out) return;
+      Value& value = options.*member;
       const std::string group(field.group.empty() ? std::string_view(place.group) : field.group);
       if constexpr (HasOptionTable<Value>) {
-        add_fields(now.*member, paper.*member,
+        add_fields(value, paper.*member,
                    FieldPlace<Value>{.group = group, .path = place.path + std::string(field.name) + "."});
       } else if constexpr (std::is_same_v<Value, bool>) {
-        add_flags(field, now.*member, paper.*member, group, place.path);
+        add_flags(field, value, paper.*member, group, place.path);
       } else if constexpr (IsReadable<Value>) {
-        CLI::Option* const option = add_value(field, help_of(field, now.*member, paper.*member), group, place.path);
-        if (option != nullptr) ValueReader<Value>::check(*option, field.range);
+        add_value(field, value, help_of(field, value, paper.*member), group, place.path);
       }
     });
   }
 
-  /// Options that were not given have what is in force as their default from here on: for reports.
-  template <typename Options>
-  void take_fields(Options& options, const std::vector<std::string_view>& only = {}) const {
-    for_each_field<Options>([&](auto member, const OptionField& field) {
-      using Value = std::remove_cvref_t<decltype(options.*member)>;
-      if (field.option == k_no_option || !is_among(field.name, only)) return;
-      Value& value = options.*member;
-      if constexpr (HasOptionTable<Value>) {
-        take_fields(value);
-      } else if constexpr (std::is_same_v<Value, bool>) {
-        if (is_given(long_option(field))) value = true;
-        if (is_given(opposite_option(field))) value = false;
-      } else if constexpr (IsReadable<Value>) {
-        CLI::Option& option = *app_.get_option(long_option(field));
-        if (option.count() > 0) ValueReader<Value>::read(option.results(), value);
-        const std::string text = value_text(value);
-        option.default_str(text.empty() ? std::string(field.absent) : text);
-      }
+  /// An option that was not given has what is in force as its default once it is taken: for reports.
+  template <typename Value>
+  void add_value(const OptionField& field, Value& value, const ValueHelp& help, const std::string& group,
+                 const std::string& path) {
+    CLI::Option* option = app_.get_option_no_throw(long_option(field));
+    if (option == nullptr) {
+      option = add_option(field, help, group, path);
+      ValueReader<Value>::check(*option, field.range);
+    }
+    takes_.emplace_back([option, &value, absent = std::string(field.absent)] {
+      if (option->count() > 0) ValueReader<Value>::read(option->results(), value);
+      const std::string text = value_text(value);
+      option->default_str(text.empty() ? absent : text);
     });
   }
 
@@ -231,14 +224,9 @@ class FieldArguments {
 
   static std::string long_option(const OptionField& field);
   static std::string opposite_option(const OptionField& field);
-  static bool is_among(std::string_view name, const std::vector<std::string_view>& only) {
-    return only.empty() || std::ranges::find(only, name) != only.end();
-  }
-  void add_flags(const OptionField& field, bool now, bool paper, const std::string& group, const std::string& path);
-  /// Nothing when there is an option of the name.
-  CLI::Option* add_value(const OptionField& field, const ValueHelp& help, const std::string& group,
-                         const std::string& path);
-  [[nodiscard]] bool is_given(const std::string& option) const;
+  void add_flags(const OptionField& field, bool& now, bool paper, const std::string& group, const std::string& path);
+  CLI::Option* add_option(const OptionField& field, const ValueHelp& help, const std::string& group,
+                          const std::string& path);
   /// With options for the `fields` that a text speaks of; of those at the path first.
   [[nodiscard]] std::string respelled(const std::string& text, const std::string& path) const;
   [[nodiscard]] const Name* name_of(const std::string& field, const std::string& path) const;
