@@ -1,13 +1,8 @@
 #include "page_server.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <httplib.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
@@ -15,6 +10,7 @@
 #include <thread>
 
 #include "cloud2csg/error.hpp"
+#include "core/base/run_program.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -81,17 +77,10 @@ void wait_for(const std::stop_token& stop) {
   changed.wait(lock, stop, [] { return false; });
 }
 
-/// Whether it ends within a second, and says that it failed. What goes on, as a browser may, is not waited for.
-bool fails_soon(pid_t child) {
-  using namespace std::chrono_literals;
-  for (int tenth = 0; tenth < 10; ++tenth) {
-    int status = 0;
-    if (::waitpid(child, &status, WNOHANG) == child) return !WIFEXITED(status) || WEXITSTATUS(status) != 0;
-    std::this_thread::sleep_for(100ms);
-  }
-  std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
-  return false;
-}
+/// Fails when xdg-open does so within a second. What goes on, as a browser may, is not waited for.
+constexpr const char* k_open = R"(xdg-open "$1" &
+for tenth in 1 2 3 4 5 6 7 8 9 10; do kill -0 $! || break; sleep 0.1; done
+kill -0 $! || wait $!)";
 
 }  // namespace
 
@@ -113,21 +102,9 @@ void serve_page(const std::string& page, int port, const std::stop_token& stop,
 }
 
 bool open_in_browser(const std::string& address) {
-  const bool has_desktop = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-  if (!has_desktop) return false;
-  std::string program = "xdg-open";
-  std::string argument = address;
-  std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
-  }
-  pid_t child = -1;
-  const int status = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (status != 0) return false;
-  return !fails_soon(child);
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return false;
+  constexpr std::chrono::seconds k_limit{5};
+  return run_program({"sh", "-c", k_open, "sh", address}, "/dev/null", "/dev/null", k_limit) == RunEnd::done;
 }
 
 }  // namespace cloud2csg::app
