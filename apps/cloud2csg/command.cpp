@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "config.hpp"
 #include "field_arguments.hpp"
 
 namespace cloud2csg::app {
@@ -38,8 +37,7 @@ std::string unknown_argument(const CLI::App& app, std::string word) {
   if (is_option) word = word.substr(0, word.find('='));
   const std::vector<std::string> names = known_names(app, is_option);
   const char* kind = is_option ? "unknown option" : names.empty() ? "unexpected argument" : "unknown command";
-  const std::string nearest = nearest_name(word, names);
-  return fmt::format("{} '{}'{}", kind, word, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+  return fmt::format("{} '{}'{}", kind, word, suggestion(word, names));
 }
 
 /// How many letters must be inserted, deleted, replaced or swapped with their neighbour to turn one word into the
@@ -84,6 +82,12 @@ CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, con
 
 CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& file, const std::string& help) {
   return options.add_option(name, file, help)->check(file_name())->required();
+}
+
+void add_shape(CLI::App& options, std::string& file) {
+  const std::string help =
+      "Model file with a tree: " + endings_read({FileKind::model}) + ", or mesh: " + endings_read({FileKind::mesh});
+  add_file(options, "shape", file, help)->type_name("MODEL|MESH");
 }
 
 const CsgTree& tree_of(const Model& model, const std::string& file) {
@@ -138,7 +142,7 @@ std::string reworded(const CLI::ParseError& error) {
   return text;
 }
 
-std::string nearest_name(std::string_view word, std::span<const std::string> candidates) {
+std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
   std::string nearest;
   // A third of the letters may be wrong.
   std::size_t best = std::max<std::size_t>(1, word.size() / 3) + 1;
@@ -147,7 +151,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
     const std::size_t distance = abbreviates ? 1 : edit_distance(word, candidate);
     if (distance < best) best = distance, nearest = candidate;
   }
-  return nearest;
+  return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {

@@ -43,14 +43,33 @@ struct Command {
 /// it by `cloud2csg complete WORD...`.
 [[nodiscard]] std::string completions(CLI::App& program, std::span<const std::string> words);
 
-/// RunOptions; with them go --config and --print-config (config.hpp).
+/// RunOptions, and with them --config and --print-config.
 void add_run_options(CLI::App& options, RunOptions& values);
+
+/// Adds --config FILE and --print-config to a command.
+///
+/// The file is TOML: options by their long names without dashes (`leaf-cost = 0.001`, `snap`-like flags `quiet = true`,
+/// `seeds = false` for --no-seeds), lists for what may be repeated. They stand in the table of their command
+/// (`[extract]`, `[bench.paper]`), or before all tables, for every command that has them. What the command line says
+/// wins, also over what it excludes. A name that no command has is refused with its line and the nearest right one.
+///
+/// The reader of CLI11 is not used: it takes any text for TOML, ends values at a # within quotes, and names no lines.
+void add_config_options(CLI::App& command);
+
+/// Ends the parsing of a command line by which the configuration is to be printed: what() is its text.
+class PrintedConfig : public CLI::Success {
+ public:
+  explicit PrintedConfig(std::string text) : CLI::Success("PrintedConfig", std::move(text), CLI::ExitCodes::Success) {}
+};
 
 /// `-o FILE`, as often as wanted, at least once.
 CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, const std::string& endings);
 
 /// A required file to read, as an option or by its place.
 CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& file, const std::string& help);
+
+/// What a cloud is to be made of.
+void add_shape(CLI::App& options, std::string& file);
 
 /// @throws Error naming the file when the model has no tree.
 [[nodiscard]] const CsgTree& tree_of(const Model& model, const std::string& file);
@@ -86,8 +105,8 @@ class WrongUsage : public Error {
 /// CLI11's message in clearer words, where it has none.
 [[nodiscard]] std::string reworded(const CLI::ParseError& error);
 
-/// The candidate nearest to `word`; empty when none is near enough to be meant.
-[[nodiscard]] std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
+/// "; did you mean 'extract'?", or nothing when no candidate is near enough to `word` to be meant.
+[[nodiscard]] std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
 /// The example that ends a subcommand's help.
 [[nodiscard]] std::string example(const std::string& lines);

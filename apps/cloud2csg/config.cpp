@@ -1,5 +1,3 @@
-#include "config.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
@@ -131,9 +129,7 @@ class ConfigReader {
 
   [[noreturn]] void refuse_name(const std::string& what, const std::string& name, const toml::node& place,
                                 const std::vector<std::string>& known) const {
-    const std::string nearest = nearest_name(name, known);
-    refuse_at(place, fmt::format("unknown {} '{}'{}", what, name,
-                                 nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+    refuse_at(place, fmt::format("unknown {} '{}'{}", what, name, suggestion(name, known)));
   }
 
   /// Tables of other commands are checked for names that these do not have. Before all tables stand options of any

@@ -15,7 +15,6 @@
 
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
-#include "config.hpp"
 #include "core/base/visible_text.hpp"
 #include "installation.hpp"
 #include "session.hpp"

@@ -22,6 +22,7 @@ namespace cloud2csg::app {
 namespace {
 
 constexpr int k_status_interrupted = 130;  // 128 + SIGINT, as shells count
+constexpr std::array k_signals{SIGINT, SIGTERM, SIGHUP};
 constexpr char k_byte_interrupt = 'i';
 constexpr char k_byte_quit = 'q';
 
@@ -100,15 +101,11 @@ InterruptWatcher::InterruptWatcher() {
   action.sa_handler = on_interrupt;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  ::sigaction(SIGINT, &action, &old_interrupt_);
-  ::sigaction(SIGTERM, &action, &old_terminate_);
-  ::sigaction(SIGHUP, &action, &old_hang_up_);
+  for (std::size_t k = 0; k < old_.size(); ++k) ::sigaction(k_signals[k], &action, &old_[k]);
 }
 
 InterruptWatcher::~InterruptWatcher() {
-  ::sigaction(SIGINT, &old_interrupt_, nullptr);
-  ::sigaction(SIGTERM, &old_terminate_, nullptr);
-  ::sigaction(SIGHUP, &old_hang_up_, nullptr);
+  for (std::size_t k = 0; k < old_.size(); ++k) ::sigaction(k_signals[k], &old_[k], nullptr);
   const int write_end = pipe_write_end.exchange(-1);
   [[maybe_unused]] const ssize_t written = ::write(write_end, &k_byte_quit, 1);
   watcher_.join();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -29,9 +30,7 @@ class InterruptWatcher {
 
  private:
   std::stop_source stop_;
-  struct sigaction old_interrupt_ = {};
-  struct sigaction old_terminate_ = {};
-  struct sigaction old_hang_up_ = {};
+  std::array<struct sigaction, 3> old_ = {};  ///< what each signal did
   int pipe_read_ = -1;
   std::thread watcher_;
 };
