@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <set>
 #include <sstream>
 #include <vector>
@@ -18,24 +17,18 @@
 namespace cloud2csg::app {
 namespace {
 
-std::optional<std::string> text_of(const toml::node& value) {
-  if (const auto* text = value.as_string()) return text->get();
-  if (const auto* whole = value.as_integer()) return std::to_string(whole->get());
-  // The shortest that is read as the same number.
-  if (const auto* number = value.as_floating_point()) return fmt::format("{}", number->get());
-  return std::nullopt;
-}
-
 /// A value, or the values of a list, as the command line would have them; empty when there is something else in it.
 std::vector<std::string> texts_of(const toml::node& value) {
-  toml::array items;
-  if (const toml::array* const list = value.as_array()) items = *list;
-  if (!value.is_array()) items.push_back(value);
+  if (const auto* text = value.as_string()) return {text->get()};
+  if (const auto* whole = value.as_integer()) return {std::to_string(whole->get())};
+  // The shortest that is read as the same number.
+  if (const auto* number = value.as_floating_point()) return {fmt::format("{}", number->get())};
   std::vector<std::string> texts;
-  for (const toml::node& item : items) {
-    const std::optional<std::string> text = text_of(item);
-    if (!text) return {};
-    texts.push_back(*text);
+  if (const toml::array* const list = value.as_array()) {
+    for (const toml::node& item : *list) {
+      if (!item.is_string() && !item.is_number()) return {};
+      texts.push_back(texts_of(item).front());
+    }
   }
   return texts;
 }
@@ -45,7 +38,7 @@ std::string toml_of(const std::string& text) {
   try {
     const toml::table table = toml::parse("x = " + text);
     const toml::node& value = *table.get("x");
-    if (table.size() == 1 && value.is_number() && text_of(value) == text) return text;
+    if (table.size() == 1 && value.is_number() && texts_of(value).front() == text) return text;
   } catch (const toml::parse_error&) {
     // It is no number.
   }

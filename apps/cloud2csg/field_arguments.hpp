@@ -245,6 +245,7 @@ template <typename Work>
   add_options(app, *work, *fields);
   if constexpr (requires { work->running; }) add_run_options(app, work->running);
   app.final_callback([&app, work, fields] {
+    (void)app;  // for settle() only
     if constexpr (requires { work->prepare(); }) work->prepare();
     fields->take();
     if constexpr (requires { work->settle(app); }) work->settle(app);
