@@ -4,43 +4,26 @@
 #include <string>
 #include <vector>
 
-/// The program's commands and options as plain values: what manual pages, completions and printed configurations are
-/// made of.
+/// What the help shows of the program: its commands, options and arguments, less those without a group, which are
+/// hidden. Manual pages, completions and printed configurations are made of these.
 namespace cloud2csg::app {
 
-struct OptionEntry {
-  std::vector<std::string> names;    ///< "-o", "--output"; the only one of an argument that goes by its place: "cloud"
-  std::string value;                 ///< what stands for it: "FILE"; empty for a flag
-  std::string help;                  ///< a sentence
-  std::string default_value;         ///< empty: none, or told in the help
-  std::string group;                 ///< "Output"
-  bool is_required = false;          ///< must be given
-  bool is_repeatable = false;        ///< may be given more than once
-  bool is_file = false;              ///< its value names a file
-  std::vector<std::string> endings;  ///< of such files: ".ply"; empty for any
-  std::vector<std::string> choices;  ///< all values that it takes; empty for others
-};
+/// Those right inside of it.
+[[nodiscard]] std::vector<CLI::App*> commands_of(CLI::App& command);
+/// The command and all inside of it, outer ones first.
+[[nodiscard]] std::vector<CLI::App*> all_commands(CLI::App& command);
+/// What goes by its place.
+[[nodiscard]] std::vector<CLI::Option*> arguments_of(CLI::App& command);
+/// What has a name, those of a group together where its first is.
+[[nodiscard]] std::vector<CLI::Option*> options_of(CLI::App& command);
 
-struct CommandEntry {
-  std::vector<std::string> path = {};  ///< "cloud2csg", "bench", "paper"
-  std::string summary = {};            ///< one line
-  std::string notes = {};              ///< what ends its help, without the examples
-  std::string examples = {};           ///< lines to type
-  std::vector<OptionEntry> arguments = {};
-  std::vector<OptionEntry> options = {};
-  std::vector<CommandEntry> commands = {};
-};
-
-/// All that the help shows; commands and options without a group are hidden.
-[[nodiscard]] CommandEntry catalogue_of(CLI::App& program);
-
-[[nodiscard]] OptionEntry entry_of(CLI::Option& option);
-
-/// The command and those inside of it, outer ones first. They live as long as `program`.
-[[nodiscard]] std::vector<const CommandEntry*> all_commands(const CommandEntry& program);
+/// "-o", "--output"
+[[nodiscard]] std::vector<std::string> dashed_names(const CLI::Option& option);
+/// Whether it is more than a flag.
+[[nodiscard]] bool takes_value(const CLI::Option& option);
 
 /// "cloud2csg bench paper"
-[[nodiscard]] std::string path_text(const CommandEntry& command, const std::string& separator = " ");
+[[nodiscard]] std::string path_text(const CLI::App& command, const std::string& separator = " ");
 
 /// The text with each occurrence of a part replaced.
 [[nodiscard]] std::string replaced(std::string text, const std::string& part, const std::string& by);

@@ -8,7 +8,6 @@
 #include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
-#include "reports.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -24,8 +23,7 @@ struct ConvertCommand {
 };
 
 void ConvertCommand::run(std::stop_token stop) const {
-  for (const std::string& file : outputs) check_output(file, model_endings());
-  check_distinct(outputs);
+  check_outputs(outputs, model_endings());
   Session session(running, std::move(stop));
   const Model read = read_model(model);
   if (std::any_of(outputs.begin(), outputs.end(), needs_tree)) (void)tree_of(read, model);

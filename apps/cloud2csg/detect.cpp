@@ -11,10 +11,10 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "core/base/output_set.hpp"
+#include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "raw_options.hpp"
-#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -32,7 +32,6 @@ struct DetectCommand {
   RunOptions running;
 
   void run(std::stop_token stop) const;
-  void check_files() const;
   void settle(const CLI::App& /*app*/) { share_values(options, reading); }
 };
 
@@ -76,16 +75,8 @@ std::vector<Colour> colours_of(const Extraction& found) {
   return colours;
 }
 
-void DetectCommand::check_files() const {
-  for (const std::string& file : outputs) check_output(file, k_endings);
-  std::vector<std::string> files = outputs;
-  files.push_back(cloud);
-  if (!primitives.empty() && primitives != cloud) files.push_back(primitives);
-  check_distinct(files);
-}
-
 void DetectCommand::run(std::stop_token stop) const {
-  check_files();
+  check_outputs(outputs, k_endings, inputs_of(cloud, primitives));
   Session session(running, std::move(stop));
 
   Model known;
@@ -128,17 +119,10 @@ void DetectCommand::run(std::stop_token stop) const {
 }
 
 void add_options(CLI::App& app, DetectCommand& command, FieldArguments& fields) {
-  add_file(app, "cloud", command.cloud,
-           fmt::format("Point cloud: {}, or mesh: {}", endings_read({FileKind::cloud}), endings_read({FileKind::mesh})))
-      ->type_name("CLOUD|MESH");
-  CLI::Option* primitives =
-      app.add_option("--primitives", command.primitives,
-                     "Model " + endings_read({FileKind::model}) +
-                         " with primitives that are known: they are kept as they are, and only what they leave "
-                         "unexplained is looked for")
-          ->check(file_name())
-          ->type_name("MODEL")
-          ->group("Input");
+  add_cloud(app, command.cloud);
+  CLI::Option* primitives = add_primitives(app, command.primitives,
+                                           " with primitives that are known: they are kept as they are, and only what "
+                                           "they leave unexplained is looked for");
   app.add_flag("--detect-rest", command.detect_rest, "As in extract; here it is so whenever --primitives is given")
       ->needs(primitives)
       ->group("Input");

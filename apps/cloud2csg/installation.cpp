@@ -4,19 +4,31 @@
 #include <hwy/targets.h>
 #include <unistd.h>
 
-#include <bit>
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "bench/experiment/paper.hpp"
 #include "cloud2csg/advanced/brep.hpp"
+#include "cloud2csg/error.hpp"
 #include "cloud2csg/view.hpp"
+#include "command.hpp"
 
 namespace cloud2csg::app {
 namespace {
 
-using State = Finding::State;
+constexpr std::string_view k_fine = "ok";
+constexpr std::string_view k_absent = "absent";  // left out, and most works without
+constexpr std::string_view k_broken = "BROKEN";  // should be there
+
+/// What is told of a part.
+struct Finding {
+  std::string_view state;
+  std::string part, text, remedy = {};
+};
 
 /// The widest of those that were compiled and that the processor has: the lowest bit, as Highway orders them.
 std::string instruction_set() {
@@ -29,14 +41,14 @@ Finding cad_files() {
   const std::string part = "CAD files";
   if (!support.fault.empty()) {
     const bool is_broken = support.is_built_in && !support.lacks_opencascade;
-    return {is_broken ? State::broken : State::absent, part, "no .step, .brep: " + support.fault, support.remedy};
+    return {is_broken ? k_broken : k_absent, part, "no .step, .brep: " + support.fault, support.remedy};
   }
-  return {State::fine, part, ".step, .brep by OpenCASCADE: " + support.module.string()};
+  return {k_fine, part, ".step, .brep by OpenCASCADE: " + support.module.string()};
 }
 
 Finding reports() {
-  if (has_report_page()) return {State::fine, "reports", ".html and 'view' are built in"};
-  return {State::absent, "reports", "built without: no .html, no 'view'",
+  if (has_report_page()) return {k_fine, "reports", ".html and 'view' are built in"};
+  return {k_absent, "reports", "built without: no .html, no 'view'",
           "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"};
 }
 
@@ -45,15 +57,42 @@ Finding helper(const std::string& part, const std::string& name, const std::stri
                const std::string& package) {
   const char* const search_path = std::getenv("PATH");
   const auto found = find_program(name, search_path != nullptr ? search_path : "");
-  if (found) return {State::fine, part, found->string()};
-  return {State::absent, part, fmt::format("'{}' is not found: {}", name, without), "install " + package};
+  if (found) return {k_fine, part, found->string()};
+  return {k_absent, part, fmt::format("'{}' is not found: {}", name, without), "install " + package};
 }
 
 Finding models() {
   const auto folder = shipped_models();
-  if (folder) return {State::fine, "models", folder->string()};
-  return {State::broken, "models", "the shipped models are not beside the program: 'bench paper' needs --models",
+  if (folder) return {k_fine, "models", folder->string()};
+  return {k_broken, "models", "the shipped models are not beside the program: 'bench paper' needs --models",
           "install cloud2csg anew"};
+}
+
+/// Looks at all parts; takes as long as OpenCASCADE takes to load.
+std::vector<Finding> examine_installation() {
+  const Environment here = current_environment();
+  return {{k_fine, "cloud2csg", fmt::format("{}, built by {}", here.version, here.compiler)},
+          {k_fine, "processor",
+           fmt::format("{}; {} thread{}; instruction set {}", here.cpu, here.cores, here.cores == 1 ? "" : "s",
+                       instruction_set())},
+          cad_files(),
+          reports(),
+          models(),
+          helper("OpenSCAD", "openscad", "written .scad files cannot be opened here", "openscad"),
+          helper("FreeCAD", "freecadcmd", "written .FCMacro and .step files cannot be opened here", "freecad"),
+          helper("gnuplot", "gnuplot", "'bench' makes tables, and no figures", "gnuplot-nox"),
+          helper("browser", "xdg-open", "'view' prints the address only", "xdg-utils")};
+}
+
+void examine() {
+  const std::vector<Finding> findings = examine_installation();
+  for (const Finding& finding : findings) {
+    fmt::print("{:<7} {:<10} {}{}\n", finding.state, finding.part, finding.text,
+               finding.remedy.empty() ? "" : "; " + finding.remedy);
+  }
+  const auto broken = std::ranges::find(findings, k_broken, &Finding::state);
+  if (broken == findings.end()) return;
+  throw Error({.where = broken->part, .expected = broken->text, .remedy = broken->remedy});
 }
 
 }  // namespace
@@ -84,19 +123,13 @@ std::string version_text() {
                      mark(is_brep_built_in()), mark(has_report_page()), mark(has_report_page()));
 }
 
-std::vector<Finding> examine_installation() {
-  const Environment here = current_environment();
-  return {{State::fine, "cloud2csg", fmt::format("{}, built by {}", here.version, here.compiler)},
-          {State::fine, "processor",
-           fmt::format("{}; {} thread{}; instruction set {}", here.cpu, here.cores, here.cores == 1 ? "" : "s",
-                       instruction_set())},
-          cad_files(),
-          reports(),
-          models(),
-          helper("OpenSCAD", "openscad", "written .scad files cannot be opened here", "openscad"),
-          helper("FreeCAD", "freecadcmd", "written .FCMacro and .step files cannot be opened here", "freecad"),
-          helper("gnuplot", "gnuplot", "'bench' makes tables, and no figures", "gnuplot-nox"),
-          helper("browser", "xdg-open", "'view' prints the address only", "xdg-utils")};
+Command add_doctor(CLI::App& program) {
+  CLI::App* app = program.add_subcommand("doctor", "Says which optional parts are there, and what is broken");
+  app->footer(
+      "'absent' is what this program was built without, or what is not installed here; exit status 1 says that "
+      "something is broken.\n\n" +
+      example("  cloud2csg doctor"));
+  return {.options = app, .run = [](const std::stop_token& /*stop*/) { examine(); }};
 }
 
 }  // namespace cloud2csg::app

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <span>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -14,11 +15,9 @@
 
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
-#include "config_file.hpp"
 #include "core/base/visible_text.hpp"
 #include "installation.hpp"
-#include "interrupt.hpp"
-#include "usage.hpp"
+#include "session.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -101,8 +100,10 @@ int run(int argc, char** argv) {
                                       add_scan(program),    add_compare(program),    add_convert(program),
                                       add_view(program),    add_info(program),       add_bench(program),
                                       add_doctor(program),  add_completion(program), add_manual(program)};
+  std::vector<std::string> words = words_of(argc, argv);
+  // As shells ask: the words may be anything, so they are not parsed.
+  if (!words.empty() && words.front() == "complete") return print(completions(program, std::span(words).subspan(1)));
   try {
-    std::vector<std::string> words = words_of(argc, argv);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     program.parse(std::move(words));
   } catch (const PrintedConfig& asked) {

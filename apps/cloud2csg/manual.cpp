@@ -1,5 +1,3 @@
-#include "manual.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,9 +6,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "catalogue.hpp"
 #include "command.hpp"
 #include "core/base/atomic_file.hpp"
-#include "values.hpp"
+#include "field_arguments.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -32,64 +31,67 @@ std::string italic(const std::string& text) {
 }
 
 std::string upper_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
 }
 
-std::string entry_text(const OptionEntry& option) {
-  std::vector<std::string> names;
-  names.reserve(option.names.size());
-  for (const std::string& name : option.names) names.push_back(bold(name));
-  std::string text = fmt::format(".TP\n{}{}\n{}", fmt::join(names, ", "),
-                                 option.value.empty() ? "" : " " + italic(option.value), plain(option.help));
-  if (!option.default_value.empty()) text += fmt::format("\n.br\nDefault: {}", plain(option.default_value));
-  if (option.is_required) text += "\n.br\nMust be given.";
+std::string entry_text(const CLI::Option& option) {
+  std::vector<std::string> names = dashed_names(option);
+  for (std::string& name : names) name = bold(name);
+  std::string text =
+      fmt::format(".TP\n{}{}\n{}", fmt::join(names, ", "),
+                  takes_value(option) ? " " + italic(option.get_type_name()) : "", plain(option.get_description()));
+  if (!option.get_default_str().empty()) text += fmt::format("\n.br\nDefault: {}", plain(option.get_default_str()));
+  if (option.get_required()) text += "\n.br\nMust be given.";
   return text + "\n";
 }
 
-std::string argument_text(const OptionEntry& argument) {
-  return fmt::format(".TP\n{}\n{}\n", italic(argument.value), plain(argument.help));
+std::string arguments_text(CLI::App& command) {
+  std::string text;
+  for (const CLI::Option* const argument : arguments_of(command)) {
+    text += fmt::format(".TP\n{}\n{}\n", italic(argument->get_type_name()), plain(argument->get_description()));
+  }
+  return text;
 }
 
-std::string synopsis(const CommandEntry& command) {
+std::string synopsis(CLI::App& command) {
   std::string text = bold(path_text(command));
-  if (!command.commands.empty()) return text + " " + italic("COMMAND") + " ...";
-  for (const OptionEntry& argument : command.arguments) text += " " + italic(argument.value);
-  for (const OptionEntry& option : command.options) {
-    if (option.is_required) text += fmt::format(" {} {}", bold(option.names.front()), italic(option.value));
+  if (!commands_of(command).empty()) return text + " " + italic("COMMAND") + " ...";
+  for (const CLI::Option* const argument : arguments_of(command)) text += " " + italic(argument->get_type_name());
+  for (const CLI::Option* const option : options_of(command)) {
+    if (!option->get_required()) continue;
+    text += fmt::format(" {} {}", bold(dashed_names(*option).front()), italic(option->get_type_name()));
   }
   return text + " [" + italic("OPTION") + "]...";
 }
 
-/// By group, in the order in which the groups come first.
-std::string options_text(const CommandEntry& command) {
-  std::vector<std::string> groups;
-  for (const OptionEntry& option : command.options) {
-    if (std::find(groups.begin(), groups.end(), option.group) == groups.end()) groups.push_back(option.group);
-  }
+std::string options_text(CLI::App& command) {
+  const std::vector<CLI::Option*> options = options_of(command);
+  const bool has_groups = options.front()->get_group() != options.back()->get_group();
   std::string text;
-  for (const std::string& group : groups) {
-    if (groups.size() > 1) text += fmt::format(".SS {}\n", plain(group == "Options" ? "General" : group));
-    for (const OptionEntry& option : command.options) {
-      if (option.group == group) text += entry_text(option);
+  std::string group;
+  for (const CLI::Option* const option : options) {
+    if (has_groups && option->get_group() != group) {
+      group = option->get_group();
+      text += fmt::format(".SS {}\n", plain(group == "Options" ? "General" : group));
     }
+    text += entry_text(*option);
   }
   return text;
 }
 
-std::string commands_text(const CommandEntry& command) {
+std::string commands_text(CLI::App& command) {
   std::string text;
-  for (const CommandEntry& inner : command.commands) {
-    text += fmt::format(".TP\n{}(1)\n{}\n", bold(path_text(inner, "-")), plain(inner.summary));
+  for (const CLI::App* const inner : commands_of(command)) {
+    text += fmt::format(".TP\n{}(1)\n{}\n", bold(path_text(*inner, "-")), plain(inner->get_description()));
   }
   return text;
 }
 
-std::string others(const CommandEntry& command, const CommandEntry& program) {
+std::string others(const CLI::App& command, CLI::App& program) {
   std::string text;
-  for (const CommandEntry* other : all_commands(program)) {
-    if (other->path == command.path) continue;
+  for (const CLI::App* const other : all_commands(program)) {
+    if (other == &command) continue;
     text += fmt::format("{}{}(1)", text.empty() ? "" : ",\n", bold(path_text(*other, "-")));
   }
   return text + "\n";
@@ -117,25 +119,30 @@ Wrong usage.
 Interrupted twice.
 )";
 
-}  // namespace
-
-std::string manual_page(const CommandEntry& command, const CommandEntry& program) {
+/// Its page, in roff.
+std::string manual_page(CLI::App& command, CLI::App& program) {
   const std::string name = path_text(command, "-");
+  const std::string footer = command.get_footer();
+  const std::size_t end = footer.find(example(""));
+  std::string notes = footer.substr(0, end);
+  while (notes.ends_with('\n')) notes.pop_back();
   std::string page =
       fmt::format(".TH {} 1 \"\" \"cloud2csg {}\" \"User Commands\"\n", plain(upper_case(name)), CLOUD2CSG_VERSION);
-  page += section("NAME", fmt::format("{} \\- {}", plain(name), plain(command.summary)));
+  page += section("NAME", fmt::format("{} \\- {}", plain(name), plain(command.get_description())));
   page += section("SYNOPSIS", synopsis(command));
-  page += section("DESCRIPTION", plain(replaced(command.notes, "\n\n", "\n")));
-  std::string arguments;
-  for (const OptionEntry& argument : command.arguments) arguments += argument_text(argument);
-  page += section("ARGUMENTS", arguments);
+  page += section("DESCRIPTION", plain(replaced(notes, "\n\n", "\n")));
+  page += section("ARGUMENTS", arguments_text(command));
   page += section("COMMANDS", commands_text(command));
   page += section("OPTIONS", options_text(command));
-  if (!command.examples.empty()) page += section("EXAMPLES", ".nf\n" + plain(command.examples) + "\n.fi");
+  if (end != std::string::npos) {
+    page += section("EXAMPLES", ".nf\n" + plain(footer.substr(end + example("").size())) + "\n.fi");
+  }
   page += section("ENVIRONMENT", k_environment);
   page += section("EXIT STATUS", k_exit_status);
   return page + section("SEE ALSO", others(command, program));
 }
+
+}  // namespace
 
 Command add_manual(CLI::App& program) {
   CLI::App* app = program.add_subcommand("manual", "Writes the pages of the manual, for the build");
@@ -144,10 +151,9 @@ Command add_manual(CLI::App& program) {
   auto folder = std::make_shared<std::string>();
   app->add_option("folder", *folder, "Folder that is there")->check(file_name())->required()->type_name("DIR");
   return {.options = app, .run = [&program, folder](const std::stop_token& /*stop*/) {
-            const CommandEntry all = catalogue_of(program);
-            for (const CommandEntry* command : all_commands(all)) {
+            for (CLI::App* const command : all_commands(program)) {
               const std::filesystem::path file = std::filesystem::path(*folder) / (path_text(*command, "-") + ".1");
-              write_text_file(file, manual_page(*command, all));
+              write_text_file(file, manual_page(*command, program));
             }
           }};
 }

@@ -1,6 +1,7 @@
 #include "outputs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,11 +12,10 @@
 
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
+#include "command.hpp"
 #include "core/base/atomic_file.hpp"
+#include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
-#include "reports.hpp"
-#include "usage.hpp"
-#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -52,6 +52,13 @@ void add_brep_warnings(std::vector<std::string>& warnings, const std::string& fi
 ExportOptions named_for(const std::string& file, ExportOptions options) {
   if (options.brep.name.empty()) options.brep.name = std::filesystem::path(file).stem().string();
   return options;
+}
+
+/// Empty when it has none.
+std::string value_of(const CLI::Option& option) {
+  if (option.count() == 0) return option.get_default_str();
+  if (option.get_expected_max() == 0) return "yes";
+  return fmt::format("{}", fmt::join(option.results(), ", "));
 }
 
 }  // namespace
@@ -144,6 +151,46 @@ void check_distinct(std::span<const std::string> files) {
                         .remedy = "give each file a name of its own"});
     }
     seen.push_back(std::move(path));
+  }
+}
+
+void check_outputs(std::span<const std::string> outputs, const std::string& endings,
+                   std::span<const std::string> inputs) {
+  for (const std::string& file : outputs) check_output(file, endings);
+  std::vector<std::string> files(outputs.begin(), outputs.end());
+  files.insert(files.end(), inputs.begin(), inputs.end());
+  check_distinct(files);
+}
+
+void write_clouds(std::span<const std::string> files, const PointCloud& cloud, const CloudWriteOptions& options) {
+  OutputSet written;
+  for (const std::string& file : files) {
+    written.add(file, [&](const std::filesystem::path& path) { write_point_cloud(path, cloud, options); });
+  }
+  written.commit();
+}
+
+void check_report_page(const std::string& file) {
+  if (has_report_page()) return;
+  throw Error({.file = file,
+               .expected = "cannot be shown: this cloud2csg was built without the page of reports",
+               .remedy = "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"});
+}
+
+std::vector<ReportParameter> parameters_of(const CLI::App& command) {
+  std::vector<ReportParameter> parameters;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option == command.get_help_ptr()) continue;
+    const std::string value = value_of(*option);
+    if (!value.empty()) parameters.push_back({option->get_group(), option->get_name(), value});
+  }
+  return parameters;
+}
+
+void add_reports(OutputSet& set, std::span<const std::string> files, const Report& report, const RunContext& run) {
+  for (const std::string& file : files) {
+    if (!is_report(file)) continue;
+    set.add(file, [&](const std::filesystem::path& path) { write_report(path, report, {}, run); });
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/export.hpp"
+#include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/view.hpp"
 #include "core/base/output_set.hpp"
 
@@ -43,5 +44,21 @@ void add_pictures(OutputSet& set, std::span<const std::string> files, const Scen
 
 /// Refuses a list of inputs and outputs in which two name the same file. @throws WrongUsage
 void check_distinct(std::span<const std::string> files);
+
+/// Both for all outputs of a command, which are also not to be its `inputs`.
+void check_outputs(std::span<const std::string> outputs, const std::string& endings,
+                   std::span<const std::string> inputs = {});
+
+/// Writes a cloud to each of the files, or to none. @throws Error
+void write_clouds(std::span<const std::string> files, const PointCloud& cloud, const CloudWriteOptions& options);
+
+/// @throws Error naming the file when this build has no page to make reports of.
+void check_report_page(const std::string& file);
+
+/// The options of a subcommand that have a value: given, or by default. No switches that were not given.
+[[nodiscard]] std::vector<ReportParameter> parameters_of(const CLI::App& command);
+
+/// Writes the reports among `files`. @throws Error, Cancelled
+void add_reports(OutputSet& set, std::span<const std::string> files, const Report& report, const RunContext& run);
 
 }  // namespace cloud2csg::app

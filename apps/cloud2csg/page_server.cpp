@@ -5,10 +5,12 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdlib>
 #include <mutex>
 #include <thread>
 
 #include "cloud2csg/error.hpp"
+#include "core/base/run_program.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -75,6 +77,11 @@ void wait_for(const std::stop_token& stop) {
   changed.wait(lock, stop, [] { return false; });
 }
 
+/// Fails when xdg-open does so within a second. What goes on, as a browser may, is not waited for.
+constexpr const char* k_open = R"(xdg-open "$1" &
+for tenth in 1 2 3 4 5 6 7 8 9 10; do kill -0 $! || break; sleep 0.1; done
+kill -0 $! || wait $!)";
+
 }  // namespace
 
 void serve_page(const std::string& page, int port, const std::stop_token& stop,
@@ -92,6 +99,12 @@ void serve_page(const std::string& page, int port, const std::stop_token& stop,
   while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   server.stop();
   listener.join();
+}
+
+bool open_in_browser(const std::string& address) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return false;
+  constexpr std::chrono::seconds k_limit{5};
+  return run_program({"sh", "-c", k_open, "sh", address}, "/dev/null", "/dev/null", k_limit) == RunEnd::done;
 }
 
 }  // namespace cloud2csg::app

@@ -13,4 +13,8 @@ namespace cloud2csg::app {
 void serve_page(const std::string& page, int port, const std::stop_token& stop,
                 const std::function<void(const std::string& address)>& on_ready);
 
+/// Opens an address with xdg-open, where there is a desktop and that program; false where there is not, or it fails
+/// within a second. Waits no longer.
+bool open_in_browser(const std::string& address);
+
 }  // namespace cloud2csg::app

@@ -7,6 +7,22 @@
 /// The options of the way from a raw cloud or mesh to primitives, which `extract` and `detect` have.
 namespace cloud2csg::app {
 
+inline void add_cloud(CLI::App& app, std::string& file) {
+  const std::string help =
+      "Point cloud: " + endings_read({FileKind::cloud}) + ", or mesh: " + endings_read({FileKind::mesh});
+  add_file(app, "cloud", file, help)->type_name("CLOUD|MESH");
+}
+
+inline CLI::Option* add_primitives(CLI::App& app, std::string& file, const std::string& help) {
+  const std::string whole = "Model " + endings_read({FileKind::model}) + help;
+  return app.add_option("--primitives", file, whole)->check(file_name())->type_name("MODEL")->group("Input");
+}
+
+/// One file may have both cloud and primitives; an empty name is none.
+[[nodiscard]] inline std::vector<std::string> inputs_of(const std::string& cloud, const std::string& primitives) {
+  return primitives.empty() || primitives == cloud ? std::vector{cloud} : std::vector{cloud, primitives};
+}
+
 inline void add_raw_options(FieldArguments& fields, ReconstructOptions& options, InputOptions& reading) {
   fields.add(options, {.group = "Finding primitives"});
   fields.add(reading, {.group = "Finding primitives"});

@@ -1,13 +1,9 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/sample.hpp"
-#include "core/base/output_set.hpp"
 #include "field_arguments.hpp"
-#include "io/formats/formats.hpp"
 #include "outputs.hpp"
 
 namespace cloud2csg::app {
@@ -34,28 +30,18 @@ PointCloud scan_shape(const Shape3d& shape, const std::string& file, const ScanO
 }
 
 void ScanCommand::run(std::stop_token stop) const {
-  for (const std::string& file : outputs) check_output(file, cloud_endings());
-  std::vector<std::string> files = outputs;
-  files.push_back(shape);  // a mesh and a cloud may both be .ply
-  check_distinct(files);
+  check_outputs(outputs, cloud_endings(), {&shape, 1});  // a mesh and a cloud may both be .ply
   Session session(running, std::move(stop));
   const Shape3d read = read_shape(shape);
   if (read.model) session.warn(read.model->warnings);
   const ScanOptions options = is_perfect ? without_defects(scanning) : scanning;
   const PointCloud cloud = naming(shape, [&] { return scan_shape(read, shape, options, session.run()); });
-  OutputSet written;
-  for (const std::string& file : outputs) {
-    written.add(file, [&](const std::filesystem::path& path) { write_point_cloud(path, cloud, writing); });
-  }
-  written.commit();
+  write_clouds(outputs, cloud, writing);
   session.display().note(fmt::format("{} points from {} views", cloud.size(), options.views));
 }
 
 void add_options(CLI::App& app, ScanCommand& command, FieldArguments& fields) {
-  add_file(app, "shape", command.shape,
-           fmt::format("Model file with a tree: {}, or mesh: {}", endings_read({FileKind::model}),
-                       endings_read({FileKind::mesh})))
-      ->type_name("MODEL|MESH");
+  add_shape(app, command.shape);
   add_outputs(app, command.outputs, cloud_endings() + ", with sensor positions in .ply and .pcd");
   fields.add(command.writing, {.group = "Output"});
   fields.add(command.scanning, {.group = "Scanner"});

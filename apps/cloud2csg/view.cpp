@@ -4,15 +4,13 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
-#include "browser.hpp"
 #include "cloud2csg/input.hpp"
 #include "command.hpp"
+#include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
+#include "outputs.hpp"
 #include "page_server.hpp"
-#include "reports.hpp"
-#include "values.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -25,6 +23,7 @@ struct ViewCommand {
   RunOptions running;
   std::vector<ReportParameter> parameters;
 
+  void settle(const CLI::App& app) { parameters = parameters_of(app); }
   void run(const std::stop_token& stop) const;
   [[nodiscard]] Report report(const RunContext& run) const;
 };
@@ -59,7 +58,7 @@ void ViewCommand::run(const std::stop_token& stop) const {
   });
 }
 
-void add_options(CLI::App& app, ViewCommand& command) {
+void add_options(CLI::App& app, ViewCommand& command, FieldArguments& /*fields*/) {
   add_file(app, "model", command.model, "Model file with a tree: " + endings_read({FileKind::model}))
       ->type_name("MODEL");
   app.add_option("--cloud", command.cloud, "Points to show beside the solid, and how far they are from it")
@@ -70,7 +69,6 @@ void add_options(CLI::App& app, ViewCommand& command) {
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--no-browser", command.no_browser, "Print the address only");
-  add_run_options(app, command.running);
 }
 
 }  // namespace
@@ -79,10 +77,7 @@ Command add_view(CLI::App& program) {
   CLI::App* app = program.add_subcommand("view", "Shows a model, and a cloud beside it, in the browser");
   app->footer("The page is the one that '-o report.html' writes. It is served to this machine only, until Ctrl-C.\n\n" +
               example("  cloud2csg view bracket.json --cloud bracket.ply"));
-  auto command = std::make_shared<ViewCommand>();
-  add_options(*app, *command);
-  app->final_callback([app, command] { command->parameters = parameters_of(*app); });
-  return {.options = app, .run = [command](const std::stop_token& stop) { command->run(stop); }};
+  return make_command<ViewCommand>(*app, add_options);
 }
 
 }  // namespace cloud2csg::app

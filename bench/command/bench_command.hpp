@@ -5,7 +5,7 @@
 #include <string>
 
 #include "command.hpp"
-#include "values.hpp"
+#include "field_arguments.hpp"
 
 /// What the experiments of `bench` have in common.
 namespace cloud2csg::app {

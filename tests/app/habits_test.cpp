@@ -23,9 +23,15 @@ class Habits : public ProgramTest {
   [[nodiscard]] std::string completion(const std::string& shell) {
     return file("completion." + shell, run({"completion", shell}).out);
   }
+  /// Goes to the test's folder and loads the completion, which asks the program.
+  [[nodiscard]] std::string begin_of_script(const std::string& shell) {
+    const std::string folder_of_program = std::filesystem::path(CLOUD2CSG_PROGRAM).parent_path().string();
+    return "export PATH=\"" + folder_of_program + ":$PATH\"; cd " + folder().string() + "; source " +
+           completion(shell) + "\n";
+  }
   /// What bash offers for the last of these words, sorted, one a line.
   [[nodiscard]] std::string offered(const std::string& words) {
-    return said_by("bash", "cd " + folder().string() + "\nsource " + completion("bash") + "\nCOMP_WORDS=(" + words +
+    return said_by("bash", begin_of_script("bash") + "COMP_WORDS=(" + words +
                                ")\nCOMP_CWORD=$(( ${#COMP_WORDS[@]} - 1 ))\n_cloud2csg\n"
                                "printf '%s\\n' \"${COMPREPLY[@]}\" | sort\n");
   }
@@ -103,6 +109,7 @@ TEST_F(Habits, BashCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(offered("cloud2csg extract x.ply --se"), "--seed\n--seeds\n");
   EXPECT_EQ(offered("cloud2csg extract --strategy ''"), "auto\nbaseline\ncells\npartition\n");
   EXPECT_EQ(offered("cloud2csg extract --strategy = ce"), "cells\n");
+  EXPECT_EQ(offered("cloud2csg extract --strategy ="), "auto\nbaseline\ncells\npartition\n");
   EXPECT_EQ(offered("cloud2csg completion ''"), "bash\nfish\nzsh\n");
   // The options of the command that is meant, not of another.
   EXPECT_EQ(offered("cloud2csg info --str"), "\n");
@@ -118,26 +125,71 @@ TEST_F(Habits, BashCompletesFilesByTheirEndings) {
   EXPECT_EQ(offered("cloud2csg convert part.json -o part."), "part.json\npart.scad\n");
 }
 
-TEST_F(Habits, ZshAndFishReadTheirCompletions) {
-  for (const std::string shell : {"zsh", "fish"}) {
-    const std::string script = completion(shell);
-    EXPECT_NE(read_file(script).find("print-config"), std::string::npos);
+TEST_F(Habits, CompletionsAreReadByTheirShells) {
+  for (const std::string shell : {"bash", "zsh", "fish"}) {
     if (!is_there(shell)) continue;
-    EXPECT_EQ(said_by(shell + " -n", read_file(script)), "");
+    EXPECT_EQ(said_by(shell + " -n", read_file(completion(shell))), "");
   }
+}
+
+TEST_F(Habits, CompletionTellsWhatWordsMean) {
+  const auto told = [this](std::vector<std::string> words) {
+    words.insert(words.begin(), "complete");
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    return outcome.out;
+  };
+  EXPECT_EQ(told({"doc"}), "doctor\tSays which optional parts are there, and what is broken\n");
+  EXPECT_EQ(told({"help", "doc"}), told({"doc"}));
+  EXPECT_EQ(told({"info", "x.ply", "--js"}), "--json\tJSON instead of a table\n");
+  // Once given, only what may be repeated is offered again.
+  EXPECT_EQ(told({"info", "--json", "x.ply", "--js"}), "");
+  EXPECT_EQ(told({"sample", "-o", "a.ply", "--outp"}).substr(0, 9), "--output\t");
+  // A word that has a value in it keeps what is before the value.
+  EXPECT_EQ(told({"extract", "--strategy=ce"}), "--strategy=cells\n");
+  EXPECT_EQ(told({"extract", "--primitives=p"}), ":files:--primitives=:.json .scad .csg\n");
+  EXPECT_EQ(told({"convert", "a.json", "-op"}).substr(0, 16), ":files:-o:.json ");
+  // As many arguments as the command takes.
+  EXPECT_EQ(told({"compare", "a", ""}), ":files::\n");
+  EXPECT_EQ(told({"compare", "a", "b", ""}), "");
+  EXPECT_EQ(told({"extract", "--seed", ""}), "");
+  EXPECT_EQ(told({"manu"}), "");  // hidden
+  EXPECT_EQ(told({"--"}).find("--leaf-cost"), std::string::npos);
+  EXPECT_EQ(told({}), "");
+}
+
+TEST_F(Habits, ZshCompletes) {
+  if (!is_there("zsh")) GTEST_SKIP() << "no zsh here";
+  // What the completion calls, which works at a prompt only.
+  const std::string begin =
+      "compdef() {}; compset() { print -r before $2 }; _files() { print -r files $* }; _describe() { print -rl "
+      "${(P)2} }\n" +
+      begin_of_script("zsh");
+  const auto offers = [&](const std::string& words, const std::string& start) {
+    return said_by("zsh -f", begin + "words=(cloud2csg " + words + "'" + start + "'); CURRENT=$#words; PREFIX='" +
+                                 start + "'; _cloud2csg\n");
+  };
+  EXPECT_EQ(offers("", "conv"), "convert:Writes a model in other formats\n");
+  EXPECT_EQ(offers("bench ", "pa"), "paper:The paper's evaluation: its models and modes, as tables and figures\n");
+  EXPECT_EQ(offers("extract --strategy ", "p"), "partition\n");
+  EXPECT_EQ(offers("extract a\\ b.ply --primitives ", "pa"), "before\nfiles -g *.(#i)(json|scad|csg)\n");
+  EXPECT_EQ(offers("extract a.ply ", "--primitives=pa"), "before --primitives=\nfiles -g *.(#i)(json|scad|csg)\n");
+  EXPECT_EQ(offers("info ", ""), "before\nfiles\n");
 }
 
 TEST_F(Habits, FishCompletes) {
   if (!is_there("fish")) GTEST_SKIP() << "no fish here";
   (void)file("part.ply", "");
   (void)file("part.pdf", "");
-  const std::string begin = "cd " + folder().string() + "; source " + completion("fish") + "\n";
+  const std::string begin = begin_of_script("fish");
   const auto offers = [&](const std::string& line) {
     return said_by("fish --no-config", begin + "complete -C '" + line + "' | string split -f1 \\t | sort\n");
   };
   EXPECT_EQ(offers("cloud2csg ex"), "extract\n");
   EXPECT_EQ(offers("cloud2csg extract --strategy "), "auto\nbaseline\ncells\npartition\n");
   EXPECT_EQ(offers("cloud2csg extract par"), "part.ply\n");
+  EXPECT_EQ(offers("cloud2csg extract --unexplained=par"), "--unexplained=part.pdf\n--unexplained=part.ply\n");
   EXPECT_EQ(offers("cloud2csg bench paper --see"), "--seed\n");
 }
 

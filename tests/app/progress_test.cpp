@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "progress_display.hpp"
+#include "session.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -1,14 +1,39 @@
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <vector>
 
 #include "cloud2csg/run_context.hpp"
 
 namespace cloud2csg::app {
+
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP requests a stop and the second ends the program at once, with
+/// status 130, less the temporary files that it was writing. At most one at a time.
+class InterruptWatcher {
+ public:
+  InterruptWatcher();
+  ~InterruptWatcher();
+  InterruptWatcher(const InterruptWatcher&) = delete;
+  InterruptWatcher& operator=(const InterruptWatcher&) = delete;
+  InterruptWatcher(InterruptWatcher&&) = delete;
+  InterruptWatcher& operator=(InterruptWatcher&&) = delete;
+
+  [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
+
+ private:
+  std::stop_source stop_;
+  std::array<struct sigaction, 3> old_ = {};  ///< what each signal did
+  int pipe_read_ = -1;
+  std::thread watcher_;
+};
 
 enum class ProgressStyle {
   none,   ///< says nothing
@@ -61,6 +86,26 @@ class ProgressDisplay {
   std::size_t count_ = 0;  ///< of these, as far as it is known
   ProgressClock::time_point stage_start_;
   ProgressClock::time_point last_drawn_ = {};
+};
+
+/// Options that every subcommand with work to do has.
+struct RunOptions {
+  int threads = 0;  ///< 0 = all cores
+  bool quiet = false;
+};
+
+/// Progress on standard error while it lives.
+class Session {
+ public:
+  Session(const RunOptions& options, std::stop_token stop);
+  [[nodiscard]] const RunContext& run() const { return run_; }
+  [[nodiscard]] ProgressDisplay& display() { return display_; }
+  /// A note each.
+  void warn(const std::vector<std::string>& warnings);
+
+ private:
+  ProgressDisplay display_;
+  RunContext run_;
 };
 
 }  // namespace cloud2csg::app

@@ -1,20 +1,48 @@
-#include "progress_display.hpp"
+#include "session.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
+#include <system_error>
 #include <utility>
 
+#include "core/base/temporary_file.hpp"
 #include "core/base/visible_text.hpp"
 
 namespace cloud2csg::app {
 namespace {
+
+constexpr int k_status_interrupted = 130;  // 128 + SIGINT, as shells count
+constexpr std::array k_signals{SIGINT, SIGTERM, SIGHUP};
+constexpr char k_byte_interrupt = 'i';
+constexpr char k_byte_quit = 'q';
+
+// A signal handler has no argument: this is the one way to reach it.
+std::atomic<int> pipe_write_end = -1;   // NOLINT(readability-identifier-naming)
+std::atomic<bool> is_stopping = false;  // NOLINT(readability-identifier-naming)
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
+              "only lock-free atomics may be used in a signal handler");
+
+/// Only async-signal-safe calls: std::stop_source::request_stop() runs callbacks and may take locks, so the watcher
+/// thread calls it.
+extern "C" void on_interrupt(int /*signal*/) {
+  if (is_stopping.exchange(true)) {
+    remove_temporaries();
+    ::_exit(k_status_interrupted);
+  }
+  const int saved = errno;
+  [[maybe_unused]] const ssize_t written = ::write(pipe_write_end.load(), &k_byte_interrupt, 1);
+  errno = saved;
+}
 
 constexpr std::chrono::milliseconds k_redraw_interval{50};
 constexpr std::size_t k_bar_width = 30;
@@ -56,6 +84,34 @@ double seconds_between(ProgressClock::time_point start, ProgressClock::time_poin
 }
 
 }  // namespace
+
+InterruptWatcher::InterruptWatcher() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  pipe_read_ = ends[0];
+  pipe_write_end = ends[1];
+  is_stopping = false;
+  watcher_ = std::thread([this] {
+    char byte = k_byte_quit;
+    while (::read(pipe_read_, &byte, 1) < 0 && errno == EINTR) {
+    }
+    if (byte == k_byte_interrupt) stop_.request_stop();
+  });
+  struct sigaction action = {};
+  action.sa_handler = on_interrupt;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (std::size_t k = 0; k < old_.size(); ++k) ::sigaction(k_signals[k], &action, &old_[k]);
+}
+
+InterruptWatcher::~InterruptWatcher() {
+  for (std::size_t k = 0; k < old_.size(); ++k) ::sigaction(k_signals[k], &old_[k], nullptr);
+  const int write_end = pipe_write_end.exchange(-1);
+  [[maybe_unused]] const ssize_t written = ::write(write_end, &k_byte_quit, 1);
+  watcher_.join();
+  ::close(write_end);
+  ::close(pipe_read_);
+}
 
 ProgressStyle progress_style(std::FILE* out, bool quiet) {
   if (quiet) return ProgressStyle::none;
@@ -148,6 +204,16 @@ void ProgressDisplay::finish() {
   unit_.clear();
   count_ = 0;
   ended_ = std::exchange(stage_, {});
+}
+
+Session::Session(const RunOptions& options, std::stop_token stop)
+    : display_(stderr, progress_style(stderr, options.quiet)),
+      run_{.stop = std::move(stop),
+           .on_progress = [this](const Progress& progress) { display_.update(progress); },
+           .threads = options.threads} {}
+
+void Session::warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) display_.note("warning: " + warning);
 }
 
 }  // namespace cloud2csg::app
