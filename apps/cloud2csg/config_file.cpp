@@ -10,7 +10,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "config_values.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "usage.hpp"
 #include "values.hpp"
 

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "core/base/temporary_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "command.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "values.hpp"
 
 namespace cloud2csg::app {

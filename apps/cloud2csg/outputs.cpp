@@ -11,7 +11,7 @@
 
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "io/formats/formats.hpp"
 #include "reports.hpp"
 #include "usage.hpp"

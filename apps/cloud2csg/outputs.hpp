@@ -8,7 +8,7 @@
 
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/view.hpp"
-#include "core/base/output_set.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg::app {
 

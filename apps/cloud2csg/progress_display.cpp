@@ -11,7 +11,7 @@
 #include <exception>
 #include <utility>
 
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg::app {
 namespace {

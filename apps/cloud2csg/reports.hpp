@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cloud2csg/view.hpp"
-#include "core/base/output_set.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg::app {
 

@@ -2,7 +2,7 @@
 
 #include "cloud2csg/advanced/cells.hpp"
 #include "core/base/parallel.hpp"
-#include "core/geometry/random_between.hpp"
+#include "core/geometry/boxes.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -8,7 +8,6 @@
 #include "cells/side_kernels.hpp"
 #include "cells/sight_lines.hpp"
 #include "core/base/parallel.hpp"
-#include "core/fields/frame.hpp"
 #include "core/fields/point_blocks.hpp"
 
 namespace cloud2csg {

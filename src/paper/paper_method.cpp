@@ -7,7 +7,7 @@
 #include "cloud2csg/advanced/merge.hpp"
 #include "cloud2csg/advanced/simplify.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 #include "paper/evolve/genetic_algorithm.hpp"
 #include "paper/objective/fit.hpp"
 #include "paper/partition/partitions.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cloud2csg/advanced/cells.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 
 namespace cloud2csg {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/append.hpp"
 #include "core/geometry/place_text.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/solids/hidden_walls.hpp"
 #include "raw/solids/unseen_side.hpp"
 

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
+#include "core/base/run.hpp"
 #include "pipeline/close_unseen.hpp"
 #include "pipeline/detect_rest.hpp"
 #include "pipeline/diagnostics.hpp"

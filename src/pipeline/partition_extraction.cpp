@@ -6,8 +6,7 @@
 
 #include "cloud2csg/advanced/simplify.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
+#include "core/base/run.hpp"
 #include "paper/merge/merge_component.hpp"
 #include "paper/segment/supported_primitives.hpp"
 

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
+#include "core/base/run.hpp"
 #include "paper/objective/fit.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/find_primitives.hpp"

@@ -4,8 +4,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
+#include "core/base/run.hpp"
 #include "paper/objective/fit.hpp"
 #include "pipeline/time_limit.hpp"
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/tree/join.hpp"
-
 namespace cloud2csg {
 namespace {
 
@@ -26,8 +24,7 @@ CsgTree renamed(const CsgTree& tree, const NewName& new_name) {
   return CsgTree(std::move(nodes));
 }
 
-}  // namespace
-
+/// Precondition: the operation has two children.
 CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
   std::vector<CsgNode> nodes;
   nodes.reserve(a.size() + b.size() + 1);
@@ -36,6 +33,8 @@ CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
   nodes.push_back(CsgNode::inner(operation, length_of(nodes.size() + 1)));
   return CsgTree(std::move(nodes));
 }
+
+}  // namespace
 
 CsgTree CsgTree::leaf(PrimitiveIndex primitive) {
   return CsgTree(std::vector{CsgNode::leaf(primitive)});

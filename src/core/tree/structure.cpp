@@ -5,7 +5,6 @@
 
 #include "cloud2csg/csg_tree.hpp"
 #include "core/tree/interner.hpp"
-#include "core/tree/mix.hpp"
 
 /// Equality up to commutation and association. A **chain** is a maximal run of nodes of one operation: for unions and
 /// intersections through both children, for differences through the first child, ((a - b) - c) - d. Its **operands**

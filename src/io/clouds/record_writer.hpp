@@ -3,7 +3,7 @@
 #include <span>
 
 #include "cloud2csg/point_cloud.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 

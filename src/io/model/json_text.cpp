@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg {
 namespace {

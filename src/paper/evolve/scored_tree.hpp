@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "cloud2csg/advanced/rank_classes.hpp"
-#include "core/tree/tree_objective.hpp"
+#include "core/tree/local_search.hpp"
 
 namespace cloud2csg {
 

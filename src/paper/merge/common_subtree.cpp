@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/base/narrow.hpp"
+#include "core/tree/conjunction.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <numeric>
 
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 #include "paper/objective/block_groups.hpp"
 
 namespace cloud2csg {

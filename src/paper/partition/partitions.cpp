@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 
 namespace cloud2csg {
 namespace {

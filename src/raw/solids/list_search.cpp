@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/parallel.hpp"
-#include "core/base/without_stop.hpp"
+#include "core/base/run.hpp"
 
 namespace cloud2csg {
 namespace {

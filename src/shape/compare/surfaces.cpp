@@ -10,7 +10,7 @@
 #include "core/base/parallel.hpp"
 #include "core/fields/lipschitz.hpp"
 #include "core/geometry/neighbour_tree.hpp"
-#include "core/primitive/triangle_sampler.hpp"
+#include "core/primitive/surface_points.hpp"
 #include "shape/sample/ray_caster.hpp"
 
 namespace cloud2csg {

@@ -9,7 +9,7 @@
 #include "cloud2csg/sample.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
-#include "core/geometry/append.hpp"
+#include "core/geometry/subset.hpp"
 #include "shape/sample/ray_caster.hpp"
 #include "shape/sample/scan_defects.hpp"
 #include "shape/sample/scan_surface.hpp"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
@@ -7,6 +8,33 @@
 #include "cloud2csg/run_context.hpp"
 
 namespace cloud2csg {
+
+/// Wall-clock time.
+class Stopwatch {
+ public:
+  /// Since it was made or last lapped.
+  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  /// The same, and starts again at zero.
+  double lap() {
+    const auto now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Clock::time_point start_ = Clock::now();
+};
+
+/// For short work that an interrupted search needs as well: its tree has a fit, too, and what searches after it sees
+/// the stop.
+[[nodiscard]] inline RunContext without_stop(RunContext run) {
+  run.stop = {};
+  return run;
+}
 
 /// What a loop is of a stage: reported as if the stage's things were done one after the other, all by its loops.
 class StageShare {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace cloud2csg {
@@ -40,5 +43,22 @@ struct Utf8Character {
   return code >= 0x20 && !between(0x7F, 0x9F) && code != 0x61C && !between(0x200E, 0x200F) &&
          !between(0x2028, 0x202E) && !between(0x2066, 0x2069);
 }
+
+/// ASCII letters of a text as small ones.
+[[nodiscard]] inline std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return lower;
+}
+
+/// A text of somebody else (an id, a description, the name of a file) for one line on a terminal: letters of UTF-8 stay
+/// as they are; controls, ends of lines, what turns the direction of reading and bytes that are no UTF-8 are written as
+/// \x1b or \u202e. What has been made so stays as it is. Longer than `longest` bytes, it ends in "...".
+[[nodiscard]] std::string visible_text(std::string_view text,
+                                       std::size_t longest = std::numeric_limits<std::size_t>::max());
+
+/// Of words that messages quote from a file.
+constexpr std::size_t k_longest_quote = 24;
 
 }  // namespace cloud2csg

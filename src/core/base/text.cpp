@@ -1,10 +1,8 @@
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 #include <fmt/format.h>
 
 #include <iterator>
-
-#include "core/base/utf8.hpp"
 
 namespace cloud2csg {
 
