@@ -1,7 +1,6 @@
 #pragma once
 
 #include "cloud2csg/advanced/cells.hpp"
-#include "paper/segment/noise_scale.hpp"
 #include "paper/segment/supported_primitives.hpp"
 #include "pipeline/extraction_run.hpp"
 

@@ -10,7 +10,7 @@
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/run.hpp"
-#include "paper/objective/fit.hpp"
+#include "paper/objective/objective.hpp"
 #include "pipeline/cell_extraction.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"

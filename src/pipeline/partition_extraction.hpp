@@ -1,6 +1,6 @@
 #pragma once
 
-#include "paper/partition/partition_tables.hpp"
+#include "paper/partition/partitions.hpp"
 #include "pipeline/extraction_run.hpp"
 
 namespace cloud2csg {

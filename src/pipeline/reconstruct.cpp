@@ -6,7 +6,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
-#include "paper/objective/fit.hpp"
+#include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/find_primitives.hpp"
 

@@ -5,7 +5,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
 #include "core/base/run.hpp"
-#include "paper/objective/fit.hpp"
+#include "paper/objective/objective.hpp"
 #include "pipeline/time_limit.hpp"
 
 namespace cloud2csg {

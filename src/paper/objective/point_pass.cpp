@@ -6,7 +6,7 @@
 #include "core/fields/point_blocks.hpp"
 #include "core/geometry/spatial_order.hpp"
 #include "paper/objective/point_worker.hpp"
-#include "paper/objective/rank_classes_builder.hpp"
+#include "paper/objective/rank_classes.hpp"
 
 namespace cloud2csg {
 namespace {

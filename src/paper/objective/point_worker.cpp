@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/base/run.hpp"
-#include "paper/objective/block_groups.hpp"
+#include "paper/objective/class_table.hpp"
 
 namespace cloud2csg {
 namespace {
