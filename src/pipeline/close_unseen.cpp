@@ -10,8 +10,7 @@
 
 #include "core/geometry/place_text.hpp"
 #include "core/geometry/subset.hpp"
-#include "raw/solids/hidden_walls.hpp"
-#include "raw/solids/unseen_side.hpp"
+#include "raw/solids/unseen_surfaces.hpp"
 
 namespace cloud2csg {
 namespace {
