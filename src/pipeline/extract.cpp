@@ -11,10 +11,8 @@
 #include "core/base/parallel.hpp"
 #include "core/base/run.hpp"
 #include "paper/objective/objective.hpp"
-#include "pipeline/cell_extraction.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"
-#include "pipeline/partition_extraction.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,5 +1,3 @@
-#include "pipeline/partition_extraction.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <mutex>
@@ -9,6 +7,7 @@
 #include "core/base/run.hpp"
 #include "paper/merge/merge_component.hpp"
 #include "paper/segment/supported_primitives.hpp"
+#include "pipeline/extraction_run.hpp"
 
 namespace cloud2csg {
 namespace {
