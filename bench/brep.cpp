@@ -9,7 +9,7 @@
 
 #include "bench/families/family.hpp"
 #include "cloud2csg/model.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 
 /// STEP files of models with a tree (by default those that are shipped, and one of 100 primitives of each family):
 /// seconds, validity, and volume against the tree's.

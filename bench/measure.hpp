@@ -7,7 +7,7 @@
 
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 
 namespace cloud2csg::bench {
 

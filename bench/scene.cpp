@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "cloud2csg/csg_tree.hpp"
-#include "paper/evolve/random_tree.hpp"
+#include "paper/evolve/genetic_algorithm.hpp"
 
 namespace cloud2csg::bench {
 

@@ -11,7 +11,7 @@
 #include "catalogue.hpp"
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "field_arguments.hpp"
 
 namespace cloud2csg::app {

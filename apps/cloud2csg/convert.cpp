@@ -4,7 +4,7 @@
 
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/model.hpp"
-#include "core/base/output_set.hpp"
+#include "core/base/files.hpp"
 #include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"

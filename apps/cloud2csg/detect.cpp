@@ -10,7 +10,7 @@
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
-#include "core/base/output_set.hpp"
+#include "core/base/files.hpp"
 #include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"

@@ -8,7 +8,7 @@
 
 #include "cloud2csg/compare.hpp"
 #include "command.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg::app {
 namespace {

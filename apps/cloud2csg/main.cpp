@@ -15,7 +15,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 #include "installation.hpp"
 #include "session.hpp"
 

@@ -13,7 +13,7 @@
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "command.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 

@@ -9,7 +9,7 @@
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/view.hpp"
-#include "core/base/output_set.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg::app {
 

@@ -8,6 +8,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/point_cloud.hpp"
+#include "core/base/files.hpp"
 #include "field_arguments.hpp"
 #include "outputs.hpp"
 

@@ -15,8 +15,8 @@
 #include <system_error>
 #include <utility>
 
-#include "core/base/temporary_file.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/files.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "bench/experiment/scaling.hpp"
 #include "core/base/parallel.hpp"
-#include "core/geometry/random_between.hpp"
+#include "core/geometry/boxes.hpp"
 #include "shape/sample/neighbourhood.hpp"
 #include "shape/sample/primitive_surface.hpp"
 

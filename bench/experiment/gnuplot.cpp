@@ -4,9 +4,8 @@
 #include <string>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "core/base/run_program.hpp"
-#include "core/base/temporary_file.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "bench/experiment/step.hpp"
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

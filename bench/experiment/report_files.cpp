@@ -6,8 +6,7 @@
 #include <ctime>
 
 #include "bench/experiment/gnuplot.hpp"
-#include "core/base/atomic_file.hpp"
-#include "core/base/output_set.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -6,7 +6,7 @@
 #include "bench/experiment/paper.hpp"
 #include "bench/experiment/resume_check.hpp"
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

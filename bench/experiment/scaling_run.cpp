@@ -9,7 +9,7 @@
 #include "bench/experiment/scaling.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "bench/families/family_parts.hpp"
-#include "core/geometry/random_between.hpp"
+#include "core/geometry/boxes.hpp"
 #include "shape/sample/primitive_surface.hpp"
 
 namespace cloud2csg {

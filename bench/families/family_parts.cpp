@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/geometry/random_between.hpp"
+#include "core/geometry/boxes.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "cloud2csg/advanced/rank_classes.hpp"
 #include "core/base/random.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "micro/machine.cpp"

@@ -5,9 +5,9 @@
 #include "cloud2csg/advanced/restrict.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/sample.hpp"
-#include "core/geometry/random_between.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/geometry/subset.hpp"
-#include "core/primitive/overloaded.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg::bench {
 namespace {

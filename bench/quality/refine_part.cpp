@@ -6,7 +6,7 @@
 
 #include "cloud2csg/advanced/refine.hpp"
 #include "core/base/random.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 #include "measure.hpp"
 #include "pipeline/refine/slots.hpp"
 #include "quality/parts.hpp"

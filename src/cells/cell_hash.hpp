@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cloud2csg/advanced/cells.hpp"
-#include "core/tree/mix.hpp"
+#include "core/tree/interner.hpp"
 
 namespace cloud2csg {
 

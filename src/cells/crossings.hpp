@@ -6,7 +6,8 @@
 #include "cells/cell_hash.hpp"
 #include "cloud2csg/advanced/cells.hpp"
 
-/// What points say of the cells on either side of the surface that they are on.
+/// What points say of the cells on either side of the surface that they are on, and lines of sight of those that they
+/// pass through.
 namespace cloud2csg {
 
 /// Cells by number, in the order in which they were met.
@@ -57,5 +58,22 @@ struct SightLines;
 /// where it is not clear which cell they are in, say nothing.
 [[nodiscard]] std::vector<Crossings> count_lines(const SightLines& lines, const ReachingPrimitives& reaching,
                                                  const SegmentationTolerances& tolerances, const RunContext& run);
+
+/// Places on a line of sight; they fill a byte of a BlockMask.
+inline constexpr std::size_t k_places_a_line = 8;
+
+/// Lines from sensors to points on a primitive.
+struct SightLines {
+  PointCloud places =
+      {};  ///< k_places_a_line of a line, evenly along it within the bounds of the cloud; neighbours first
+  std::size_t count = 0;   ///< lines
+  double points_each = 0;  ///< for how many points of the cloud a line stands
+};
+
+/// At most CellOptions::sight_lines of them, to points all over the cloud; none where it has no sensor positions.
+/// Points on no primitive, outliers among them, are left out. `order`: see spatial_order(). O(lines x primitives)
+[[nodiscard]] SightLines find_sight_lines(const PointCloud& cloud, std::span<const std::uint32_t> order,
+                                          const ReachingPrimitives& reaching, const CellOptions& options,
+                                          const RunContext& run);
 
 }  // namespace cloud2csg

@@ -1,19 +1,56 @@
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <span>
 #include <utility>
 
 #include "cells/crossings.hpp"
-#include "cells/infinity.hpp"
-#include "cells/sight_lines.hpp"
 #include "cells/surface_samples.hpp"
+#include "cloud2csg/advanced/cells.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/geometry/sensor_views.hpp"
 #include "core/geometry/spatial_order.hpp"
 #include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
 namespace {
+
+constexpr std::size_t k_directions = 1024;
+constexpr std::uint64_t k_infinity_stream = 0x696e66696e697479;
+
+Eigen::Vector3d any_direction(RandomStream& random) {
+  for (;;) {
+    Eigen::Vector3d direction(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const double square = direction.squaredNorm();
+    if (square > 0 && square <= 1) return direction;
+  }
+}
+
+/// The cells that reach to infinity, ascending: which half-spaces hold what lies far off in each of many directions.
+/// Only the cell outside of all where there are none.
+std::vector<Cell> cells_at_infinity(const PrimitiveSet& primitives) {
+  std::vector<PrimitiveIndex> half_spaces;
+  for (PrimitiveIndex p = 0; p < primitives.size(); ++p) {
+    if (std::holds_alternative<HalfSpace>(primitives[p].shape)) half_spaces.push_back(p);
+  }
+  if (half_spaces.empty()) return {Cell()};
+  std::vector<Cell> cells;
+  RandomStream random(0, k_infinity_stream);
+  for (std::size_t i = 0; i < k_directions; ++i) {
+    const Eigen::Vector3d direction = any_direction(random);
+    Cell& cell = cells.emplace_back();
+    for (const PrimitiveIndex p : half_spaces) {
+      const Eigen::Vector3d outward = primitives[p].pose.orientation * Eigen::Vector3d::UnitZ();
+      if (direction.dot(outward) < 0) cell.push_back(p);
+    }
+  }
+  std::ranges::sort(cells);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
 
 /// Puts together what points and samples say.
 class ComplexBuilder {
@@ -134,6 +171,16 @@ void add_counts(const Crossings& share, CellComplex& sum) {
   sum.unassigned += share.unassigned;
 }
 
+constexpr std::uint64_t k_volume_stream = 0x766f6c756d65'73;
+
+Points places_in(const AlignedBox& box, std::size_t count) {
+  RandomStream random(0, k_volume_stream);
+  Points places;
+  places.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) places.push_back(random_between(box.min(), box.max(), random));
+  return places;
+}
+
 }  // namespace
 
 CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, const CellOptions& options,
@@ -171,6 +218,32 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
   for (const Crossings& share : of_points) add_counts(share, result);
   result.order = std::move(order);
   return result;
+}
+
+CellVolumes measure_volumes(const CellComplex& complex, const PrimitiveSet& primitives, const AlignedBox& box,
+                            std::size_t places, const RunContext& run) {
+  const Points points = places_in(box, places);
+  std::vector<std::vector<std::uint32_t>> inside(primitives.size());  // by primitive: places
+  for_each_index(primitives.size(), run, [&](std::size_t p) {
+    if (!reach(primitives[p], 0).intersects(box)) return;
+    const std::vector<double> distances = signed_distance(primitives[p], points);
+    for (std::uint32_t i = 0; i < distances.size(); ++i) {
+      if (distances[i] < 0) inside[p].push_back(i);
+    }
+  });
+  std::vector<Cell> cell_of(places);
+  for (PrimitiveIndex p = 0; p < inside.size(); ++p) {
+    for (const std::uint32_t i : inside[p]) cell_of[i].push_back(p);
+  }
+  CellVolumes volumes{.of_cell = std::vector<double>(complex.cells.size())};
+  const double of_place = box.volume() / static_cast<double>(places);
+  for (const Cell& cell : cell_of) {
+    const auto found = std::ranges::lower_bound(complex.cells, cell);
+    const bool is_known = found != complex.cells.end() && *found == cell;
+    (is_known ? volumes.of_cell[static_cast<std::size_t>(found - complex.cells.begin())] : volumes.elsewhere) +=
+        of_place;
+  }
+  return volumes;
 }
 
 }  // namespace cloud2csg

@@ -1,16 +1,112 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
-#include "cells/row_set.hpp"
-#include "cells/signed_formula.hpp"
-#include "cells/work_budget.hpp"
+#include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
+
+/// Some of the rows of a function, a bit each; a formula is known by the rows where it is true.
+template <std::size_t Words>
+struct RowSet {
+  std::array<std::uint64_t, Words> words{};
+
+  void insert(std::size_t row) { words[row / 64] |= std::uint64_t{1} << (row % 64); }
+  [[nodiscard]] bool contains(std::size_t row) const { return (words[row / 64] >> (row % 64) & 1U) != 0; }
+
+  [[nodiscard]] bool is_empty() const {
+    std::uint64_t any = 0;
+    for (const std::uint64_t word : words) any |= word;
+    return any == 0;
+  }
+
+  [[nodiscard]] std::size_t size() const {
+    std::size_t count = 0;
+    for (const std::uint64_t word : words) count += static_cast<std::size_t>(std::popcount(word));
+    return count;
+  }
+
+  [[nodiscard]] std::uint64_t hash() const {
+    std::uint64_t hash = 0;
+    for (const std::uint64_t word : words) {
+      hash = (hash ^ word) * 0x9e3779b97f4a7c15ULL;
+      hash ^= hash >> 32;
+    }
+    return hash * 0xd6e8feb86659fd93ULL;
+  }
+
+  friend RowSet operator&(RowSet a, const RowSet& b) {
+    for (std::size_t w = 0; w < Words; ++w) a.words[w] &= b.words[w];
+    return a;
+  }
+  friend RowSet operator|(RowSet a, const RowSet& b) {
+    for (std::size_t w = 0; w < Words; ++w) a.words[w] |= b.words[w];
+    return a;
+  }
+  friend RowSet operator-(RowSet a, const RowSet& b) {
+    for (std::size_t w = 0; w < Words; ++w) a.words[w] &= ~b.words[w];
+    return a;
+  }
+  friend bool operator==(const RowSet&, const RowSet&) = default;
+};
+
+template <std::size_t Words>
+[[nodiscard]] bool are_disjoint(const RowSet<Words>& a, const RowSet<Words>& b) {
+  return (a & b).is_empty();
+}
+/// Whether all of `inner` is in `outer`.
+template <std::size_t Words>
+[[nodiscard]] bool is_within(const RowSet<Words>& inner, const RowSet<Words>& outer) {
+  return (inner - outer).is_empty();
+}
+
+/// A formula without complements, or the complement of one: what all formulas of unions, intersections, differences and
+/// complements can be turned into, leaf by leaf, by the rules of De Morgan.
+struct SignedFormula {
+  CsgTree tree;
+  bool is_complemented = false;
+
+  [[nodiscard]] SignedFormula negated_if(bool negate) && { return {std::move(tree), is_complemented != negate}; }
+};
+
+[[nodiscard]] inline SignedFormula conjunction(const SignedFormula& a, const SignedFormula& b) {
+  if (a.is_complemented && b.is_complemented) return {unite(a.tree, b.tree), true};
+  if (a.is_complemented) return {subtract(b.tree, a.tree)};
+  if (b.is_complemented) return {subtract(a.tree, b.tree)};
+  return {intersect(a.tree, b.tree)};
+}
+
+[[nodiscard]] inline SignedFormula disjunction(SignedFormula a, SignedFormula b) {
+  return conjunction(std::move(a).negated_if(true), std::move(b).negated_if(true)).negated_if(true);
+}
+
+/// How much work may still be done: counted, so that a result does not depend on the machine, but for a stop.
+class WorkBudget {
+ public:
+  WorkBudget(std::uint64_t limit, std::stop_token stop) : left_(limit), stop_(std::move(stop)) {}
+
+  /// Takes some of the budget. False when there is not enough, and ever after.
+  [[nodiscard]] bool spend(std::uint64_t work) {
+    if (work > left_ || stop_.stop_requested()) is_exhausted_ = true;
+    if (!is_exhausted_) left_ -= work;
+    return !is_exhausted_;
+  }
+  [[nodiscard]] std::uint64_t left() const { return left_; }
+  [[nodiscard]] bool is_exhausted() const { return is_exhausted_; }
+
+ private:
+  std::uint64_t left_;
+  std::stop_token stop_;
+  bool is_exhausted_ = false;
+};
 
 /// All functions of few leaves, by the least number of leaves. A function and its complement count as one, since a
 /// complement costs no leaf: what is kept is the one that is false in the first row. Constants are left out.

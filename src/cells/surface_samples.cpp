@@ -5,13 +5,11 @@
 
 #include "core/base/parallel.hpp"
 #include "core/fields/onto_surface.hpp"
-#include "core/geometry/append.hpp"
 #include "core/geometry/boxes.hpp"
-#include "core/geometry/random_between.hpp"
 #include "core/geometry/subset.hpp"
 #include "core/primitive/bounds_index.hpp"
-#include "core/primitive/plain_surface.hpp"
 #include "core/primitive/sampled_field.hpp"
+#include "core/primitive/surface_points.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,15 +1,130 @@
 #include "cells/take_apart.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
+#include <vector>
 
-#include "cells/known_cells.hpp"
+#include "cells/cell_hash.hpp"
+#include "cloud2csg/advanced/cells.hpp"
 #include "cloud2csg/csg_tree.hpp"
 
 namespace cloud2csg {
 namespace {
+
+Cell without(const Cell& cell, PrimitiveIndex primitive) {
+  Cell rest = cell;
+  std::erase(rest, primitive);
+  return rest;
+}
+
+/// By the points on the patches between a cell that they hold and one that they do not.
+std::vector<PrimitiveIndex> least_seen_first(const CellComplex& complex) {
+  std::vector<double> seen(complex.points_of_primitive.size());
+  Cell between;
+  for (const Patch& patch : complex.patches) {
+    between.clear();
+    std::ranges::set_symmetric_difference(complex.cells[patch.first], complex.cells[patch.second],
+                                          std::back_inserter(between));
+    for (const PrimitiveIndex p : between) seen[p] += patch.first_in + patch.second_in;
+  }
+  std::vector<PrimitiveIndex> order(seen.size());
+  std::iota(order.begin(), order.end(), PrimitiveIndex{0});
+  std::ranges::stable_sort(order, {}, [&seen](PrimitiveIndex p) { return seen[p]; });
+  return order;
+}
+
+/// A cell of which it is sure whether it is in the solid.
+struct KnownCell {
+  Cell cell;
+  bool is_in = false;
+  bool is_open = true;  ///< no primitive that was split off decides it
+};
+
+/// The sure cells and the one outside of all, without primitives on which no label depends. Where the cell outside of
+/// all is in the solid, all labels are taken for their opposite.
+class KnownCells {
+ public:
+  KnownCells(const KnownCells&) = delete;
+  KnownCells& operator=(const KnownCells&) = delete;
+  KnownCells(KnownCells&&) = delete;
+  KnownCells& operator=(KnownCells&&) = delete;
+
+  /// O(size of all cells)
+  KnownCells(const CellComplex& complex, const CellLabels& labels, double least_evidence)
+      : cells_of_(complex.points_of_primitive.size()), index_(complex.cells.size(), Hash{this}, Equal{this}) {
+    for (CellIndex c = 0; c < complex.cells.size(); ++c) {
+      // What is outside of all is as labelled in any case: it is what the rest is split off from.
+      if (c > 0 && labels.evidence[c] < least_evidence) continue;
+      for (const PrimitiveIndex p : complex.cells[c]) cells_of_[p].push_back(cells_.size());
+      cells_.push_back({complex.cells[c], labels.is_in[c] != labels.is_in.front()});
+    }
+    for (std::size_t c = 0; c < cells_.size(); ++c) index_.insert(c);
+    std::vector<bool> is_essential(cells_of_.size());
+    for (PrimitiveIndex p = 0; p < cells_of_.size(); ++p) is_essential[p] = is_needed(p);
+    essential_ = static_cast<std::size_t>(std::ranges::count(is_essential, true));
+    // Those stay so, whatever else is left out.
+    for (const PrimitiveIndex p : least_seen_first(complex)) {
+      if (!is_essential[p] && !is_needed(p)) leave_out(p);
+    }
+  }
+
+  /// Leaves none behind.
+  [[nodiscard]] std::vector<KnownCell> take_sorted() {
+    std::erase_if(cells_, [](const KnownCell& known) { return !known.is_open; });
+    std::ranges::sort(cells_, {}, &KnownCell::cell);
+    return std::move(cells_);
+  }
+
+  /// How many primitives any tree needs, if the cell outside of all is sure.
+  [[nodiscard]] std::size_t essential() const { return essential_; }
+  /// Whether that is all that have cells.
+  [[nodiscard]] bool are_all_essential() const { return left_out_ == 0; }
+
+ private:
+  /// The index holds places in cells_, and is asked for cells.
+  struct Hash {
+    using is_transparent = void;
+    const KnownCells* known;
+    std::size_t operator()(std::size_t place) const { return CellHash()(known->cells_[place].cell); }
+    std::size_t operator()(const Cell& cell) const { return CellHash()(cell); }
+  };
+  struct Equal {
+    using is_transparent = void;
+    const KnownCells* known;
+    bool operator()(std::size_t a, std::size_t b) const { return known->cells_[a].cell == known->cells_[b].cell; }
+    bool operator()(std::size_t place, const Cell& cell) const { return known->cells_[place].cell == cell; }
+    bool operator()(const Cell& cell, std::size_t place) const { return known->cells_[place].cell == cell; }
+  };
+
+  /// Whether two cells differ in nothing but the primitive, and in their label.
+  [[nodiscard]] bool is_needed(PrimitiveIndex p) const {
+    return std::ranges::any_of(cells_of_[p], [&](std::size_t c) {
+      if (!cells_[c].is_open) return false;
+      const auto other = index_.find(without(cells_[c].cell, p));
+      return other != index_.end() && cells_[*other].is_in != cells_[c].is_in;
+    });
+  }
+
+  void leave_out(PrimitiveIndex p) {
+    left_out_ += cells_of_[p].empty() ? 0 : 1;
+    for (const std::size_t c : cells_of_[p]) {
+      if (!cells_[c].is_open) continue;
+      index_.erase(index_.find(c));
+      std::erase(cells_[c].cell, p);
+      // Not open: it has become the same as another.
+      cells_[c].is_open = index_.insert(c).second;
+    }
+  }
+
+  std::vector<KnownCell> cells_;
+  std::vector<std::vector<std::size_t>> cells_of_;  // by primitive
+  std::unordered_set<std::size_t, Hash, Equal> index_;
+  std::size_t essential_ = 0, left_out_ = 0;
+};
 
 /// Splits off what is wholly in, or wholly out.
 class Peeler {
@@ -72,6 +187,15 @@ class Peeler {
   std::vector<std::size_t> in_, out_;               // by primitive: open cells with it
 };
 
+/// The primitives of a core that a cell is inside of.
+Assignment assignment_of(const Cell& cell, std::span<const PrimitiveIndex> primitives) {
+  Assignment row = 0;
+  for (std::size_t place = 0; place < primitives.size(); ++place) {
+    if (std::ranges::binary_search(cell, primitives[place])) row |= Assignment{1} << place;
+  }
+  return row;
+}
+
 /// The open cells over the primitives of a core.
 class CoreFinder {
  public:
@@ -133,14 +257,6 @@ std::vector<CsgTree> leaves(const std::vector<PrimitiveIndex>& primitives) {
 }
 
 }  // namespace
-
-Assignment assignment_of(const Cell& cell, std::span<const PrimitiveIndex> primitives) {
-  Assignment row = 0;
-  for (std::size_t place = 0; place < primitives.size(); ++place) {
-    if (std::ranges::binary_search(cell, primitives[place])) row |= Assignment{1} << place;
-  }
-  return row;
-}
 
 std::optional<TakenApart> take_apart(const CellComplex& complex, const CellLabels& labels, double least_evidence) {
   const std::size_t primitives = complex.points_of_primitive.size();

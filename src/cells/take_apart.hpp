@@ -37,9 +37,6 @@ struct TakenApart {
   [[nodiscard]] std::size_t least_leaves() const { return is_outside_sure ? essential : 0; }
 };
 
-/// The primitives of a core that a cell is inside of.
-[[nodiscard]] Assignment assignment_of(const Cell& cell, std::span<const PrimitiveIndex> primitives);
-
 /// From the cells that are sure. Absent when a core has more than k_most_variables primitives. O(size of all cells)
 [[nodiscard]] std::optional<TakenApart> take_apart(const CellComplex& complex, const CellLabels& labels,
                                                    double least_evidence);

@@ -5,7 +5,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "io/formats/formats.hpp"
 #include "shape/mesh/model_extent.hpp"
 

@@ -9,7 +9,7 @@
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/input.hpp"
 #include "core/base/parallel.hpp"
-#include "core/primitive/triangle_sampler.hpp"
+#include "core/primitive/surface_points.hpp"
 #include "io/formats/formats.hpp"
 
 namespace cloud2csg {

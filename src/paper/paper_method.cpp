@@ -7,11 +7,10 @@
 #include "cloud2csg/advanced/merge.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 #include "paper/evolve/genetic_algorithm.hpp"
-#include "paper/objective/fit.hpp"
+#include "paper/objective/objective.hpp"
 #include "paper/partition/partitions.hpp"
-#include "paper/segment/noise_scale.hpp"
 #include "paper/segment/supported_primitives.hpp"
 
 namespace cloud2csg {

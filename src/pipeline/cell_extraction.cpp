@@ -1,10 +1,9 @@
-#include "pipeline/cell_extraction.hpp"
-
 #include <algorithm>
 #include <utility>
 
 #include "cloud2csg/advanced/cells.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
+#include "pipeline/extraction_run.hpp"
 
 namespace cloud2csg {
 

@@ -3,15 +3,116 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
 
+#include "cells/surface_samples.hpp"
+#include "cloud2csg/advanced/detect.hpp"
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/error.hpp"
+#include "cloud2csg/point_cloud.hpp"
+#include "cloud2csg/run_context.hpp"
+#include "core/geometry/neighbour_tree.hpp"
 #include "core/geometry/place_text.hpp"
 #include "paper/merge/merge_component.hpp"
-#include "pipeline/bare_surface.hpp"
-#include "pipeline/unused_surfaces.hpp"
 
 namespace cloud2csg {
 namespace {
+
+/// The surface of a solid that no point of a cloud is near.
+struct BareSurface {
+  double share = 0;                                  ///< of the solid's surface within the bounds of the cloud
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< the place on it that is farthest from all points
+};
+
+using Eigen::Vector3d;
+
+constexpr std::size_t k_samples = 400;  ///< of each primitive
+constexpr double k_step = 1e-4;  ///< of the diagonal: so far off its surface a solid is looked at from both sides
+
+/// The samples that are on the solid's surface, too.
+Points on_surface(const PointCloud& samples, const CsgTree& tree, const PrimitiveSet& primitives, double step) {
+  Points over;
+  Points under;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    over.push_back(samples.positions[i] + step * samples.normals[i]);
+    under.push_back(samples.positions[i] - step * samples.normals[i]);
+  }
+  const std::vector<double> above = implicit_value(tree, primitives, over);
+  const std::vector<double> below = implicit_value(tree, primitives, under);
+  Points result;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if ((above[i] < 0) != (below[i] < 0)) result.push_back(samples.positions[i]);
+  }
+  return result;
+}
+
+/// Estimated by samples, always the same. Absent where no sample is on the surface. O(points log points + samples x
+/// size)
+std::optional<BareSurface> find_bare_surface(const CsgTree& tree, const PrimitiveSet& primitives,
+                                             const PointCloud& cloud, double near, const RunContext& run) {
+  const AlignedBox box = bounds_of(cloud.positions);
+  const NeighbourTree points(cloud.positions);
+  BareSurface result;
+  double all = 0;
+  double bare = 0;
+  double farthest = near;
+  for (const PrimitiveIndex p : primitives_of(tree)) {
+    run.throw_if_stopped();
+    const AlignedBox reached = reach(primitives[p], 0);
+    const SurfaceSamples samples =
+        sample_surfaces({primitives[p]}, std::span(&reached, 1), box, {.base = k_samples, .a_neighbour = 0}, run);
+    const Points places = on_surface(samples.points, tree, primitives, k_step * box.diagonal().norm());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double distance = points.nearest(places[i]).distance;
+      all += samples.area_of_sample[0];
+      if (distance <= near) continue;
+      bare += samples.area_of_sample[0];
+      if (distance <= farthest) continue;
+      farthest = distance;
+      result.middle = places[i];
+    }
+  }
+  if (!(all > 0)) return std::nullopt;
+  result.share = bare / all;
+  return result;
+}
+
+/// Of the surfaces that were found, those whose points are not on the solid.
+struct UnusedSurfaces {
+  std::size_t count = 0;
+  std::size_t largest = 0;  ///< index of the one with the most points; no meaning where there are none
+};
+
+constexpr std::size_t k_sample = 200;  // points of a surface that tell
+
+bool is_unused(const CsgTree& tree, const PrimitiveSet& solids, const PointCloud& cloud, const DetectedSurface& surface,
+               double near) {
+  const std::size_t count = std::min(k_sample, surface.points.size());
+  Points places;
+  for (std::size_t k = 0; k < count; ++k) {
+    places.push_back(cloud.positions[surface.points[k * surface.points.size() / count]]);
+  }
+  const std::vector<double> values = implicit_value(tree, solids, places);
+  const auto far = std::ranges::count_if(values, [near](double value) { return std::abs(value) > near; });
+  return 2 * static_cast<std::size_t>(far) > count;
+}
+
+/// Unused: more than half of its points are farther than `near` from the surface of the solid. Those with fewer points
+/// than `least_points` are passed over. O(surfaces x size)
+UnusedSurfaces find_unused_surfaces(const CsgTree& tree, const PrimitiveSet& solids, const PointCloud& cloud,
+                                    std::span<const DetectedSurface> surfaces, double near, std::size_t least_points) {
+  UnusedSurfaces unused;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (surfaces[s].points.size() < least_points || !is_unused(tree, solids, cloud, surfaces[s], near)) continue;
+    if (unused.count == 0 || surfaces[s].points.size() > surfaces[unused.largest].points.size()) unused.largest = s;
+    ++unused.count;
+  }
+  return unused;
+}
 
 constexpr double k_much_unexplained = 0.1;
 constexpr double k_coarse = 0.05;  ///< tolerance, of the diagonal

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/detect_rest.hpp"
 #include "pipeline/find_primitives.hpp"
 
 /// What is doubtful about a result, and where: sentences for the user.

@@ -9,13 +9,10 @@
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
-#include "paper/objective/fit.hpp"
-#include "pipeline/cell_extraction.hpp"
+#include "core/base/run.hpp"
+#include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"
-#include "pipeline/partition_extraction.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -3,20 +3,82 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
-#include "pipeline/close_unseen.hpp"
-#include "pipeline/detect_rest.hpp"
+#include "core/base/run.hpp"
+#include "core/geometry/place_text.hpp"
+#include "core/geometry/subset.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/time_limit.hpp"
+#include "raw/solids/unseen_surfaces.hpp"
 
 namespace cloud2csg {
 namespace {
+
+/// Of the cloud, those on no known primitive.
+std::vector<std::uint32_t> points_of_none(const std::vector<SurfacePoints>& known, std::size_t count) {
+  std::vector<bool> is_taken(count, false);
+  for (const SurfacePoints& own : known) {
+    for (const std::uint32_t i : own.points) is_taken[i] = true;
+  }
+  return places_where(is_taken, false);
+}
+
+/// Adds the side, if one is missing, to the cloud and to the surfaces.
+void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
+  PointCloud& cloud = found.prepared.cloud;
+  const std::optional<UnseenSide> side = find_unseen_side(cloud, found.detection.surfaces, found.prepared.scale, run);
+  if (!side) return;
+  DetectedSurface plane{.surface = {.position = side->points.positions[0], .axis = side->normal}, .points = {}};
+  plane.points.resize(side->points.size());
+  std::iota(plane.points.begin(), plane.points.end(), static_cast<std::uint32_t>(cloud.size()));
+  found.added_points += side->points.size();
+  append(cloud, side->points);
+  found.detection.surfaces.push_back(std::move(plane));
+  // Without digits that say nothing, and without a sign before zeros.
+  const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
+  found.warnings.push_back(
+      fmt::format("the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed "
+                  "by a plane through {}",
+                  facing.x(), facing.y(), facing.z(), 100 * side->share,
+                  place_text(bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
+}
+
+/// Adds the walls that nobody could see to the cloud, and their points to the surfaces.
+void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
+  PointCloud& cloud = found.prepared.cloud;
+  const std::vector<HiddenWall> walls = find_hidden_walls(cloud, found.detection.surfaces, found.prepared.scale, run);
+  if (walls.empty()) return;
+  const auto largest = std::ranges::max_element(walls, {}, &HiddenWall::area);
+  const Eigen::Vector3d middle = bounds_of(largest->points.positions).center();
+  for (const HiddenWall& wall : walls) {
+    std::vector<std::uint32_t>& own = found.detection.surfaces[wall.surface].points;
+    own.resize(own.size() + wall.points.size());
+    std::iota(own.end() - static_cast<std::ptrdiff_t>(wall.points.size()), own.end(),
+              static_cast<std::uint32_t>(cloud.size()));
+    found.added_points += wall.points.size();
+    append(cloud, wall.points);
+  }
+  found.warnings.push_back(
+      fmt::format("no sensor saw far into {} of the holes, the largest near {}: the walls are taken to go on between "
+                  "what was seen of them",
+                  walls.size(), place_text(middle, found.prepared.scale.diagonal)));
+}
+
+/// With points and surfaces added where no sensor saw the part: find_unseen_side(), find_hidden_walls(). Warnings say
+/// what was closed, and where. Precondition: the surfaces are detected.
+FoundPrimitives with_unseen_closed(FoundPrimitives found, const RunContext& run) {
+  close_unseen_side(found, run);
+  close_hidden_walls(found, run);
+  return found;
+}
 
 void check_known(const PrimitiveSet& known) {
   std::set<std::string> ids;
@@ -33,6 +95,12 @@ void check_known(const PrimitiveSet& known) {
       throw Error(std::move(parts));
     }
   }
+}
+
+/// The tolerances by which points lie on solids, when they are those of the detection.
+SegmentationTolerances tolerances_of(const DetectOptions& options, const Scale& scale) {
+  return {.distance = detection_tolerance(options, scale),
+          .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180)};
 }
 
 /// Tells of each solid which points lie on it.
@@ -83,6 +151,25 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
 }
 
 }  // namespace
+
+RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const PrimitiveSet& known,
+                          const DetectOptions& options, const RunContext& run) {
+  if (known.empty()) return {.known = {}, .detection = detect_surfaces(cloud, scale, options, run)};
+  RestDetection result{.known = deal_points(cloud, known, tolerances_of(options, scale), run), .detection = {}};
+  const std::vector<std::uint32_t> rest = points_of_none(result.known, cloud.size());
+  DetectOptions of_rest = options;
+  of_rest.distance_tolerance = detection_tolerance(options, scale);
+  of_rest.least_points = detection_least_points(options, cloud.size());
+  if (rest.empty()) {
+    result.detection.distance_tolerance = *of_rest.distance_tolerance;
+    return result;
+  }
+  result.detection = detect_surfaces(select_points(cloud, rest), scale, of_rest, run);
+  for (DetectedSurface& surface : result.detection.surfaces) {
+    for (std::uint32_t& i : surface.points) i = rest[i];
+  }
+  return result;
+}
 
 FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   const std::optional<double>& seconds = options.extraction.time_limit_seconds;

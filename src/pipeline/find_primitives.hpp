@@ -3,9 +3,22 @@
 #include <string>
 #include <vector>
 
+#include "cloud2csg/advanced/detect.hpp"
+#include "cloud2csg/advanced/segmentation.hpp"
 #include "cloud2csg/reconstruct.hpp"
 
 namespace cloud2csg {
+
+struct RestDetection {
+  std::vector<SurfacePoints> known;  ///< the points on each known primitive
+  Detection detection;               ///< of the others, as indices into the whole cloud
+};
+
+/// Deals points out to the primitives that are known and detects surfaces in the rest: detect_surfaces(), with the
+/// limits that hold for the whole cloud. The same as that where nothing is known.
+/// Precondition: the cloud has normals and points. @throws Error, Cancelled
+[[nodiscard]] RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const PrimitiveSet& known,
+                                        const DetectOptions& options, const RunContext& run);
 
 /// What find_primitives() found, with all that is known on the way.
 struct FoundPrimitives {

@@ -1,15 +1,13 @@
-#include "pipeline/partition_extraction.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <mutex>
 
 #include "cloud2csg/csg_tree.hpp"
 #include "core/base/parallel.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
+#include "core/base/run.hpp"
 #include "paper/merge/merge_component.hpp"
 #include "paper/segment/supported_primitives.hpp"
+#include "pipeline/extraction_run.hpp"
 
 namespace cloud2csg {
 namespace {

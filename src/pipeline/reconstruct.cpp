@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
-#include "paper/objective/fit.hpp"
+#include "core/base/run.hpp"
+#include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/find_primitives.hpp"
 

@@ -4,9 +4,8 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/extract.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/base/without_stop.hpp"
-#include "paper/objective/fit.hpp"
+#include "core/base/run.hpp"
+#include "paper/objective/objective.hpp"
 #include "pipeline/time_limit.hpp"
 
 namespace cloud2csg {

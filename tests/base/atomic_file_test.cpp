@@ -1,5 +1,3 @@
-#include "core/base/atomic_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,6 +6,7 @@
 
 #include "base/temporary_folder.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,8 +1,7 @@
-#include "core/base/visible_text.hpp"
-
 #include <gtest/gtest.h>
 
 #include "cloud2csg/error.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg {
 namespace {

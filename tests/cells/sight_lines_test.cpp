@@ -1,10 +1,9 @@
-#include "cells/sight_lines.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <map>
 
+#include "cells/crossings.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "core/geometry/spatial_order.hpp"
 #include "support/known_solids.hpp"

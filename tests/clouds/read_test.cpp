@@ -6,7 +6,7 @@
 #include <stop_token>
 
 #include "clouds/cloud_support.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

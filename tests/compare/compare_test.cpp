@@ -8,7 +8,7 @@
 #include "base/temporary_folder.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "sample/solids.hpp"
 
 namespace cloud2csg {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "raw/detect/minimal_surfaces.hpp"
+#include "raw/detect/propose.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {

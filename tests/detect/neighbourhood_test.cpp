@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "raw/detect/connected.hpp"
+#include "raw/detect/grow.hpp"
 #include "raw/detect/work_cloud.hpp"
 #include "support/random_scene.hpp"
 

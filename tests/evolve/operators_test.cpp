@@ -1,5 +1,3 @@
-#include "paper/evolve/operators.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -7,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "paper/evolve/random_tree.hpp"
+#include "paper/evolve/genetic_algorithm.hpp"
 #include "tree/random_trees.hpp"
 
 namespace cloud2csg {

@@ -2,7 +2,7 @@
 #include <stop_token>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "experiment/experiment_fixture.hpp"
 
 namespace cloud2csg::test {

@@ -7,7 +7,7 @@
 #include "bench/experiment/scaling_figures.hpp"
 #include "bench/experiment/scaling_tables.hpp"
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "experiment/experiment_fixture.hpp"
 
 namespace cloud2csg::test {

@@ -8,7 +8,7 @@
 
 #include "cloud2csg/mesh.hpp"
 #include "core/base/random.hpp"
-#include "core/geometry/random_between.hpp"
+#include "core/geometry/boxes.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {

@@ -9,7 +9,7 @@
 
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/input.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "io/clouds/file_content.hpp"
 #include "io/meshes/zip_archive.hpp"
 

@@ -1,5 +1,3 @@
-#include "paper/merge/merge_check.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "cloud2csg/advanced/restrict.hpp"
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/sample.hpp"
+#include "paper/merge/merge_component.hpp"
 #include "support/known_solids.hpp"
 #include "support/scene.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "mesh/shapes.hpp"
 #include "shape/mesh/cell_topology.hpp"
 

@@ -1,5 +1,3 @@
-#include "paper/objective/block_groups.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
+#include "paper/objective/class_table.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,5 +1,3 @@
-#include "paper/objective/fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "paper/objective/objective.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
 

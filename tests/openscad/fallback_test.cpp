@@ -9,7 +9,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -8,7 +8,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/model.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "core/base/random.hpp"
 #include "support/flange.hpp"
 #include "support/random_scene.hpp"

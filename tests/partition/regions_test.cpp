@@ -1,5 +1,3 @@
-#include "paper/partition/regions.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/random.hpp"
+#include "paper/partition/partitions.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {

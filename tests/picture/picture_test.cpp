@@ -8,7 +8,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/view.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -10,7 +10,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "core/base/random.hpp"
-#include "core/geometry/append.hpp"
+#include "core/geometry/subset.hpp"
 #include "pipeline/reconstructed.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"

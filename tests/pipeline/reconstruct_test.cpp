@@ -13,7 +13,7 @@
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
-#include "paper/objective/fit.hpp"
+#include "paper/objective/objective.hpp"
 #include "pipeline/reconstructed.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"

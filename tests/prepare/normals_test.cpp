@@ -7,7 +7,6 @@
 #include "prepare/clouds.hpp"
 #include "raw/prepare/orientation.hpp"
 #include "raw/prepare/patches.hpp"
-#include "raw/prepare/signed_sets.hpp"
 #include "support/warnings.hpp"
 
 namespace cloud2csg {

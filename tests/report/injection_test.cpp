@@ -7,7 +7,7 @@
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/export.hpp"
 #include "cloud2csg/view.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "support/outside_program.hpp"
 
 /// Names in a model are somebody else's text: in whatever is written of it, they stay names.

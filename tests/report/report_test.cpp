@@ -8,7 +8,7 @@
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/sample.hpp"
 #include "cloud2csg/view.hpp"
-#include "paper/objective/fit.hpp"
+#include "paper/objective/objective.hpp"
 #include "report/decoded.hpp"
 #include "view/report/deviation.hpp"
 #include "view/report/gather.hpp"

@@ -6,7 +6,7 @@
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/export.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "shape/mesh/model_extent.hpp"
 #include "support/every_type.hpp"
 #include "support/flange.hpp"

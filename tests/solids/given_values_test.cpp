@@ -1,11 +1,9 @@
-#include "raw/solids/given_values.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "core/base/random.hpp"
-#include "raw/solids/surfaces_of_known.hpp"
+#include "raw/solids/known_parts.hpp"
 
 namespace cloud2csg {
 namespace {

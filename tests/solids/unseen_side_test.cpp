@@ -1,11 +1,10 @@
-#include "raw/solids/unseen_side.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/sample.hpp"
+#include "raw/solids/unseen_surfaces.hpp"
 #include "solids/known_surfaces.hpp"
 #include "support/known_solids.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -10,7 +10,7 @@
 #include <mutex>
 
 #include "cloud2csg/run_context.hpp"
-#include "core/base/stage_share.hpp"
+#include "core/base/run.hpp"
 
 #if defined(__SANITIZE_THREAD__)
 #define CLOUD2CSG_THREAD_SANITIZER
@@ -20,7 +20,9 @@
 #endif
 #endif
 #ifdef CLOUD2CSG_THREAD_SANITIZER
-#include "core/base/plain_threads.hpp"
+#include <exception>
+#include <thread>
+#include <vector>
 #endif
 
 namespace cloud2csg {
@@ -30,6 +32,37 @@ inline int usable_threads(const RunContext& run) {
   const int cores = oneapi::tbb::info::default_concurrency();
   return run.threads > 0 ? std::min(run.threads, cores) : cores;
 }
+
+#ifdef CLOUD2CSG_THREAD_SANITIZER
+/// The loop of for_each_index() without TBB, for builds with the thread sanitizer: it cannot see how a TBB that was not
+/// built with it synchronises, and would either report every loop or, with those reports suppressed, see no race of
+/// ours. Iterations are handed out without ordering one after the other, so that races between them show.
+template <typename Work>
+void run_on_plain_threads(std::size_t count, int threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex failing;
+  std::exception_ptr failure;
+  const auto take_turns = [&] {
+    try {
+      for (;;) {
+        const std::size_t i = next.fetch_add(1, std::memory_order_relaxed);
+        if (i >= count) return;
+        work(i);
+      }
+    } catch (...) {
+      const std::lock_guard lock(failing);
+      failure = std::current_exception();
+      next.store(count, std::memory_order_relaxed);
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(take_turns);
+    take_turns();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+#endif
 
 /// Calls work(i) for i = 0 .. count - 1 on the threads of the arena that the caller is in, for loops within loops. The
 /// same rules as for for_each_index().

@@ -8,8 +8,8 @@
 #include "core/base/random.hpp"
 #include "core/fields/bounded_field.hpp"
 #include "core/fields/lipschitz.hpp"
+#include "core/geometry/boxes.hpp"
 #include "core/geometry/octree.hpp"
-#include "core/geometry/random_between.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "cloud2csg/geometry.hpp"
+#include "core/base/random.hpp"
 
 namespace cloud2csg {
 
@@ -19,6 +20,14 @@ namespace cloud2csg {
 /// Whether no side is at infinity.
 [[nodiscard]] inline bool is_finite(const AlignedBox& box) {
   return box.min().allFinite() && box.max().allFinite();
+}
+
+/// Each coordinate between those of the corners, x first.
+[[nodiscard]] inline Eigen::Vector3d random_between(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                                                    RandomStream& random) {
+  Eigen::Vector3d result;
+  for (int axis = 0; axis < 3; ++axis) result[axis] = random.uniform(low[axis], high[axis]);
+  return result;
 }
 
 }  // namespace cloud2csg

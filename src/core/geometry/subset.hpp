@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "cloud2csg/geometry.hpp"
+#include "cloud2csg/point_cloud.hpp"
 #include "core/base/random.hpp"
 
-/// Some of many.
+/// Some points of many, and clouds put together.
 namespace cloud2csg {
 
 /// At most so many entries, evenly along the list: all where there are no more. O(most)
@@ -37,5 +38,18 @@ template <std::ranges::sized_range Indices>
 /// One of 0 .. count - 1 out of every few, `most` at most, ascending. Chance says which one: scans come in rows, and a
 /// fixed step may follow a column of them. Precondition: most > 0. O(most)
 [[nodiscard]] std::vector<std::uint32_t> one_of_every_few(std::size_t count, std::size_t most, RandomStream random);
+
+inline void append(Points& points, const Points& more) {
+  points.x.insert(points.x.end(), more.x.begin(), more.x.end());
+  points.y.insert(points.y.end(), more.y.begin(), more.y.end());
+  points.z.insert(points.z.end(), more.z.begin(), more.z.end());
+}
+
+/// Precondition: both know the same of their points, or `cloud` is empty. O(more)
+inline void append(PointCloud& cloud, const PointCloud& more) {
+  append(cloud.positions, more.positions);
+  append(cloud.normals, more.normals);
+  append(cloud.sensor_positions, more.sensor_positions);
+}
 
 }  // namespace cloud2csg

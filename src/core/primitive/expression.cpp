@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "cloud2csg/error.hpp"
 
@@ -95,6 +96,20 @@ void validate_formula(const std::string& formula) {
     if (parser.GetNumResults() != 1) refuse_formula("it gives more than one value");
   } catch (const mu::Parser::exception_type& e) {
     refuse_formula(e.GetMsg());
+  }
+}
+
+void evaluate_expression(const Primitive& primitive, PointsView points, const FieldSpans& out) {
+  // A parser of its own for each batch: parsers are not shared between threads.
+  ExpressionEvaluator evaluator(std::get<Expression>(primitive.shape));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d local = primitive.pose.to_local(points[i]);
+    if (!out.distance.empty()) out.distance[i] = evaluator.value(local);
+    if (out.gradient_x.empty()) continue;
+    const Eigen::Vector3d slope = primitive.pose.orientation * evaluator.gradient(local);
+    out.gradient_x[i] = slope.x();
+    out.gradient_y[i] = slope.y();
+    out.gradient_z[i] = slope.z();
   }
 }
 

@@ -165,7 +165,7 @@ HWY_AFTER_NAMESPACE();
 #include <variant>
 #include <vector>
 
-#include "core/primitive/expression_field.hpp"
+#include "core/primitive/expression.hpp"
 
 namespace cloud2csg {
 

@@ -1,7 +1,7 @@
 #include <variant>
 
 #include "cloud2csg/primitive.hpp"
-#include "core/primitive/expression_field.hpp"
+#include "core/primitive/expression.hpp"
 #include "core/primitive/formulas-inl.hpp"
 
 // The plain reference: the formulas for one double at a time, without any vector instructions of ours.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "cloud2csg/primitive.hpp"
 
 namespace cloud2csg {
@@ -10,5 +13,14 @@ void validate_polytope(const Polytope& polytope);
 
 /// The polytope with every plane moved outward by `distance`: where the largest of the planes' distances is below it.
 [[nodiscard]] Polytope grown(const Polytope& polytope, double distance);
+
+/// The surface of a polytope, in its own frame.
+struct PolytopeFaces {
+  std::vector<Eigen::Vector3d> corners;
+  std::vector<std::vector<std::size_t>> faces;  ///< corner numbers counter-clockwise seen from outside
+};
+
+/// Planes that only touch the solid have no face; of those that are given twice, one has.
+[[nodiscard]] PolytopeFaces faces_of(const Polytope& polytope);
 
 }  // namespace cloud2csg

@@ -20,6 +20,14 @@ struct SampledField {
 };
 
 /// See evaluate_field().
-[[nodiscard]] SampledField sample_field(const Primitive& primitive, PointsView points);
+[[nodiscard]] inline SampledField sample_field(const Primitive& primitive, PointsView points) {
+  SampledField field{.distances = std::vector<double>(points.size()), .slopes = Points(points.size())};
+  evaluate_field(primitive, points,
+                 {.distance = field.distances,
+                  .gradient_x = field.slopes.x,
+                  .gradient_y = field.slopes.y,
+                  .gradient_z = field.slopes.z});
+  return field;
+}
 
 }  // namespace cloud2csg

@@ -6,8 +6,8 @@
 #include "cloud2csg/primitive.hpp"
 #include "core/geometry/boxes.hpp"
 #include "core/primitive/expression.hpp"
-#include "core/primitive/overloaded.hpp"
 #include "core/primitive/polytope.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
 namespace {

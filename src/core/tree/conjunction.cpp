@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/base/narrow.hpp"
-
 namespace cloud2csg {
 namespace {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,6 +16,11 @@
 /// It is kept as a flat sequence of tokens: `k_open`, what the conjunction holds, `k_close`. The outermost conjunction
 /// is the formula itself; every inner one counts as negated. [] is all of space, [[]] is empty.
 namespace cloud2csg {
+
+/// An index or a count that is known to fit, as it is kept.
+[[nodiscard]] constexpr std::uint32_t narrow(std::size_t n) {
+  return static_cast<std::uint32_t>(n);
+}
 
 using Token = std::uint32_t;
 constexpr Token k_open = 0xffffffffU;

@@ -4,7 +4,6 @@
 #include <cassert>
 
 #include "cloud2csg/error.hpp"
-#include "core/tree/join.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -27,8 +26,7 @@ CsgTree renamed(const CsgTree& tree, const NewName& new_name) {
   return CsgTree(std::move(nodes));
 }
 
-}  // namespace
-
+/// Precondition: the operation has two children.
 CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
   std::vector<CsgNode> nodes;
   nodes.reserve(a.size() + b.size() + 1);
@@ -37,6 +35,8 @@ CsgTree join(Operation operation, const CsgTree& a, const CsgTree& b) {
   nodes.push_back(CsgNode::inner(operation, length_of(nodes.size() + 1)));
   return CsgTree(std::move(nodes));
 }
+
+}  // namespace
 
 CsgTree CsgTree::leaf(PrimitiveIndex primitive) {
   return CsgTree(std::vector{CsgNode::leaf(primitive)});

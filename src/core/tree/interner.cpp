@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/tree/mix.hpp"
-
 namespace cloud2csg {
 namespace {
 

@@ -3,12 +3,16 @@
 #include <array>
 #include <utility>
 
-#include "core/tree/join.hpp"
-
 namespace cloud2csg {
 namespace {
 
 constexpr std::array k_binary{Operation::union_of, Operation::intersection, Operation::difference};
+
+/// Of two trees, by one of k_binary.
+CsgTree joined(Operation operation, const CsgTree& a, const CsgTree& b) {
+  if (operation == Operation::union_of) return unite(a, b);
+  return operation == Operation::intersection ? intersect(a, b) : subtract(a, b);
+}
 
 bool is_spent(const ObjectiveEvaluator& evaluator, const LocalSearchOptions& options) {
   return evaluator.evaluations() >= options.evaluation_limit || evaluator.work() >= options.work_limit;
@@ -66,7 +70,7 @@ class Neighbours {
     const CsgTree first = child(centre_.tree.first_child(node));
     const CsgTree second = child(centre_.tree.second_child(node));
     for (const Operation operation : k_binary) {
-      if (operation != now) consider(node, join(operation, first, second));
+      if (operation != now) consider(node, joined(operation, first, second));
     }
     consider(node, subtract(second, first));
   }
@@ -75,7 +79,7 @@ class Neighbours {
     const Operation now = centre_.tree.nodes()[node].operation();
     if (now == Operation::empty || now == Operation::full) return;  // nothing to join, and tables take it alone only
     const CsgTree here = child(node);
-    for (const Operation operation : k_binary) consider(node, join(operation, here, leaf));
+    for (const Operation operation : k_binary) consider(node, joined(operation, here, leaf));
     consider(node, subtract(leaf, here));
   }
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
-#include "core/tree/mix.hpp"
+#include "core/tree/interner.hpp"
 
 /// Equality up to commutation and association. A **chain** is a maximal run of nodes of one operation: for unions and
 /// intersections through both children, for differences through the first child, ((a - b) - c) - d. Its **operands**

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cloud2csg/point_cloud.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "io/clouds/cloud_assembly.hpp"
 #include "io/clouds/file_content.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "io/clouds/file_content.hpp"
 #include "io/clouds/formats.hpp"
 #include "io/formats/formats.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <system_error>
 
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg {
 namespace {

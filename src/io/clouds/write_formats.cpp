@@ -13,7 +13,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/point_cloud.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "io/clouds/formats.hpp"
 
 namespace cloud2csg {

@@ -7,8 +7,7 @@
 #include <regex>
 #include <system_error>
 
-#include "core/base/lower_case.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg {
 namespace {

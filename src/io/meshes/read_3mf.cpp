@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 #include "io/clouds/text_rows.hpp"
 #include "io/meshes/formats.hpp"
 #include "io/meshes/mesh_assembly.hpp"

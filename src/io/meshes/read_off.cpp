@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 #include "io/clouds/text_rows.hpp"
 #include "io/meshes/formats.hpp"
 #include "io/meshes/mesh_assembly.hpp"

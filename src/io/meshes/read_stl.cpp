@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "core/base/lower_case.hpp"
+#include "core/base/text.hpp"
 #include "io/clouds/scalar_type.hpp"
 #include "io/clouds/text_rows.hpp"
 #include "io/meshes/formats.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cloud2csg/mesh.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "io/formats/formats.hpp"
 #include "io/meshes/formats.hpp"
 

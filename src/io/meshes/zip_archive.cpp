@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg {
 namespace {

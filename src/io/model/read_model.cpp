@@ -14,8 +14,8 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
-#include "core/base/atomic_file.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/files.hpp"
+#include "core/base/text.hpp"
 #include "io/formats/formats.hpp"
 #include "io/model/schema_validator.hpp"
 #include "io/model/tree_reader.hpp"

@@ -9,7 +9,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 
 // The text is put together by hand, not by nlohmann's dump(): one primitive and one leaf a line is what a person
 // can edit, and dump() recurses as deep as the tree.

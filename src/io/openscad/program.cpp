@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/visible_text.hpp"
-#include "core/primitive/lengths.hpp"
+#include "core/base/text.hpp"
+#include "core/primitive/shape.hpp"
 #include "io/openscad/solids.hpp"
 
 namespace cloud2csg::scad {

@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "core/base/run_program.hpp"
-#include "core/base/scratch_file.hpp"
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 #include "io/openscad/program.hpp"
 
 namespace cloud2csg {

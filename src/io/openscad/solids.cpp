@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/primitive/overloaded.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg::scad {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/visible_text.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg::scad {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cloud2csg/export.hpp"
-#include "core/primitive/overloaded.hpp"
+#include "core/primitive/shape.hpp"
 #include "io/scripts/python_body.hpp"
 
 namespace cloud2csg {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/primitive/overloaded.hpp"
+#include "core/primitive/shape.hpp"
 #include "io/scripts/openscad_solids.hpp"
 
 namespace cloud2csg::openscad {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/primitive/lengths.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg::script {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/primitive/overloaded.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg::script {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/base/utf8.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg::script {
 namespace {

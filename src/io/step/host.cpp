@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cloud2csg/mesh.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "core/fields/tree_volume.hpp"
 #include "core/geometry/boxes.hpp"
 #include "io/step/balance_facets.hpp"

@@ -5,8 +5,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/primitive/overloaded.hpp"
-#include "core/primitive/polytope_faces.hpp"
+#include "core/primitive/polytope.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg::brep {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <system_error>
 
-#include "core/base/utf8.hpp"
+#include "core/base/text.hpp"
 
 namespace cloud2csg::brep {
 namespace {

@@ -7,8 +7,7 @@
 
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
-#include "core/base/atomic_file.hpp"
-#include "core/base/scratch_file.hpp"
+#include "core/base/files.hpp"
 #include "core/fields/tree_volume.hpp"
 #include "io/step/host.hpp"
 #include "io/step/kernel_solids.hpp"

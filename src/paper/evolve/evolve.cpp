@@ -9,6 +9,7 @@
 #include "cloud2csg/csg_tree.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/tree/local_search.hpp"
 #include "paper/evolve/genetic_algorithm.hpp"
 #include "paper/evolve/listing.hpp"
 
@@ -204,6 +205,21 @@ CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, con
   oneapi::tbb::task_arena arena(usable_threads(run));
   const Evolution found = arena.execute([&] { return evolve_tree(table, options, partition_item(clique), run); });
   return simplify(renumber(found.tree, table.primitives()));
+}
+
+Evolution local_search(const RankClasses& table, const CsgTree& start, const LocalSearchOptions& options,
+                       const RunContext& run) {
+  RankScratch scratch;
+  const TreeObjective objective{.primitives = table.primitive_count(),
+                                .geometry = [&](const CsgTree& tree) { return table.geometry(tree, scratch); },
+                                .alpha = table.objective().alpha,
+                                .work_per_node = static_cast<double>(table.class_count())};
+  const LocalOptimum best = local_search(objective, start, options, run);
+  return {.tree = best.tree,
+          .score = best.score,
+          .geometry = table.geometry(best.tree, scratch),
+          .evaluations = best.evaluations,
+          .complete = best.complete};
 }
 
 }  // namespace cloud2csg

@@ -2,7 +2,7 @@
 
 #include <stop_token>
 
-#include "paper/evolve/scored_tree.hpp"
+#include "paper/evolve/genetic_algorithm.hpp"
 
 namespace cloud2csg {
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "cloud2csg/advanced/rank_classes.hpp"
 #include "paper/objective/contribution_units.hpp"
 #include "paper/objective/rank_kernels.hpp"
 
@@ -91,5 +93,56 @@ class ClassTable {
   std::vector<WideContribution> wide_sums_;             // of the classes of many points
   std::vector<std::uint64_t> wide_points_;
 };
+
+/// The points of a block grouped by key: neighbours have few different ones, so that what is looked up and added in a
+/// large table is first gathered here, in the first-level cache.
+class BlockGroups {
+ public:
+  /// `points` are places in the block, ascending. O(points).
+  void group(const BlockKeys& keys, std::span<const std::uint16_t> points);
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// By group: the first of its points, ascending.
+  [[nodiscard]] std::span<const std::uint16_t> first_points() const { return std::span(first_points_).first(size_); }
+  /// How many points the group has.
+  [[nodiscard]] std::uint32_t count(std::size_t group) const { return counts_[group]; }
+  /// The group of points[k].
+  [[nodiscard]] std::size_t group_of(std::size_t k) const { return groups_[k]; }
+
+ private:
+  /// The slot of the key of a point: the one where it is, or a free one.
+  [[nodiscard]] std::size_t slot_of(const BlockKeys& keys, std::uint16_t point) const;
+
+  std::array<std::uint16_t, 2 * k_block_points> slots_{};  // group + 1; 0 is free
+  std::array<std::uint16_t, k_block_points> first_points_{}, counts_{}, groups_{};
+  std::size_t size_ = 0;
+};
+
+/// A set of primitives by which points are grouped one by one. Tables of subsets are made of its classes, of which
+/// there are far fewer than points; therefore points of one class also belong to the same primitives of the set.
+struct Root {
+  std::vector<PrimitiveIndex> primitives;
+  std::vector<PrimitiveIndex> owners;      ///< points that belong to one of these
+  std::size_t stride = 1;                  ///< every k-th point
+  bool all_points = false;                 ///< also those that belong to none of the owners
+  bool without_strangers = false;          ///< not those inside of a primitive that is not in the set
+  std::optional<AlignedBox> region = {};   ///< only the points in it
+  bool has_member_word = false;            ///< whether keys end with a word that tells to whom the points belong
+  std::vector<std::size_t> requests = {};  ///< that are answered from it
+
+  [[nodiscard]] KeyLayout layout() const { return KeyLayout(primitives.size()); }
+  [[nodiscard]] std::size_t key_words() const { return layout().words + (has_member_word ? 1 : 0); }
+};
+
+/// The roots for all requests. Each request is answered by one of them. O(sum of the set sizes x roots that share a
+/// primitive).
+[[nodiscard]] std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests);
+
+/// By class of a root, the primitives of its set that the points are inside of: bit k for the k-th.
+[[nodiscard]] std::vector<std::uint32_t> inside_words(const Root& root, const ClassTable& classes);
+
+/// Groups the classes of a root by the order of the request's primitives. `inside`: its inside_words().
+[[nodiscard]] ClassTable project(const Root& root, const ClassTable& classes, std::span<const std::uint32_t> inside,
+                                 const RankClassesRequest& request);
 
 }  // namespace cloud2csg

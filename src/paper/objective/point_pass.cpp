@@ -2,11 +2,11 @@
 #include <cassert>
 
 #include "core/base/parallel.hpp"
-#include "core/base/stopwatch.hpp"
-#include "core/fields/frame.hpp"
+#include "core/base/run.hpp"
+#include "core/fields/point_blocks.hpp"
 #include "core/geometry/spatial_order.hpp"
 #include "paper/objective/point_worker.hpp"
-#include "paper/objective/rank_classes_builder.hpp"
+#include "paper/objective/rank_classes.hpp"
 
 namespace cloud2csg {
 namespace {

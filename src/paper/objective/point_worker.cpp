@@ -4,8 +4,8 @@
 #include <bit>
 #include <numeric>
 
-#include "core/base/stopwatch.hpp"
-#include "paper/objective/block_groups.hpp"
+#include "core/base/run.hpp"
+#include "paper/objective/class_table.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/fields/point_blocks.hpp"
-#include "paper/objective/root_table.hpp"
+#include "paper/objective/class_table.hpp"
 
 namespace cloud2csg {
 

@@ -1,9 +1,37 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cloud2csg/primitive.hpp"
 #include "cloud2csg/run_context.hpp"
-#include "paper/overlap/overlap_body.hpp"
 
 namespace cloud2csg {
+
+/// How the overlap of a solid with another is decided.
+enum class BodyKind : std::uint8_t {
+  sphere,      ///< undisplaced: closed form with another sphere, else as convex
+  convex,      ///< bounded, convex, undisplaced: by its support function
+  half_space,  ///< undisplaced and without an extent: closed forms
+  field,       ///< the rest: by its distance field
+};
+
+/// A primitive made ready for many pair tests.
+struct OverlapBody {
+  Primitive solid;    ///< an unbounded primitive with an extent became the box of that extent
+  AlignedBox bounds;  ///< of the solid; infinite for half-spaces
+  BodyKind kind = BodyKind::field;
+  std::vector<Eigen::Vector3d> corners = {};         ///< of a polytope, in the world
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< a point inside, for convex kinds
+  /// |f(p) - f(q)| <= lipschitz |p - q|. Known for all shapes but expressions, for which it is an estimate.
+  double lipschitz = 1.0;
+
+  [[nodiscard]] bool is_bounded() const { return bounds.sizes().allFinite(); }
+};
+
+/// `extent` counts only for a primitive whose own bounds are infinite.
+[[nodiscard]] OverlapBody make_overlap_body(const Primitive& primitive, const std::optional<OrientedBox>& extent);
 
 /// Whether two solids are at most `tolerance` apart; one inside the other overlaps it.
 ///
@@ -12,20 +40,5 @@ namespace cloud2csg {
 /// By distance fields: see fields_overlap().
 /// @throws Cancelled
 [[nodiscard]] bool bodies_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance, const RunContext& run);
-
-/// For two bounded convex bodies: do they, each grown by half the tolerance, intersect? Minkowski portal refinement.
-[[nodiscard]] bool convex_bodies_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance);
-
-/// For any two bodies with bounds in common: is there a point that is within half the tolerance of both? Branch and
-/// bound over the common bounds: a cell is dropped when a field's Lipschitz bound proves the whole cell to
-/// be outside of one solid.
-///
-/// "No" is proven where the Lipschitz constants are (all shapes but expressions, whose constant is estimated).
-/// "Yes" is proven by a point, within the fields' own accuracy: a displaced or expression field is divided by its
-/// Lipschitz constant, so such a solid may count as larger by tolerance * lipschitz / 2. When the budget of
-/// evaluations ends first, the gap is smaller than the cells can tell (about 1/500 of the common bounds), and the
-/// answer is yes: an edge too many costs time, an edge too few costs the right tree.
-/// @throws Cancelled
-[[nodiscard]] bool fields_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance, const RunContext& run);
 
 }  // namespace cloud2csg

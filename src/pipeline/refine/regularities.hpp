@@ -1,11 +1,29 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "pipeline/refine/arrangement.hpp"
 #include "pipeline/refine/solve.hpp"
 
 namespace cloud2csg {
+
+/// Directions that are parallel and orthogonal to each other, and whose they are.
+struct DirectionGroup {
+  struct Member {
+    std::size_t member;           ///< index into the members of the separate arrangement
+    Eigen::Quaterniond in_frame;  ///< its own axes in the group's, turned by multiples of 90 degrees
+    double angle;                 ///< by how much it was off, in radians
+  };
+  Eigen::Quaterniond orientation;
+  bool is_complete;  ///< false: only the z axis means something, all members are solids of revolution around it
+  std::vector<Member> members;
+};
+
+/// Every member is in one group; those that are alone, or have no directions to be compared, in one of their own.
+/// Undisplaced spheres are in the group with the most points, so that their centres can be in line with others.
+[[nodiscard]] std::vector<DirectionGroup> group_directions(const Arrangement& separate, const PrimitiveSet& primitives,
+                                                           std::span<const MemberUncertainty> uncertainties,
+                                                           const OwnedPoints& points, double angle);
 
 /// How near to regular is regular.
 struct RegularityLimits {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/primitive/overloaded.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
 namespace {

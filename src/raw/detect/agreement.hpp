@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,9 +8,13 @@
 #include <vector>
 
 #include "cloud2csg/advanced/surface.hpp"
-#include "raw/detect/oriented_point.hpp"
 
 namespace cloud2csg {
+
+struct OrientedPoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;  ///< unit length, outward
+};
 
 /// What a surface says of a point with its normal: the signed distance, and the cosine between the surface's normal
 /// there and the point's.

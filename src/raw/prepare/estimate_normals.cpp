@@ -11,7 +11,6 @@
 #include "core/geometry/subset.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
-#include "raw/prepare/orient_fits.hpp"
 #include "raw/prepare/orientation.hpp"
 #include "raw/prepare/patches.hpp"
 

@@ -143,6 +143,20 @@ Vector6d monomials(double u, double v) {
   return terms;
 }
 
+/// The planes of all points. The tolerance is that of the noise, or a small share of the neighbourhood's radius where
+/// that is more: curved surfaces leave their planes. O(n k) @throws Cancelled
+std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours, double noise,
+                                         const RunContext& run, const StageShare& share) {
+  std::vector<LocalPlane> planes(points.size());
+  if (neighbours.width < 3) return planes;
+  for_each_index_by_chunks(points.size(), k_chunk_points, run, share, [&](std::size_t i) {
+    const double radius = neighbours.distances_of(i).back();
+    planes[i] =
+        fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, k_bend_tolerance * radius));
+  });
+  return planes;
+}
+
 }  // namespace
 
 LocalPlane fit_local_plane(const Points& points, std::size_t point, std::span<const std::uint32_t> neighbours,
@@ -154,18 +168,6 @@ LocalPlane fit_local_plane(const Points& points, std::size_t point, std::span<co
   for (const std::uint32_t neighbour : neighbours) places.emplace_back(points[neighbour] - middle);
   RandomStream random(0, k_trial_stage, point);
   return fit(places, tolerance, random);
-}
-
-std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours, double noise,
-                                         const RunContext& run, const StageShare& share) {
-  std::vector<LocalPlane> planes(points.size());
-  if (neighbours.width < 3) return planes;
-  for_each_index_by_chunks(points.size(), k_chunk_points, run, share, [&](std::size_t i) {
-    const double radius = neighbours.distances_of(i).back();
-    planes[i] =
-        fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, k_bend_tolerance * radius));
-  });
-  return planes;
 }
 
 std::size_t plane_neighbours(const Scale& scale) {

@@ -28,12 +28,6 @@ struct LocalPlane {
 [[nodiscard]] LocalPlane fit_local_plane(const Points& points, std::size_t point,
                                          std::span<const std::uint32_t> neighbours, double tolerance);
 
-/// The planes of all points. The tolerance is that of the noise, or a small share of the neighbourhood's radius where
-/// that is more: curved surfaces leave their planes. O(n k) @throws Cancelled
-[[nodiscard]] std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours,
-                                                       double noise, const RunContext& run,
-                                                       const StageShare& share = {});
-
 /// The planes of all points of a cloud, with what they were fitted to: cleaning and normals both live off these.
 struct LocalFits {
   /// Of each entry, its point in the cloud: entries that follow each other are near each other in space and memory.

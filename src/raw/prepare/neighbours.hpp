@@ -7,7 +7,7 @@
 
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/run_context.hpp"
-#include "core/base/stage_share.hpp"
+#include "core/base/run.hpp"
 #include "core/geometry/neighbour_tree.hpp"
 
 namespace cloud2csg {

@@ -2,8 +2,10 @@
 
 #include <vector>
 
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/run_context.hpp"
+#include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
 
 namespace cloud2csg {
@@ -34,5 +36,10 @@ struct Orientation {
 [[nodiscard]] std::vector<char> orient_to_sensors(const Points& places, const Points& normals, const Points& sensors,
                                                   const NeighbourTable& neighbours, const RunContext& run,
                                                   const StageShare& share);
+
+/// The normals of planes that were fitted already, turned outward: the second half of estimate_normals().
+/// @throws Cancelled
+[[nodiscard]] EstimatedNormals orient_fits(const PointCloud& cloud, const LocalFits& fits, const Scale& scale,
+                                           const RunContext& run, const StageShare& share);
 
 }  // namespace cloud2csg

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "cloud2csg/advanced/prepare.hpp"
-#include "core/base/stopwatch.hpp"
+#include "core/base/run.hpp"
 #include "core/geometry/place_text.hpp"
-#include "raw/prepare/orient_fits.hpp"
+#include "raw/prepare/orientation.hpp"
 #include "raw/prepare/outliers.hpp"
 
 namespace cloud2csg {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "cloud2csg/run_context.hpp"
 #include "raw/solids/term_search.hpp"
 
 /// Decision lists: the first rule whose term has a place says whether it is in the solid; where none has, it is out.
@@ -31,8 +32,10 @@ using DecisionList = std::vector<Rule>;
 [[nodiscard]] std::vector<double> insertion_gains(const DecisionList& list, std::span<const std::uint16_t> deciding,
                                                   std::span<const double> pulls, std::size_t position, bool is_in);
 
-/// The positions where a new rule is tried: in front of all, and behind each block of rules that say otherwise. Behind
-/// rules that say the same it would gain no more than in front of them; the middle of a block is left out for speed.
-[[nodiscard]] std::vector<std::size_t> insertion_positions(const DecisionList& list, bool is_in);
+/// A decision list of low cost: rules are put in where they gain most, one by one or two that only gain together, from
+/// several starts; then each is taken out, or exchanged for what gains more, as long as the cost falls. Deterministic.
+/// Stopped early, the best list so far.
+[[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, std::size_t most_rules,
+                                       const RunContext& run = {});
 
 }  // namespace cloud2csg

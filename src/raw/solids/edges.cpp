@@ -55,6 +55,10 @@ std::vector<double> plane_offsets(const Eigen::Vector3d& direction, std::span<co
   return offsets;
 }
 
+bool are_orthogonal(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::abs(a.dot(b)) < k_parallel_sine;
+}
+
 /// Where a bent pipe goes over into a straight one along the direction: there is no edge, but the bend ends in a plane
 /// through its axis.
 std::vector<double> bend_offsets(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces) {
@@ -155,10 +159,6 @@ bool has_axis(const Eigen::Matrix3d& frame, const Eigen::Vector3d& direction) {
 
 bool are_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.cross(b).norm() < k_parallel_sine;
-}
-
-bool are_orthogonal(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::abs(a.dot(b)) < k_parallel_sine;
 }
 
 Bins edges_along(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces, const EdgeRules& rules) {

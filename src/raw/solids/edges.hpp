@@ -32,6 +32,5 @@ struct EdgeRules {
 
 /// Whether directions are the same, up to sign, but for rounding and what regularities left.
 [[nodiscard]] bool are_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-[[nodiscard]] bool are_orthogonal(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 }  // namespace cloud2csg

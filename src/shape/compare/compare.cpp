@@ -15,7 +15,7 @@
 #include "core/fields/lipschitz.hpp"
 #include "core/geometry/boxes.hpp"
 #include "core/geometry/neighbour_tree.hpp"
-#include "core/primitive/triangle_sampler.hpp"
+#include "core/primitive/surface_points.hpp"
 #include "shape/compare/column_grid.hpp"
 #include "shape/sample/ray_caster.hpp"
 

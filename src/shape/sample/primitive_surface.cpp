@@ -7,7 +7,7 @@
 
 #include "cloud2csg/mesh.hpp"
 #include "core/geometry/boxes.hpp"
-#include "core/primitive/triangle_sampler.hpp"
+#include "core/primitive/surface_points.hpp"
 
 namespace cloud2csg {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cloud2csg/run_context.hpp"
-#include "core/primitive/plain_surface.hpp"
+#include "core/primitive/surface_points.hpp"
 
 namespace cloud2csg {
 

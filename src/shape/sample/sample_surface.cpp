@@ -7,7 +7,7 @@
 
 #include "cloud2csg/sample.hpp"
 #include "core/base/random.hpp"
-#include "core/geometry/append.hpp"
+#include "core/geometry/subset.hpp"
 #include "shape/sample/surface_sampler.hpp"
 
 namespace cloud2csg {

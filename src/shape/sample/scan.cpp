@@ -15,7 +15,7 @@
 #include "cloud2csg/sample.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
-#include "core/geometry/append.hpp"
+#include "core/geometry/subset.hpp"
 #include "shape/sample/ray_caster.hpp"
 #include "shape/sample/scan_views.hpp"
 #include "shape/sample/surface_sampler.hpp"

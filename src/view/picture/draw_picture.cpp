@@ -12,7 +12,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/view.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "core/base/parallel.hpp"
 #include "shape/mesh/model_extent.hpp"
 #include "view/picture/draw_solid.hpp"

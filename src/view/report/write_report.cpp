@@ -5,7 +5,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/view.hpp"
-#include "core/base/atomic_file.hpp"
+#include "core/base/files.hpp"
 #include "view/report/gather.hpp"
 #include "view/report/page_template.hpp"
 #include "view/report/payload.hpp"

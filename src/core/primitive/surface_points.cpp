@@ -1,0 +1,223 @@
+#include "core/primitive/surface_points.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace cloud2csg {
+namespace {
+
+Eigen::Vector3d doubled_area_vector(const Triangle& triangle) {
+  return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+}
+
+std::vector<Triangle> triangles_of(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(corners.size());
+  for (const auto& [a, b, c] : corners) triangles.push_back({vertices[a], vertices[b], vertices[c]});
+  return triangles;
+}
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+double random_angle(RandomStream& random) {
+  return random.uniform(0.0, 2.0 * pi);
+}
+
+/// Uniform on the disc at height z.
+Vector3d on_disc(double radius, double z, RandomStream& random) {
+  const double distance = radius * std::sqrt(random.uniform());
+  const double angle = random_angle(random);
+  return {distance * std::cos(angle), distance * std::sin(angle), z};
+}
+
+/// Makes surfaces in the primitive's own frame; the caller places them in the world.
+class LocalSurface {
+ public:
+  LocalSurface(const Pose& pose, const AlignedBox& region) : pose_(pose), region_(region) {}
+
+  PrimitiveSurface operator()(const Box& box) const {
+    const Vector3d size = box.size;
+    const Vector3d face_area(size.y() * size.z(), size.z() * size.x(), size.x() * size.y());
+    const auto draw = [size, face_area](RandomStream& random) {
+      const double target = random.uniform() * face_area.sum();
+      const int axis = target < face_area[0] ? 0 : target < face_area[0] + face_area[1] ? 1 : 2;
+      const double side = random.chance(0.5) ? 1.0 : -1.0;
+      Vector3d position;
+      for (int i = 0; i < 3; ++i) position[i] = size[i] * (i == axis ? 0.5 * side : random.uniform(-0.5, 0.5));
+      return SurfacePoint{.position = position, .normal = side * Vector3d::Unit(axis)};
+    };
+    return {.area = 2.0 * face_area.sum(), .draw = draw};
+  }
+
+  PrimitiveSurface operator()(const Sphere& sphere) const {
+    const double radius = sphere.radius;
+    const auto draw = [radius](RandomStream& random) {
+      const double z = random.uniform(-1.0, 1.0);
+      const double ring = std::sqrt(1.0 - z * z);
+      const double angle = random_angle(random);
+      const Vector3d normal(ring * std::cos(angle), ring * std::sin(angle), z);
+      return SurfacePoint{.position = radius * normal, .normal = normal};
+    };
+    return {.area = 4.0 * pi * radius * radius, .draw = draw};
+  }
+
+  PrimitiveSurface operator()(const Cylinder& cylinder) const {
+    return (*this)(Cone{.radius_bottom = cylinder.radius, .radius_top = cylinder.radius, .height = cylinder.height});
+  }
+
+  PrimitiveSurface operator()(const Cone& cone) const {
+    const double slant = std::hypot(cone.height, cone.radius_bottom - cone.radius_top);
+    const double side_area = pi * (cone.radius_bottom + cone.radius_top) * slant;
+    const double bottom_area = pi * cone.radius_bottom * cone.radius_bottom;
+    const double top_area = pi * cone.radius_top * cone.radius_top;
+    const double area = side_area + bottom_area + top_area;
+    const auto draw = [=](RandomStream& random) {
+      const double target = random.uniform() * area;
+      if (target < bottom_area) {
+        return SurfacePoint{on_disc(cone.radius_bottom, -0.5 * cone.height, random), -Vector3d::UnitZ()};
+      }
+      if (target < bottom_area + top_area) {
+        return SurfacePoint{on_disc(cone.radius_top, 0.5 * cone.height, random), Vector3d::UnitZ()};
+      }
+      return on_side(cone, slant, random);
+    };
+    return {.area = area, .draw = draw};
+  }
+
+  PrimitiveSurface operator()(const Torus& torus) const {
+    const double major = torus.major_radius;
+    const double minor = torus.minor_radius;
+    const auto draw = [major, minor](RandomStream& random) {
+      // The ring at angle `around` of the tube is the longer the farther it is from the axis: keep by its length.
+      double around = random_angle(random);
+      while (!random.chance((major + minor * std::cos(around)) / (major + minor))) around = random_angle(random);
+      const double angle = random_angle(random);
+      const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
+      const Vector3d normal = std::cos(around) * outward + std::sin(around) * Vector3d::UnitZ();
+      return SurfacePoint{.position = major * outward + minor * normal, .normal = normal};
+    };
+    return {.area = 4.0 * pi * pi * major * minor, .draw = draw};
+  }
+
+  PrimitiveSurface operator()(const HalfSpace& /*half_space*/) const {
+    // The disc in which the plane cuts the ball around the region.
+    const Vector3d centre = pose_.to_local(region_.center());
+    const double square = 0.25 * region_.diagonal().squaredNorm() - centre.z() * centre.z();
+    if (square <= 0.0) return {};
+    const double radius = std::sqrt(square);
+    const auto draw = [centre, radius](RandomStream& random) {
+      const Vector3d middle(centre.x(), centre.y(), 0.0);
+      return SurfacePoint{.position = middle + on_disc(radius, 0.0, random), .normal = Vector3d::UnitZ()};
+    };
+    return {.area = pi * square, .draw = draw};
+  }
+
+  PrimitiveSurface operator()(const Polytope& polytope) const {
+    TriangleSampler sampler(faces_of(polytope));
+    const double area = sampler.area();
+    const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
+      const TriangleSampler::Draw drawn = sampler.draw(random);
+      return SurfacePoint{.position = drawn.position, .normal = sampler.normal(drawn.triangle)};
+    };
+    return {.area = area, .draw = draw};
+  }
+
+  PrimitiveSurface operator()(const Expression& /*expression*/) const { return {}; }
+
+ private:
+  static SurfacePoint on_side(const Cone& cone, double slant, RandomStream& random) {
+    // The ring at a height is as long as its radius: the square of the radius is uniform.
+    const double bottom = cone.radius_bottom;
+    const double top = cone.radius_top;
+    const double radius = std::sqrt(bottom * bottom + random.uniform() * (top * top - bottom * bottom));
+    // Near a cylinder the quotient loses its digits; there the height is as good as uniform.
+    constexpr double k_nearly_equal = 1e-6;
+    const bool is_cylinder = std::abs(top - bottom) < k_nearly_equal * (top + bottom);
+    const double share = is_cylinder ? random.uniform() : (radius - bottom) / (top - bottom);
+    const double ring = is_cylinder ? bottom + share * (top - bottom) : radius;
+    const double angle = random_angle(random);
+    const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
+    return {.position = ring * outward + (share - 0.5) * cone.height * Vector3d::UnitZ(),
+            .normal = (cone.height * outward + (bottom - top) * Vector3d::UnitZ()) / slant};
+  }
+
+  /// The faces as fans of triangles, counter-clockwise seen from outside.
+  static std::vector<Triangle> faces_of(const Polytope& polytope) {
+    const std::vector<Vector3d> vertices = corners(polytope);
+    double scale = 0.0;
+    for (const Vector3d& vertex : vertices) scale = std::max(scale, vertex.norm());
+    std::vector<Triangle> triangles;
+    for (const Plane& plane : polytope.planes) {
+      constexpr double k_on_plane = 1e-9;
+      std::vector<Vector3d> face;
+      for (const Vector3d& vertex : vertices) {
+        if (std::abs(plane.normal.dot(vertex) - plane.offset) <= k_on_plane * scale) face.push_back(vertex);
+      }
+      if (face.size() < 3) continue;
+      sort_around(face, plane.normal);
+      for (std::size_t i = 1; i + 1 < face.size(); ++i) triangles.push_back({face[0], face[i], face[i + 1]});
+    }
+    return triangles;
+  }
+
+  static void sort_around(std::vector<Vector3d>& face, const Vector3d& normal) {
+    Vector3d centre = Vector3d::Zero();
+    for (const Vector3d& vertex : face) centre += vertex / static_cast<double>(face.size());
+    const Vector3d first = (face[0] - centre).normalized();
+    const Vector3d second = normal.cross(first);
+    const auto angle = [&](const Vector3d& vertex) {
+      return std::atan2((vertex - centre).dot(second), (vertex - centre).dot(first));
+    };
+    std::ranges::sort(face, [&](const Vector3d& a, const Vector3d& b) { return angle(a) < angle(b); });
+  }
+
+  const Pose& pose_;
+  const AlignedBox& region_;
+};
+
+}  // namespace
+
+TriangleSampler::TriangleSampler(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
+  cumulative_area_.reserve(triangles_.size());
+  double area = 0.0;
+  for (const Triangle& triangle : triangles_) {
+    area += 0.5 * doubled_area_vector(triangle).norm();
+    cumulative_area_.push_back(area);
+  }
+}
+
+TriangleSampler::TriangleSampler(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners)
+    : TriangleSampler(triangles_of(vertices, corners)) {}
+
+TriangleSampler::Draw TriangleSampler::draw(RandomStream& random) const {
+  const double target = random.uniform() * area();
+  // The rounding of the product may reach the end of the last triangle: step back to one with area.
+  auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(), target);
+  if (found == cumulative_area_.end()) found = std::lower_bound(cumulative_area_.begin(), found, area());
+  const auto index = static_cast<std::size_t>(found - cumulative_area_.begin());
+  const Triangle& triangle = triangles_[index];
+  const double root = std::sqrt(random.uniform());
+  const double share = random.uniform();
+  return {.position = (1.0 - root) * triangle[0] + root * (1.0 - share) * triangle[1] + root * share * triangle[2],
+          .triangle = index};
+}
+
+Eigen::Vector3d TriangleSampler::normal(std::size_t triangle) const {
+  return doubled_area_vector(triangles_[triangle]).normalized();
+}
+
+PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region) {
+  PrimitiveSurface local = std::visit(LocalSurface(primitive.pose, region), primitive.shape);
+  const auto place = [pose = primitive.pose, draw = std::move(local.draw)](RandomStream& random) {
+    const SurfacePoint point = draw(random);
+    return SurfacePoint{.position = pose.to_world(point.position), .normal = pose.orientation * point.normal};
+  };
+  return {.area = local.area, .draw = place};
+}
+
+}  // namespace cloud2csg

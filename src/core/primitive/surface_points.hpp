@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "cloud2csg/geometry.hpp"
+#include "cloud2csg/primitive.hpp"
+#include "core/base/random.hpp"
+
+namespace cloud2csg {
+
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+/// Draws points from triangles, uniformly by area.
+class TriangleSampler {
+ public:
+  explicit TriangleSampler(std::vector<Triangle> triangles);
+  /// Of a mesh: `corners` are places in `vertices`.
+  TriangleSampler(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners);
+
+  struct Draw {
+    Eigen::Vector3d position;
+    std::size_t triangle;
+  };
+  /// Precondition: area() > 0. O(log triangles)
+  [[nodiscard]] Draw draw(RandomStream& random) const;
+
+  [[nodiscard]] double area() const { return cumulative_area_.empty() ? 0.0 : cumulative_area_.back(); }
+  /// By the winding; zero for a triangle without area, which is never drawn.
+  [[nodiscard]] Eigen::Vector3d normal(std::size_t triangle) const;
+
+ private:
+  std::vector<Triangle> triangles_;
+  std::vector<double> cumulative_area_;
+};
+
+/// A point of a primitive's own surface and the outward normal of that primitive there, in the world.
+struct SurfacePoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;
+};
+
+/// The surface of a primitive, to draw points from, uniformly by area.
+struct PrimitiveSurface {
+  double area = 0.0;  ///< 0 when no part of it lies in the region
+  std::function<SurfacePoint(RandomStream&)> draw = {};
+  /// Drawn points are no farther from the surface. 0: they are on it; else they are to be moved onto it, see
+  /// move_onto_surface().
+  double reach = 0.0;
+};
+
+/// Closed forms, of the shape without its displacement; a half-space gives the part of its plane around `region`
+/// (finite). No area for expressions.
+[[nodiscard]] PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region);
+
+}  // namespace cloud2csg
