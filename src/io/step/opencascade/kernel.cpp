@@ -1,28 +1,126 @@
 #include "io/step/kernel.hpp"
 
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
+#include <BRepTopAdaptor_FClass2d.hxx>
+#include <BRep_Tool.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <Poly_Triangulation.hxx>
+#include <Precision.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gp_Trsf.hxx>
+#include <map>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
+#include "cloud2csg/geometry.hpp"
+#include "cloud2csg/mesh.hpp"
+#include "io/step/opencascade/bodies.hpp"
 #include "io/step/opencascade/booleans.hpp"
 #include "io/step/opencascade/evaluate.hpp"
-#include "io/step/opencascade/face_points.hpp"
 #include "io/step/opencascade/make_body.hpp"
-#include "io/step/opencascade/tessellate.hpp"
 #include "io/step/opencascade/write_files.hpp"
 
 namespace cloud2csg::brep {
 namespace {
+
+/// A few points of a face, away from its edges; none when it is too thin to have any.
+std::vector<Eigen::Vector3d> points_on_face(const TopoDS_Face& face) {
+  constexpr std::size_t k_enough = 3;
+  constexpr int k_finest = 64;
+  double u_low = 0;
+  double u_high = 0;
+  double v_low = 0;
+  double v_high = 0;
+  BRepTools::UVBounds(face, u_low, u_high, v_low, v_high);
+  BRepTopAdaptor_FClass2d classifier(face, Precision::PConfusion());
+  const BRepAdaptor_Surface surface(face);
+  std::vector<Eigen::Vector3d> points;
+  // Lattices of the parameters, finer until enough of their middles are in the face.
+  for (int steps = 3; steps <= k_finest && points.size() < k_enough; steps = 2 * steps + 1) {
+    points.clear();
+    for (int i = 0; i < steps && points.size() < k_enough; ++i) {
+      for (int j = 0; j < steps && points.size() < k_enough; ++j) {
+        // Off the middle of the intervals, where symmetric parts have their corners.
+        const double u = u_low + (u_high - u_low) * (i + 0.47) / steps;
+        const double v = v_low + (v_high - v_low) * (j + 0.53) / steps;
+        if (classifier.Perform(gp_Pnt2d(u, v)) != TopAbs_IN) continue;
+        const gp_Pnt point = surface.Value(u, v);
+        points.emplace_back(point.X(), point.Y(), point.Z());
+      }
+    }
+  }
+  return points;
+}
+
+// However small it is, a circle has 18 facets.
+constexpr double k_widest_turn = 0.35;
+
+/// Corners by their place: the kernel gives those of an edge the same coordinates in both faces.
+class Corners {
+ public:
+  explicit Corners(TriangleMesh& mesh) : mesh_(mesh) {}
+
+  std::uint32_t at(const gp_Pnt& point) {
+    const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
+    const auto [known, is_new] = index_of_.try_emplace({point.X(), point.Y(), point.Z()}, next);
+    if (is_new) mesh_.vertices.push_back({point.X(), point.Y(), point.Z()});
+    return known->second;
+  }
+
+ private:
+  TriangleMesh& mesh_;
+  std::map<std::array<double, 3>, std::uint32_t> index_of_ = {};
+};
+
+void add_face(const TopoDS_Face& face, Corners& corners, TriangleMesh& mesh) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  if (triangulation.IsNull()) throw std::runtime_error("the kernel finds no triangles for a face");
+  std::vector<std::uint32_t> corner_of;
+  for (int i = 1; i <= triangulation->NbNodes(); ++i) {
+    corner_of.push_back(corners.at(triangulation->Node(i).Transformed(location.Transformation())));
+  }
+  for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
+    std::array<int, 3> nodes{};
+    triangulation->Triangle(i).Get(nodes[0], nodes[1], nodes[2]);
+    if (face.Orientation() == TopAbs_REVERSED) std::swap(nodes[1], nodes[2]);
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = corner_of[static_cast<std::size_t>(nodes[k] - 1)];
+    // At the poles of a sphere and the tip of a cone, where an edge is a point.
+    if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+    mesh.triangles.push_back(triangle);
+  }
+}
+
+/// The bodies' surfaces as triangles, no farther from these than `deviation`: an edge has the same corners in both of
+/// its faces, so that each body is closed. Bodies have no corners in common.
+/// @throws Standard_Failure, std::runtime_error where a face has no triangles
+TriangleMesh tessellate(const Bodies& bodies, double deviation) {
+  TriangleMesh mesh;
+  for (const Body& body : bodies) {
+    const BRepMesh_IncrementalMesh triangulate(body.shape, deviation, false, k_widest_turn, false);
+    Corners corners(mesh);
+    for (TopExp_Explorer faces(body.shape, TopAbs_FACE); faces.More(); faces.Next()) {
+      add_face(TopoDS::Face(faces.Current()), corners, mesh);
+    }
+  }
+  return mesh;
+}
 
 /// The kernel prints what it thinks of; the library never does.
 void silence() {
@@ -202,6 +300,7 @@ void make_solid(const KernelJob& job, const KernelHost& host, KernelResult& resu
 }
 
 }  // namespace
+
 }  // namespace cloud2csg::brep
 
 extern "C" {
