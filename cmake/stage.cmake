@@ -11,7 +11,7 @@ function(cloud2csg_sources variable folder)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# cloud2csg_stage(storey/stage [DEPENDS stages...] [LINK libraries...])
+# cloud2csg_stage(folder/stage [DEPENDS stages...] [LINK libraries...])
 #
 # One library target a folder of src/, cloud2csg_<stage>: a stage that includes a header of a stage it does not name
 # here does not link. Public headers live in include/cloud2csg/, private ones beside their sources.

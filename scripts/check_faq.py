@@ -10,7 +10,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).parent.parent
 LITERAL = r'"(?:[^"\\\n]|\\.)*"'
-STOREYS = ("raw", "cells", "paper", "pipeline", "io")
+FOLDERS = ("raw", "cells", "paper", "pipeline", "io")
 
 
 def literals(code):
@@ -33,8 +33,8 @@ def main():
     for message in quoted:
         faults += [f"no message of the program has '{piece}'" for piece in pieces(message, r"\.\.\.|--[a-z-]+") if piece not in said]
     warnings = 0
-    for storey in STOREYS:
-        for file in sorted(ROOT.glob(f"src/{storey}/**/*.cpp")):
+    for folder in FOLDERS:
+        for file in sorted(ROOT.glob(f"src/{folder}/**/*.cpp")):
             for call in re.findall(r"warnings\.(?:push_back|emplace_back)\((.*?)\);\n", file.read_text("utf-8"), re.DOTALL):
                 for message in literals(call):
                     warnings += 1

@@ -99,24 +99,4 @@ OverlapGraph build_overlap_graph(const PrimitiveSet& primitives, const OverlapOp
   return graph;
 }
 
-std::vector<std::vector<PrimitiveIndex>> connected_components(const OverlapGraph& graph) {
-  std::vector<std::vector<PrimitiveIndex>> components;
-  std::vector<bool> seen(graph.size(), false);
-  for (PrimitiveIndex first = 0; first < graph.size(); ++first) {
-    if (seen[first]) continue;
-    seen[first] = true;
-    std::vector<PrimitiveIndex> component{first};
-    for (std::size_t next = 0; next < component.size(); ++next) {
-      for (const PrimitiveIndex neighbour : graph.neighbours[component[next]]) {
-        if (seen[neighbour]) continue;
-        seen[neighbour] = true;
-        component.push_back(neighbour);
-      }
-    }
-    std::sort(component.begin(), component.end());
-    components.push_back(std::move(component));
-  }
-  return components;
-}
-
 }  // namespace cloud2csg
