@@ -124,9 +124,8 @@ double reference_objective(const CsgTree& tree, const PrimitiveSet& primitives, 
   return sum - objective.alpha * static_cast<double>(tree.size());
 }
 
-std::vector<std::uint32_t> unexplained_points(const Model& model,
-                                              const PointCloud& cloud, const SegmentationTolerances& tolerances,
-                                              const RunContext& run) {
+std::vector<std::uint32_t> unexplained_points(const Model& model, const PointCloud& cloud,
+                                              const SegmentationTolerances& tolerances, const RunContext& run) {
   const std::vector<std::uint32_t> order = spatial_order(cloud.positions, bounds_of(cloud.positions), run);
   const PointFit points = measure_points(model, cloud, tolerances.distance, {.order = order}, run);
   const Explanation explanation(tolerances);
@@ -137,8 +136,8 @@ std::vector<std::uint32_t> unexplained_points(const Model& model,
   return unexplained;
 }
 
-FitStatistics measure_fit(const Model& model, const PointCloud& cloud, double noise,
-                          const ExtractOptions& options, const RunContext& run, std::span<const std::uint32_t> order) {
+FitStatistics measure_fit(const Model& model, const PointCloud& cloud, double noise, const ExtractOptions& options,
+                          const RunContext& run, std::span<const std::uint32_t> order) {
   const Objective objective = resolve(options.objective, cloud.size(), noise);
   PointFit points = measure_points(model, cloud, noise, {.order = order}, run);
   FitStatistics fit;
