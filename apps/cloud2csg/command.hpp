@@ -48,7 +48,7 @@ void add_run_options(CLI::App& options, RunOptions& values);
 
 /// Adds --config FILE and --print-config to a command.
 ///
-/// The file is TOML: options by their long names without dashes (`leaf-cost = 0.001`, `snap`-like flags `quiet = true`,
+/// The file is TOML: options by their long names without dashes (`leaf-cost = 0.001`, flags `quiet = true`,
 /// `seeds = false` for --no-seeds), lists for what may be repeated. They stand in the table of their command
 /// (`[extract]`, `[bench.paper]`), or before all tables, for every command that has them. What the command line says
 /// wins, also over what it excludes. A name that no command has is refused with its line and the nearest right one.

@@ -15,9 +15,10 @@ namespace {
 
 constexpr const char* k_bash = R"(# bash completion for cloud2csg
 _cloud2csg() {
-  local word=${COMP_WORDS[COMP_CWORD]} before endings file lower
+  local word=${COMP_WORDS[COMP_CWORD]} program=${COMP_WORDS[0]/#\~/$HOME} before endings file lower
   [[ $word == = ]] && word=
-  mapfile -t COMPREPLY < <("${COMP_WORDS[0]/#\~/$HOME}" complete "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
+  type -P -- "$program" >/dev/null || program=cloud2csg  # an alias
+  mapfile -t COMPREPLY < <("$program" complete "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
   COMPREPLY=("${COMPREPLY[@]%%$'\t'*}")
   [[ ${COMPREPLY[0]} == :files:* ]] || return 0
   IFS=: read -r _ _ before endings <<<"${COMPREPLY[0]}"
@@ -96,8 +97,14 @@ std::vector<std::string> endings_of(const CLI::Option& option) {
 struct Place {
   CLI::App* command;
   CLI::Option* awaited = nullptr;  ///< the option whose value comes next
+  bool has_value = false;          ///< it has one already, and may have more
   std::set<const CLI::Option*> given = {};
   std::size_t arguments = 0;  ///< how many stand before it
+
+  /// Whether a word is a value of the option: a second one does not begin with a dash.
+  [[nodiscard]] bool awaits(const std::string& word) const {
+    return awaited != nullptr && !(has_value && word.starts_with('-'));
+  }
 };
 
 /// An option, and what is its value in the same word: "--output=part", "-opart".
@@ -116,16 +123,19 @@ OptionWord option_in(CLI::App& command, const std::string& word) {
 }
 
 void pass(Place& place, const std::string& word) {
-  if (place.awaited != nullptr) {
-    // bash has three words for --option=value.
-    if (word != "=") place.awaited = nullptr;
+  if (place.awaits(word)) {
+    if (word == "=") return;  // bash has three words for --option=value
+    place.has_value = true;
+    if (!place.awaited->get_allow_extra_args()) place.awaited = nullptr;
     return;
   }
+  place.awaited = nullptr;
   if (word.starts_with('-')) {
     const OptionWord found = option_in(*place.command, word);
     if (found.option == nullptr) return;
     place.given.insert(found.option);
     if (takes_value(*found.option) && found.value == std::string::npos) place.awaited = found.option;
+    place.has_value = false;
     return;
   }
   const std::vector<CLI::App*> inner = commands_of(*place.command);
@@ -166,7 +176,7 @@ std::string completions(CLI::App& program, std::span<const std::string> words) {
   if (words.empty()) return {};
   for (const std::string& word : words.first(words.size() - 1)) pass(place, word);
   const std::string& last = words.back();
-  if (place.awaited != nullptr) return values_of(*place.awaited, "", last == "=" ? "" : last);
+  if (place.awaits(last)) return values_of(*place.awaited, "", last == "=" ? "" : last);
   if (last.starts_with('-')) {
     const auto [option, value] = option_in(*place.command, last);
     if (option == nullptr || value == std::string::npos || !takes_value(*option)) return options_at(place, last);

@@ -197,9 +197,9 @@ std::string flag_line(const CLI::Option& flag, const CLI::Option* opposite, cons
 std::string value_line(const CLI::Option& option, const std::string& key) {
   if (option.count() > 0) return fmt::format("{} = {}\n", key, toml_of(option.results()));
   if (option.get_default_str().empty()) return fmt::format("# {} = {}\n", key, option.get_type_name());
-  const bool is_excluded =
-      std::ranges::any_of(option.get_excludes(), [](const CLI::Option* other) { return other->count() > 0; });
-  return fmt::format("{}{} = {}\n", is_excluded ? "# " : "", key, toml_of(default_values(option.get_default_str())));
+  // Of two options that exclude each other, a file may set one.
+  const char* const mark = option.get_excludes().empty() ? "" : "# ";
+  return fmt::format("{}{} = {}\n", mark, key, toml_of(default_values(option.get_default_str())));
 }
 
 /// The command's options in force as a file for --config: those without a value are comments.

@@ -56,7 +56,9 @@ std::string joined(std::string_view dashes, std::string_view name) {
 template <typename Number>
 CLI::Validator number_in(const OptionRange& range) {
   constexpr bool k_is_whole = std::is_integral_v<Number>;
-  return {[range](std::string& text) {
+  OptionRange told = range;
+  if (std::is_unsigned_v<Number>) told.least = std::max(told.least, 0.0);
+  return {[range = told](std::string& text) {
             const std::optional<Number> value = parsed<Number>(text);
             if (!value || !std::isfinite(static_cast<double>(*value))) {
               return refusal(range_text(range, k_is_whole), text);

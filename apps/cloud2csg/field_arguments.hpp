@@ -21,9 +21,9 @@ namespace cloud2csg::app {
 
 // What the text of an option's value must be. Each refuses anything else in one line that says what was expected and
 // what was found; those of CLI11 are terse, take not-a-number for a number and 010 for 8.
-// A number in a range, in decimal digits; brings it into the form that CLI11, which takes leading zeros for the mark
-// of octal numbers, reads as the same.
 
+/// A number in a range, in decimal digits; brings it into the form that CLI11, which takes leading zeros for the mark
+/// of octal numbers, reads as the same.
 template <typename Number>
 [[nodiscard]] CLI::Validator number_in(const OptionRange& range);
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> names);

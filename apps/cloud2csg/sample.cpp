@@ -27,16 +27,6 @@ struct SampleCommand {
   [[nodiscard]] PointCloud sample(const Shape3d& read, const RunContext& run) const;
 };
 
-/// Points of a mesh, uniform by area; the noise is left to the caller.
-PointCloud sample_of_mesh(const TriangleMesh& mesh, const SampleOptions& sampling, const RunContext& run) {
-  if (sampling.density > 0 || sampling.normal_noise_deg > 0) {
-    throw Error({.where = sampling.density > 0 ? "density" : "normal_noise_deg",
-                 .expected = "works on models only, this is a mesh",
-                 .remedy = "give `count` and `noise`"});
-  }
-  return sample_mesh(mesh, {.mesh_points = sampling.count, .seed = sampling.seed}, run);
-}
-
 PointCloud SampleCommand::sample(const Shape3d& read, const RunContext& run) const {
   SampleOptions exact = sampling;
   if (read.mesh || relative_noise) exact.noise = 0;
@@ -44,7 +34,7 @@ PointCloud SampleCommand::sample(const Shape3d& read, const RunContext& run) con
   if (read.model) {
     cloud = sample_surface(*read.model, exact, run);
   } else if (read.mesh) {
-    cloud = sample_of_mesh(*read.mesh, exact, run);
+    cloud = sample_mesh_surface(*read.mesh, exact, run);
   } else {
     throw Error({.expected = "expected a model with a tree or a mesh, found a point cloud",
                  .remedy = "sample what the cloud was made of"});

@@ -69,11 +69,11 @@ void option_table(OptionsOf<PaperOptions>, auto&& field) {
   field(&O::high_points, "high_points", "Points of a cloud, high sampling", at_least(2));
   field(&O::noise, "noise", "Standard deviation by which each coordinate is moved", at_least(0), {.unit = "SIGMA"});
   field(&O::repeats, "repeats", "Runs of each mode, with a seed each for the search", at_least(1));
-  field(&O::seed, "seed", "Of the clouds and of the first repeat's search");
+  field(&O::seed, "seed", "Seed of the clouds and of the first repeat's search");
   field(&O::preset, "preset", "paper: the paper's weights and search, nothing added");
   field(&O::evaluator, "evaluator",
         "reference: the paper's steps alone, each tree at each point, thousands of times slower");
-  field(&O::threads, "threads", "Of the modes that are parallel; no more than the machine has cores", at_least(1),
+  field(&O::threads, "threads", "Threads of the parallel modes; no more than the machine has cores", at_least(1),
         k_library);
 }
 /// No models, or one twice; as many points for both samplings; the reference with the preset `default`.
@@ -206,7 +206,9 @@ void option_table(OptionsOf<ResultComparisonOptions>, auto&& field) {
         "Durations that differ by less than this share are the same. Between two experiments on a machine, means move "
         "by more than the spread within one tells.",
         k_share, {.unit = "SHARE"});
-  field(&O::least_change, "least_change", "... and nodes, distances and evaluations", k_share, {.unit = "SHARE"});
+  field(&O::least_change, "least_change",
+        "Nodes, distances and evaluations that differ by less than this share are the same", k_share,
+        {.unit = "SHARE"});
   field(&O::error_rate, "error_rate",
         "Chance that any of all the changes is called better or worse by accident (Bonferroni's correction)", k_share,
         {.unit = "P"});

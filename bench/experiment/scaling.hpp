@@ -47,7 +47,7 @@ void option_table(OptionsOf<ScalingOptions>, auto&& field) {
   field(&O::noise, "noise", "Standard deviation by which each coordinate is moved. Features are of about unit size.",
         at_least(0), {.unit = "SIGMA"});
   field(&O::repeats, "repeats", "Runs of each size, with a seed each", at_least(1));
-  field(&O::seed, "seed", "Of model, cloud and search of the first repeat");
+  field(&O::seed, "seed", "Seed of model, cloud and search of the first repeat");
   field(&O::threads, "threads", "The largest of each family is also run on one thread", at_least(1), k_library);
   field(&O::time_limit_seconds, "time_limit_seconds",
         "Seconds for the search of a run, which is then not complete; 0: no limit", at_least(0), {.unit = "SECONDS"});

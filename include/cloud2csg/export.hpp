@@ -74,10 +74,10 @@ struct ExportOptions {
 };
 void option_table(OptionsOf<ExportOptions>, auto&& field) {
   using O = ExportOptions;
-  field(&O::openscad, "openscad", "Of .scad and .csg");
-  field(&O::script, "script", "Of .FCMacro and .py");
-  field(&O::meshing, "meshing", "Of .stl, .off, .obj and .3mf");
-  field(&O::brep, "brep", "Of .step, .stp and .brep");
+  field(&O::openscad, "openscad", "How .scad and .csg are written");
+  field(&O::script, "script", "How .FCMacro and .py are written");
+  field(&O::meshing, "meshing", "The mesh of .stl, .off, .obj and .3mf");
+  field(&O::brep, "brep", "How .step, .stp and .brep are written");
   field(&O::exact_meshes, "exact_meshes",
         "Meshes of the exact solid, as near as a fiftieth of the cells of `meshing`. For trees of more than 100 "
         "leaves, for what has no exact surface, and where the exact solid has a fault or cannot be had, they are made "

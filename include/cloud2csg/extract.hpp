@@ -68,19 +68,20 @@ struct ExtractOptions {
 void option_table(OptionsOf<ExtractOptions>, auto&& field) {
   using O = ExtractOptions;
   field(&O::strategy, "strategy",
-        "By cells into which space is cut, by partitions as in the paper, or all primitives at once; auto: by cells, "
-        "and by partitions where the points do not bear them out");
+        "cells: by the cells into which space is cut; partition: by cliques, as in the paper; baseline: all primitives "
+        "at once; auto: by cells, and by partitions where the points do not bear them out");
   field(&O::parallel, "parallel", "What runs in parallel in the search; the result is the same for each");
   field(&O::segmentation, "segmentation", "Which points lie on which primitive", {.group = "Fit"});
   field(&O::objective, "objective", "Weights of the objective", {.group = "Fit"});
-  field(&O::precision, "precision", "Of distances and angles; auto: single where the noise is far above rounding",
+  field(&O::precision, "precision",
+        "How exactly distances and angles are computed; auto: single where the noise is far above rounding",
         {.group = "Fit"});
   field(&O::search, "search", "The genetic algorithm; its seed is not used, but that of the extraction",
         {.group = "Genetic algorithm"});
   field(&O::cell_trust, "cell_trust",
-        "Strategy auto: take the tree of the cells where the points contradict at most what is missing here to 1 of "
-        "what they say. ... and enough say something. Elsewhere partitions are searched too, and the tree of the "
-        "higher E is taken. 0: the tree of the cells wherever there is one; above 1: no cells.",
+        "Strategy auto: take the tree of the cells where enough points say something, and they contradict at most the "
+        "share 1 - cell_trust of it. Elsewhere partitions are searched too, and the tree of the higher E is taken. 0: "
+        "the tree of the cells wherever there is one; above 1: no cells.",
         at_least(0), k_library);
   field(&O::cell_samples, "cell_samples", "Samples of surfaces, to find cells without points", k_library);
   field(&O::cell_labels, "cell_labels", "What labels of cells cost", k_library);

@@ -9,6 +9,7 @@
 
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/point_cloud.hpp"
+#include "cloud2csg/sample.hpp"
 
 /// Input: points from whatever a file holds, a cloud or a triangle mesh, and what is doubtful about it.
 namespace cloud2csg {
@@ -45,6 +46,9 @@ struct Input {
 /// @throws Error when no triangle has area or `mesh_points` is 0; Cancelled.
 [[nodiscard]] PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options = {},
                                      const RunContext& run = {});
+/// The same with the noise of `options`. @throws Error, besides, for a density or noise of normals: a mesh has neither
+[[nodiscard]] PointCloud sample_mesh_surface(const TriangleMesh& mesh, const SampleOptions& options,
+                                             const RunContext& run = {});
 
 struct MendedMesh {
   TriangleMesh mesh;

@@ -19,7 +19,7 @@ struct SampleOptions {
 };
 void option_table(OptionsOf<SampleOptions>, auto&& field) {
   using O = SampleOptions;
-  field(&O::count, "count", "How many points; used when `density` is 0", {.letter = 'n'});
+  field(&O::count, "count", "How many points, unless a density is given", {.letter = 'n'});
   field(&O::density, "density", "Points per unit of area, of models only; 0: use `count`", at_least(0));
   field(&O::noise, "noise",
         "Standard deviation by which each coordinate is moved, in the model's units. The paper: 0.01.", at_least(0),
@@ -69,7 +69,7 @@ void option_table(OptionsOf<ScanOptions>, auto&& field) {
         from_to(1.001, 1e6), {.unit = "R"});
   field(&O::field_of_view_deg, "field_of_view_deg",
         "Width and height of a view in degrees; 0: just the bounding sphere", from_to(0, 170), {.unit = "DEG"});
-  field(&O::count, "count", "How many points in all; used when `angular_step_deg` is 0", {.letter = 'n'});
+  field(&O::count, "count", "How many points in all, unless the step of rays is given", {.letter = 'n'});
   field(&O::angular_step_deg, "angular_step_deg",
         "Degrees between neighbouring rays of a view; 0: what gives `count` points", from_to(0, 170), {.unit = "DEG"});
   field(&O::noise, "noise",
@@ -82,7 +82,8 @@ void option_table(OptionsOf<ScanOptions>, auto&& field) {
   field(&O::grazing_angle_deg, "grazing_angle_deg",
         "Incidence from which on returns are missing; 0: squarely, 90: along the surface", from_to(0, 89.999),
         {.unit = "DEG", .group = "Defects"});
-  field(&O::grazing_loss, "grazing_loss", "... with a probability that grows evenly up to this at 90 degrees", k_share,
+  field(&O::grazing_loss, "grazing_loss",
+        "Probability at 90 degrees that such a return is missing; it grows evenly from 0", k_share,
         {.unit = "P", .group = "Defects"});
   field(&O::outliers, "outliers", "Probability that a return is anywhere on its ray within the bounding sphere",
         k_share, {.unit = "P", .group = "Defects"});
@@ -94,7 +95,7 @@ void option_table(OptionsOf<ScanOptions>, auto&& field) {
         "Sigma of the turn by which each view is out of place, in degrees. Around the middle of the part about a "
         "random axis.",
         at_least(0), {.unit = "DEG", .group = "Defects"});
-  field(&O::translation, "translation", "... and of each coordinate of its shift, as a share of the diagonal",
+  field(&O::translation, "translation", "Sigma of each coordinate of the shift of a view, as a share of the diagonal",
         at_least(0), {.unit = "SHARE", .group = "Defects"});
   field(&O::with_normals, "with_normals", "With the true outward normals, which no scanner knows",
         {.option = "normals"});

@@ -47,8 +47,10 @@ void option_table(OptionsOf<PictureOptions>, auto&& field) {
         {.unit = "PIXELS", .option = "picture-width"});
   field(&O::height, "height", "Height of a .png. Pixels.", k_sides, {.unit = "PIXELS", .option = "picture-height"});
   field(&O::azimuth_deg, "azimuth_deg",
-        "Where the camera stands, seen from the middle: degrees turned from the x axis towards y", {.unit = "DEG"});
-  field(&O::elevation_deg, "elevation_deg", "... and raised over the xy plane", from_to(-90, 90), {.unit = "DEG"});
+        "Where the camera stands, seen from the middle: degrees turned from the x axis towards y", from_to(-360, 360),
+        {.unit = "DEG"});
+  field(&O::elevation_deg, "elevation_deg", "How far the camera is raised over the xy plane, in degrees",
+        from_to(-90, 90), {.unit = "DEG"});
   field(&O::resolution, "resolution",
         "Cells along the longest side of the solid's mesh, of which only outlines show any", from_to(4, 4096),
         k_library);
@@ -109,10 +111,10 @@ void option_table(OptionsOf<ReportOptions>, auto&& field) {
         "megabyte.",
         at_least(1));
   field(&O::resolution, "resolution", "Cells along the longest side of the whole solid's mesh", from_to(4, 4096));
-  field(&O::part_resolution, "part_resolution", "... and of those of its parts; fewer, where there are many",
-        from_to(4, 4096));
+  field(&O::part_resolution, "part_resolution",
+        "Cells along the longest side of the meshes of parts; fewer where there are many parts", from_to(4, 4096));
   field(&O::most_triangles, "most_triangles", "Triangles of the whole solid; flat parts need few", at_least(1));
-  field(&O::most_triangles_in_all, "most_triangles_in_all", "... and of all meshes together");
+  field(&O::most_triangles_in_all, "most_triangles_in_all", "Triangles of all meshes together");
   field(
       &O::most_meshes, "most_meshes",
       "Parts of the tree that have a mesh of their own. The whole, then primitives, then inner nodes from the root on.",

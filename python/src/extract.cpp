@@ -52,8 +52,10 @@ Request make_request(const AnyOptions& options, const Cloud& cloud, std::optiona
 Extraction extract_over(const Cloud& cloud, const PrimitiveSet& primitives, const Request& request,
                         const RunContext& run) {
   const ExtractOptions& options = request.options.extraction;
-  if (!request.refine) return extract_csg(cloud.points(), primitives, options, run);
-  return extract_refined_csg(cloud.points(), primitives, options, *request.refine, run);
+  validate(request.options);
+  const std::optional<RefineOptions>& refine = request.refine ? request.refine : request.options.refine;
+  if (!refine) return extract_csg(cloud.points(), primitives, options, run);
+  return extract_refined_csg(cloud.points(), primitives, options, *refine, run);
 }
 
 Result extract(const py::object& cloud, const py::object& primitives, const AnyOptions& options,

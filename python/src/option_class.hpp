@@ -20,7 +20,7 @@
 
 namespace cloud2csg::python {
 
-/// Of vectors, which are lists of three numbers each in Python.
+/// Vectors are lists of three numbers in Python.
 using Rows = std::vector<std::array<double, 3>>;
 
 /// The type that a field has in Python's notation.
@@ -55,7 +55,8 @@ struct PythonType<std::vector<Value>> {
   static std::string name() { return "list[" + PythonType<Value>::name() + "]"; }
 };
 
-/// What Python is given of a field: options within options by reference, so that options.search.seed = 3 works.
+/// What Python is given of a field: options within options by reference, so that options.search.seed = 3 works. Lists,
+/// and options that may be absent, are copies.
 template <typename Value>
 decltype(auto) to_python(Value& value) {
   if constexpr (HasNames<Value>) {
@@ -82,6 +83,8 @@ void from_python(const pybind11::handle& given, Value& value) {
     value.clear();
     for (const auto& [x, y, z] : given.cast<Rows>()) value.emplace_back(x, y, z);
   } else {
+    // pybind11 takes None for False.
+    if (std::is_same_v<Value, bool> && given.is_none()) throw pybind11::cast_error();
     value = given.cast<Value>();
   }
 }
@@ -117,11 +120,16 @@ class OptionClass {
     const std::string type = PythonType<Value>::name();
     const auto get = [member](Options& options) -> decltype(auto) { return to_python(options.*member); };
     Setter set = [what = name_ + "." + name, type, member](Options& options, const pybind11::handle& value) {
+      const auto refuse = [&] {
+        throw pybind11::type_error(
+            fmt::format("{}: expected {}, found {}", what, type, pybind11::repr(value).cast<std::string>()));
+      };
       try {
         from_python(value, options.*member);
       } catch (const pybind11::cast_error&) {
-        throw pybind11::type_error(
-            fmt::format("{}: expected {}, found {}", what, type, pybind11::repr(value).cast<std::string>()));
+        refuse();
+      } catch (const pybind11::reference_cast_error&) {  // None for options
+        refuse();
       }
     };
     fields_->push_back({.name = name, .type = type, .set = set});

@@ -13,16 +13,6 @@
 namespace cloud2csg::python {
 namespace {
 
-PointCloud sample_of_mesh(const TriangleMesh& mesh, const SampleOptions& options, const RunContext& run) {
-  if (options.density > 0 || options.normal_noise_deg > 0) {
-    throw Error({.where = options.density > 0 ? "density" : "normal_noise_deg",
-                 .expected = "works on models only, this is a mesh",
-                 .remedy = "give count and noise"});
-  }
-  PointCloud cloud = sample_mesh(mesh, {.mesh_points = options.count, .seed = options.seed}, run);
-  return options.noise == 0 ? cloud : with_noise(std::move(cloud), options.noise, options.seed);
-}
-
 [[noreturn]] void refuse(const char* function) {
   throw py::type_error(std::string(function) + ": expected a Model or a TriangleMesh");
 }
@@ -33,7 +23,7 @@ Cloud sample(const py::object& shape, const std::optional<SampleOptions>& option
   const RunArguments arguments{.threads = threads, .progress = progress};
   if (py::isinstance<TriangleMesh>(shape)) {
     const auto& mesh = shape.cast<const TriangleMesh&>();
-    return Cloud(run_work(arguments, [&](const RunContext& run) { return sample_of_mesh(mesh, sampling, run); }));
+    return Cloud(run_work(arguments, [&](const RunContext& run) { return sample_mesh_surface(mesh, sampling, run); }));
   }
   if (!py::isinstance<Model>(shape)) refuse("sample");
   const auto& model = shape.cast<const Model&>();

@@ -88,6 +88,8 @@ def test_options_within_options_are_references():
     assert cloud2csg.ReconstructOptions().extraction.search.population != 11
     with pytest.raises(TypeError, match="expected GaOptions"):
         options.extraction.search = cloud2csg.SampleOptions()
+    with pytest.raises(TypeError, match="ExtractOptions.search: expected GaOptions, found None"):
+        cloud2csg.ExtractOptions(search=None)
 
 
 def test_optional_fields_take_none():
@@ -104,6 +106,11 @@ def test_choices_are_texts():
     assert cloud2csg.ExtractOptions.paper().strategy == "partition"
 
 
+def test_none_is_no_truth_value():
+    with pytest.raises(TypeError, match="GaOptions.seeds: expected bool, found None"):
+        cloud2csg.GaOptions(seeds=None)
+
+
 def test_negative_counts_are_refused():
     with pytest.raises(TypeError, match="SampleOptions.count: expected int"):
         cloud2csg.SampleOptions(count=-1)
@@ -112,3 +119,21 @@ def test_negative_counts_are_refused():
 def test_ranges_are_the_library_s_to_check(plate):
     with pytest.raises(cloud2csg.Error, match="noise"):
         cloud2csg.sample(plate, noise=-1)
+    with pytest.raises(cloud2csg.Error, match="noise"):
+        cloud2csg.sample(plate.mesh(resolution=8), noise=-1)
+
+
+def test_options_of_exports_are_checked(plate, tmp_path):
+    options = cloud2csg.ExportOptions(meshing=cloud2csg.MeshingOptions(resolution=1))
+    with pytest.raises(cloud2csg.Error, match=r"meshing\.resolution: expected"):
+        plate.write(tmp_path / "part.stl", options)
+    assert not list(tmp_path.iterdir())
+
+
+def test_options_refine_known_primitives(plate):
+    cloud = cloud2csg.sample(plate, count=4000, noise=0.005)
+    options = cloud2csg.ReconstructOptions(refine=cloud2csg.RefineOptions())
+    assert cloud2csg.extract(cloud, plate, options=options).statistics["refine"] is not None
+    options.refine = cloud2csg.RefineOptions(rounds=0)
+    with pytest.raises(cloud2csg.Error, match="rounds"):
+        cloud2csg.extract(cloud, plate, options=options)

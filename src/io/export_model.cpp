@@ -68,6 +68,7 @@ ExportReport export_mesh(const std::filesystem::path& file, const Model& model, 
 
 ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options,
                           const RunContext& run) {
+  validate(options);
   using Kind = FileKind;
   const FileFormat::Id format =
       format_to_write(file, {Kind::model, Kind::script, Kind::solid, Kind::mesh, Kind::graph});

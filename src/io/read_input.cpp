@@ -89,6 +89,16 @@ PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, co
   return cloud;
 }
 
+PointCloud sample_mesh_surface(const TriangleMesh& mesh, const SampleOptions& options, const RunContext& run) {
+  validate(options);
+  if (options.density > 0 || options.normal_noise_deg > 0) {
+    throw invalid_option(options.density > 0 ? "density" : "normal_noise_deg", "works on models only, this is a mesh",
+                         "give `count` and `noise`");
+  }
+  PointCloud cloud = sample_mesh(mesh, {.mesh_points = options.count, .seed = options.seed}, run);
+  return options.noise > 0 ? with_noise(std::move(cloud), options.noise, options.seed) : cloud;
+}
+
 Input read_cloud_or_mesh(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
   const FileKind kind = format_to_read(file, {FileKind::cloud, FileKind::mesh}).kind;
   return kind == FileKind::mesh ? read_and_sample(file, options, run) : read_cloud(file, run);

@@ -33,7 +33,9 @@ TEST_F(Config, WhatIsPrintedIsReadAsTheSame) {
        "paper", "--stats", "a \"b\" #c.json", "-o", "x.scad", "-o", "it's.json"},
       {"extract", "--beta", ".5", "--strategy", "cells", "--quiet", "--threads", "2"},
       {"detect", "-o", "5"},
+      {"sample"},
       {"sample", "--density", "0.25"},
+      {"scan"},
       {"scan", "--perfect"},
       {"bench", "scaling", "--primitives", "10", "20", "--family", "grid"},
       {"bench", "paper"}};

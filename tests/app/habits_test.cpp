@@ -154,6 +154,9 @@ TEST_F(Habits, CompletionTellsWhatWordsMean) {
   EXPECT_EQ(told({"compare", "a", ""}), ":files::\n");
   EXPECT_EQ(told({"compare", "a", "b", ""}), "");
   EXPECT_EQ(told({"extract", "--seed", ""}), "");
+  // An option may take several words; the next option ends them.
+  EXPECT_EQ(told({"bench", "scaling", "--family", "chain", "g"}), "grid\n");
+  EXPECT_EQ(told({"bench", "scaling", "--family", "chain", "--cl"}).substr(0, 10), "--cliques\t");
   EXPECT_EQ(told({"manu"}), "");  // hidden
   EXPECT_EQ(told({"--"}).find("--leaf-cost"), std::string::npos);
   EXPECT_EQ(told({}), "");

@@ -92,15 +92,18 @@ TEST_F(Usage, WhatTheExtractionRefusesNamesTheOption) {
   for (const OutOfRange& given :
        {OutOfRange{{"--elites", "200"}, "--elites: expected fewer than the population (150), found 200"},
         OutOfRange{{"--population", "2"}, "--elites: expected fewer than the population (2), found 2"},
-        OutOfRange{{"--population", "1"}, "--population: expected 2 or more, found 1"},
+        OutOfRange{{"--population", "1"}, "--population: expected a whole number of 2 or more, found 1"},
         OutOfRange{{"--tournament", "0"}, "--tournament: expected"},
         OutOfRange{{"--height-limit", "0"}, "--height-limit: expected"},
         OutOfRange{{"--idle-generations", "0"}, "--idle-generations: expected"},
         OutOfRange{{"--generation-limit", "0"}, "--generation-limit: expected"},
-        OutOfRange{{"--listing-limit", "6"}, "--listing-limit: expected 5 or less, found 6"},
+        OutOfRange{{"--listing-limit", "6"}, "--listing-limit: expected a whole number from 0 to 5, found 6"},
         OutOfRange{{"--distance-tolerance", "0"}, "--distance-tolerance: expected"},
         OutOfRange{{"--angle-tolerance", "91"},
                    "--angle-tolerance: expected a number above 0 and at most 90, found 91"},
+        OutOfRange{{"--seed", "-1"}, "--seed: expected a whole number of 0 or more, found '-1'"},
+        OutOfRange{{"--least-points", "0"}, "--least-points: expected a whole number of 1 or more, found 0"},
+        OutOfRange{{"--azimuth", "1e308"}, "--azimuth: expected a number from -360 to 360"},
         OutOfRange{{"--beta", "0"}, "--beta: expected"}, OutOfRange{{"--gamma", "0"}, "--gamma: expected"},
         OutOfRange{{"--time-limit", "0"}, "--time-limit: expected"}}) {
     std::vector<std::string> arguments{"extract", "c.ply", "--primitives", "m.json", "-o", path("x.json")};

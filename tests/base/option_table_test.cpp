@@ -68,13 +68,13 @@ TEST(OptionTable, FieldsInRangeAreAccepted) {
 TEST(OptionTable, OthersAreNamedByTheirPath) {
   constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double k_infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(refused({.least = -1}), "least: expected 0 or more, found -1");
+  EXPECT_EQ(refused({.least = -1}), "least: expected a whole number of 0 or more, found -1");
   EXPECT_EQ(refused({.axes = {Eigen::Vector3d::Zero()}}), "axes: expected a number above 0, found 0");
   EXPECT_EQ(refused({.inner = {.turn_deg = 0}}), "inner.turn_deg: expected a number above 0 and at most 90, found 0");
   EXPECT_EQ(refused({.inner = {.turn_deg = k_nan}}),
             "inner.turn_deg: expected a number above 0 and at most 90, found nan");
   EXPECT_EQ(refused({.inner = {.limit_seconds = k_infinity}}),
-            "inner.limit_seconds: expected a number above 0, found inf");
+            "inner.limit_seconds: expected a number above 0 and finite, found inf");
   EXPECT_EQ(refused({.inner = {.sizes = {0, -2}}}), "inner.sizes: expected a number of 0 or more, found -2");
   EXPECT_EQ(refused({.extra = InnerOptions{.turn_deg = 91}}).substr(0, 14), "extra.turn_deg");
 }
@@ -84,7 +84,7 @@ TEST(OptionTable, FieldsThatDoNotGoTogetherAreRefused) {
 }
 
 TEST(OptionTable, RangesInWords) {
-  EXPECT_EQ(range_text(at_most(5), true), "5 or less");
+  EXPECT_EQ(range_text(at_most(5), true), "a whole number of 5 or less");
   EXPECT_EQ(range_text({}, true), "a whole number");
   EXPECT_EQ(range_text({}, false), "a finite number");
   EXPECT_EQ(range_text(from_to(4, 256), true), "a whole number from 4 to 256");

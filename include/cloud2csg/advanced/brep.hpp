@@ -39,7 +39,7 @@ void option_table(OptionsOf<BrepOptions>, auto&& field) {
       "The part of its volume by which a node may differ from what the tree says before its operation counts as failed",
       above_to(0, 1), k_library);
   field(&O::mesh_deviation, "mesh_deviation",
-        "Of meshes: how far triangles may be from the surface, as a part of the model's extent", from_to(1e-6, 1),
+        "How far the triangles of meshes may be from the surface, as a part of the model's extent", from_to(1e-6, 1),
         k_library);
 }
 

@@ -136,7 +136,7 @@ struct CellSolveOptions {
 void option_table(OptionsOf<CellSolveOptions>, auto&& field) {
   using O = CellSolveOptions;
   field(&O::least_evidence, "least_evidence",
-        "Of cells whose labels cost fewer points to change, the formula may make what it likes. Descending; each is "
+        "The formula may do as it likes with cells whose labels cost fewer points to change. Descending; each is "
         "tried, and that formula taken that costs least, leaves included.",
         at_least(0));
   field(&O::leaf_cost, "leaf_cost", "Cost of a leaf, in points", at_least(0));

@@ -30,10 +30,10 @@ void option_table(OptionsOf<DetectOptions>, auto&& field) {
         above(0),
         {.absent = "3 x the measured noise, at least 0.15 % of the diagonal", .unit = "D", .option = "tolerance"});
   field(&O::angle_tolerance_deg, "angle_tolerance_deg",
-        "... and how many degrees their normals may be turned from the surface's. Generous: estimated normals are off "
+        "How many degrees the normals of points may be turned from the surface's. Generous: estimated normals are off "
         "by 10 degrees, and those of facets by 6.",
         above_to(0, 90), {.unit = "DEG", .option = "normal-tolerance"});
-  field(&O::least_points, "least_points", "Surfaces with fewer points are left alone",
+  field(&O::least_points, "least_points", "Surfaces with fewer points are left alone", at_least(1),
         {.absent = "one in 2000 of the cloud's, at least 30"});
   field(&O::least_size, "least_size",
         "Surfaces with a smaller radius, or whose points reach less far, are left out. In the cloud's units: the "
@@ -41,7 +41,7 @@ void option_table(OptionsOf<DetectOptions>, auto&& field) {
         "of its points. Points of those that are left out lie on no surface; but what is only round by a radius above "
         "`most_size` may be found to be flat.",
         above(0), {.absent = "no limit", .unit = "D", .option = "min-size"});
-  field(&O::most_size, "most_size", "... and those with a larger one, or that reach farther", above(0),
+  field(&O::most_size, "most_size", "Surfaces with a larger radius, or that reach farther, are left out", above(0),
         {.absent = "no limit", .unit = "D", .option = "max-size"});
   field(&O::seed, k_inner_seed);
 }

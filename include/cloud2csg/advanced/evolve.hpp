@@ -41,11 +41,11 @@ void option_table(OptionsOf<GaOptions>, auto&& field) {
         "Stop when the best score has not improved for so many generations. The paper stops after 10, and then misses "
         "the true solid in some runs (bench/recovery counts them).",
         at_least(1));
-  field(&O::generation_limit, "generation_limit", "Stop here in any case", at_least(1));
+  field(&O::generation_limit, "generation_limit", "Stop after so many generations in any case", at_least(1));
   field(&O::listing_limit, "listing_limit",
         "Partitions of up to so many primitives are solved by listing all trees that use each at most once. The paper "
         "lists up to 2. Each one more is about 20 times the work; at most 5.",
-        at_most(5));
+        from_to(0, 5));
   field(&O::trust, "trust",
         "A tree that reaches less than this share of the score that none can exceed is searched for again. Where a "
         "listed tree falls short, the genetic algorithm looks for one that uses a primitive more than once; where its "
@@ -53,8 +53,9 @@ void option_table(OptionsOf<GaOptions>, auto&& field) {
         "it is not run at all. 0: every listed tree is believed, and of larger partitions none before the algorithm "
         "has run, as in the paper.",
         k_share, {.unit = "SHARE"});
-  field(&O::restarts, "restarts", "... so many times at most, from other random trees", at_least(0));
-  field(&O::restart_budget, "restart_budget", "... and not when so many trees were evaluated for the partition");
+  field(&O::restarts, "restarts", "How often a search is run anew at most, from other random trees", at_least(0));
+  field(&O::restart_budget, "restart_budget",
+        "No search is run anew when so many trees were evaluated for the partition");
   field(&O::seeds, "seeds", "The first generation also has results of local searches from simple trees",
         {.option = "seeds", .opposite = "no-seeds", .otherwise = "The first generation is random"});
   field(&O::polish, "polish", "Improve the best tree at the end by single changes; if that helps, go on from there",

@@ -35,7 +35,7 @@ void option_table(OptionsOf<RefineOptions>, auto&& field) {
         "right after two or three.",
         at_least(1));
   field(&O::most_points, "most_points",
-        "Of a primitive's points, this many are taken, evenly over their order. Enough to place it to a fiftieth of "
+        "So many of a primitive's points are taken, evenly over their order. Enough to place it to a fiftieth of "
         "the noise.",
         at_least(100));
   field(&O::regularise, "regularise", "Take what is nearly regular for regular");

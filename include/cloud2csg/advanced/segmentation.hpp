@@ -23,7 +23,7 @@ void option_table(OptionsOf<SegmentationOptions>, auto&& field) {
         "of the points of a Gaussian scan.",
         above(0), {.absent = "3 x the measured noise", .unit = "D"});
   field(&O::angle_tolerance_deg, "angle_tolerance_deg",
-        "... when their normal is within so many degrees of the surface's, whichever way round. A subtracted solid "
+        "Their normal is within so many degrees of the surface's, whichever way round. A subtracted solid "
         "shows its surface from inside. Generous, because the surface's normal is taken at the noisy point.",
         above_to(0, 90), {.unit = "DEG"});
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+/// Files that appear whole or not at all: temporary ones, one that replaces another, several that belong together.
 namespace cloud2csg {
 
 /// A new, empty file beside the one whose place it is to take, so that a rename can put it there. Removed when this

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace cloud2csg {
@@ -16,15 +17,15 @@ std::string range_text(const OptionRange& range, bool is_whole) {
                           : fmt::format("{} from {} to {}", number, range.least, range.most);
   }
   if (has_least && range.is_above) return fmt::format("{} above {}", number, range.least);
-  if (has_least)
-    return is_whole ? fmt::format("{} or more", range.least) : fmt::format("{} of {} or more", number, range.least);
-  if (has_most) return fmt::format("{} or less", range.most);
+  if (has_least) return fmt::format("{} of {} or more", number, range.least);
+  if (has_most) return fmt::format("{} of {} or less", number, range.most);
   return is_whole ? number : "a finite number";
 }
 
 std::string range_fault(const OptionRange& range, double value, bool is_whole) {
   if (range.holds(value)) return {};
-  return fmt::format("expected {}, found {}", range_text(range, is_whole), value);
+  const char* const bound = std::isinf(value) && value > range.least ? " and finite" : "";
+  return fmt::format("expected {}{}, found {}", range_text(range, is_whole), bound, value);
 }
 
 std::string value_text(double value) {

@@ -9,7 +9,7 @@
 
 namespace cloud2csg {
 
-/// A tree with its score: of the paper's objective, E(t).
+/// A tree with its score by the objective that is searched.
 struct ScoredTree {
   CsgTree tree;
   double score = 0;

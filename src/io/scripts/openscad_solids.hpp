@@ -9,7 +9,7 @@
 #include "io/scripts/script_text.hpp"
 #include "io/step/kernel.hpp"
 
-/// Small parts of an OpenSCAD program.
+/// Solids, their parameters, and the words and numbers of an OpenSCAD program.
 namespace cloud2csg::openscad {
 
 /// Words of the language, its modules, and the modules that every file of ours may define.

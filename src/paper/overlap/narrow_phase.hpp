@@ -37,7 +37,9 @@ struct OverlapBody {
 ///
 /// Exact, up to rounding: spheres, half-spaces, and pairs of convex solids, where gaps that differ from the
 /// tolerance by less than about 1e-8 of the solids' size may go either way.
-/// By distance fields: see fields_overlap().
+/// Other pairs by distance fields, with a budget: a "no" is proven but for expressions, whose Lipschitz constant is
+/// estimated; where the budget ends the answer is yes, since an edge too many costs time only. A displaced solid or an
+/// expression may count as larger by tolerance x Lipschitz constant / 2.
 /// @throws Cancelled
 [[nodiscard]] bool bodies_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance, const RunContext& run);
 

@@ -6,6 +6,7 @@
 
 #include "cloud2csg/advanced/solids.hpp"
 
+/// What the user knows of the part: radii and directions of surfaces, and whole solids.
 namespace cloud2csg {
 
 /// Surfaces with the radii and directions that they are known to have.

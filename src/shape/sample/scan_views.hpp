@@ -6,6 +6,7 @@
 #include "cloud2csg/sample.hpp"
 #include "shape/sample/ray_caster.hpp"
 
+/// Where the virtual scanner stands, the rays of a view, and the errors of what they return.
 namespace cloud2csg {
 
 /// The bounding sphere of the part: what sensors look at, and the measure of their errors.

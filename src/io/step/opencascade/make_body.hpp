@@ -4,7 +4,7 @@
 
 namespace cloud2csg::brep {
 
-/// One face, or four that are easier to read (split_sphere.hpp).
+/// One face, or four that are easier to read (make_body.cpp).
 enum class SphereForm { whole, split };
 
 /// The solids of a primitive or of facets, of which each closed piece is one, or a hollow in another.
