@@ -22,7 +22,7 @@ constexpr std::size_t k_chunk = 1024;
 class Sampler {
  public:
   Sampler(const Model& model, const RunContext& run)
-      : field_(bounded_field(model)), steepness_(lipschitz_bound(*field_.tree, model.primitives)), run_(run) {}
+      : field_(bounded_field(model)), steepness_(lipschitz_bound(tree_of(model), model.primitives)), run_(run) {}
 
   VolumeEstimate estimate(const AlignedBox& box, int levels) {
     const bool is_known = std::isfinite(steepness_);
