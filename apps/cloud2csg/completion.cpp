@@ -79,7 +79,7 @@ complete -c cloud2csg -f -a '(__cloud2csg_complete)'
 /// The endings of the files that an option takes: those that its help speaks of, else that of its value, "MODEL.json".
 std::vector<std::string> endings_of(const CLI::Option& option) {
   static const std::regex k_ending(R"((^|[^.\w])(\.[A-Za-z][A-Za-z0-9]+)\b)");
-  const std::string help = option.get_description();
+  const std::string& help = option.get_description();
   std::vector<std::string> endings;
   for (std::sregex_iterator it(help.begin(), help.end(), k_ending), end; it != end; ++it) {
     const std::string ending = CLI::detail::to_lower((*it)[2]);
