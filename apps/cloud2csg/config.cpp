@@ -131,8 +131,8 @@ class ConfigReader {
     const bool is_top = command.get_parent() == nullptr;
     const std::vector<std::string> options = option_names(command, is_top);
     const std::vector<CLI::App*> inner = commands_in(command);
-    std::vector<std::string> commands;
-    for (const CLI::App* const app : inner) commands.push_back(app->get_name());
+    std::vector<std::string> commands(inner.size());
+    std::ranges::transform(inner, commands.begin(), [](const CLI::App* app) { return app->get_name(); });
     for (const auto& [key, value] : table) {
       const std::string name(key.str());
       if (value.is_table()) {

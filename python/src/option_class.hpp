@@ -97,7 +97,7 @@ class OptionClass {
  public:
   OptionClass(pybind11::module_& module, const char* name, std::string doc)
       : class_(module, name), name_(name), doc_(std::move(doc)) {
-    for_each_field<Options>([this](auto member, const OptionField& field) { add(member, field); });
+    for_each_field<Options>([this](auto member, const OptionField& field) { this->add(member, field); });
     define_constructors();
     define_values();
     class_.attr("__doc__") = doc_ + "\n\nAll fields are keywords of the constructor, and attributes.\n" + field_docs_;
@@ -211,6 +211,13 @@ Options with_fields(const std::optional<Options>& options, const pybind11::kwarg
   const Options start = options.value_or(Options{});
   if (fields.empty()) return start;
   return pybind11::cast(start).attr("replace")(**fields).template cast<Options>();
+}
+
+/// Makes the class of a struct; what is returned takes further methods.
+template <typename Options>
+pybind11::class_<Options> add_options(pybind11::module_& module, const char* name, const char* doc) {
+  OptionClass<Options> made(module, name, doc);
+  return made.python();
 }
 
 }  // namespace cloud2csg::python
