@@ -142,7 +142,6 @@ struct ExtractCommand {
   /// `given` is empty when all primitives are to be found.
   [[nodiscard]] Extraction extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
   [[nodiscard]] Extraction extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
-  [[nodiscard]] RefineOptions refine_options() const;
   /// What is going to be written, after a look at whether it can be.
   [[nodiscard]] std::vector<std::string> check_files() const;
   [[nodiscard]] PointCloud unexplained_part(const Extraction& result, int threads) const;
@@ -219,13 +218,10 @@ void ExtractCommand::report(Extraction result, std::vector<ReportDownload> downl
   naming(cloud, [&] { add_reports(written, outputs, report, without_stop(run)); });
 }
 
-RefineOptions ExtractCommand::refine_options() const {
-  return {.angle_tolerance_deg = options.extraction.segmentation.angle_tolerance_deg};
-}
-
 Extraction ExtractCommand::extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const {
-  Extraction result = refine ? extract_refined_csg(points, solids, options.extraction, refine_options(), run)
-                             : extract_csg(points, solids, options.extraction, run);
+  Extraction result =
+      refine ? extract_refined_csg(points, solids, options.extraction, refine_options_for(options.extraction), run)
+             : extract_csg(points, solids, options.extraction, run);
   result.cloud = std::move(points);
   return result;
 }
@@ -238,7 +234,7 @@ Extraction ExtractCommand::extract(Input input, const PrimitiveSet& given, const
   }
   ReconstructOptions from_raw = options_for(input, options);
   from_raw.known = given;
-  if (refine) from_raw.refine = refine_options();
+  if (refine) from_raw.refine = refine_options_for(options.extraction);
   return naming(files, [&] { return reconstruct(input.cloud, from_raw, run); });
 }
 

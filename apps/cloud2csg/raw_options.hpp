@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <utility>
+
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "field_arguments.hpp"
@@ -30,8 +33,8 @@ inline void add_raw_options(FieldArguments& fields, ReconstructOptions& options,
 
 /// One seed for all that is random, and no more points of a mesh than would be kept.
 inline void share_values(ReconstructOptions& options, InputOptions& reading) {
-  const std::uint64_t seed = options.extraction.seed;
-  options.detection.seed = options.solids.places.seed = reading.seed = seed;
+  reading.seed = options.extraction.seed;
+  options = with_seed(std::move(options), reading.seed);
   reading.mesh_points = std::min(reading.mesh_points, options.preparation.clean.point_budget);
 }
 

@@ -8,7 +8,6 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/point_cloud.hpp"
-#include "core/base/files.hpp"
 #include "field_arguments.hpp"
 #include "outputs.hpp"
 
@@ -28,19 +27,20 @@ struct SampleCommand {
 };
 
 PointCloud SampleCommand::sample(const Shape3d& read, const RunContext& run) const {
-  SampleOptions exact = sampling;
-  if (read.mesh || relative_noise) exact.noise = 0;
+  SampleOptions options = sampling;
+  if (relative_noise) options.noise = 0;
   PointCloud cloud;
   if (read.model) {
-    cloud = sample_surface(*read.model, exact, run);
+    cloud = sample_surface(*read.model, options, run);
   } else if (read.mesh) {
-    cloud = sample_mesh_surface(*read.mesh, exact, run);
+    cloud = sample_mesh_surface(*read.mesh, options, run);
   } else {
     throw Error({.expected = "expected a model with a tree or a mesh, found a point cloud",
                  .remedy = "sample what the cloud was made of"});
   }
-  const double noise = relative_noise ? *relative_noise * bounds_of(cloud.positions).diagonal().norm() : sampling.noise;
-  return exact.noise == 0 && noise > 0 ? with_noise(std::move(cloud), noise, sampling.seed) : cloud;
+  if (!relative_noise || *relative_noise == 0) return cloud;
+  const double noise = *relative_noise * bounds_of(cloud.positions).diagonal().norm();
+  return with_noise(std::move(cloud), noise, sampling.seed);
 }
 
 void SampleCommand::run(std::stop_token stop) const {

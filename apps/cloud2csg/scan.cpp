@@ -3,7 +3,6 @@
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/sample.hpp"
-#include "core/base/files.hpp"
 #include "field_arguments.hpp"
 #include "outputs.hpp"
 

@@ -140,7 +140,14 @@ enum class MergeWay {
   joint,                   ///< partitions that did not merge were solved together
   search,  ///< a search over the whole component: up to 24 primitives from the best of these, up to 127 anew
 };
-[[nodiscard]] std::string_view to_string(MergeWay way);
+constexpr auto names_of(MergeWay /*any*/) {
+  return std::to_array<EnumName<MergeWay>>({{"single", MergeWay::single},
+                                            {"paper", MergeWay::paper},
+                                            {"dominance", MergeWay::dominance},
+                                            {"largest_common_subtree", MergeWay::largest_common_subtree},
+                                            {"joint", MergeWay::joint},
+                                            {"search", MergeWay::search}});
+}
 
 struct MergeStatistics {
   std::vector<MergeWay> ways;                    ///< one a connected component
@@ -251,6 +258,9 @@ struct Extraction {
 /// Cancelled when stopped before the search began.
 [[nodiscard]] Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const ExtractOptions& options = {}, const RunContext& run = {});
+
+/// The refinement that goes with an extraction: normals may be as far off.
+[[nodiscard]] RefineOptions refine_options_for(const ExtractOptions& extraction);
 
 /// extract_csg(), refine_primitives() on its tree, and extract_csg() again over what comes out; of the trees over both
 /// sets of primitives, the one with the highest E, measured with the refined noise. The statistics are those of the

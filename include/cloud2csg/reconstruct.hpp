@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,11 +46,13 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
         {.absent = "they stay where they are", .option = k_no_option});
 }
 
+/// The options with one seed for all that is random in them.
+[[nodiscard]] ReconstructOptions with_seed(ReconstructOptions options, std::uint64_t seed);
+
 /// Cleans and orients the cloud, detects its surfaces and chooses solids that these bound, with the tree that they were
-/// chosen with: prepare_cloud(),
-/// detect_surfaces(), choose_solids(). Points that lie on known primitives are not offered to the detection; known
-/// primitives that the points do not bear out are in no tree, and a warning names them. The same seed gives the same
-/// for any number of threads.
+/// chosen with: prepare_cloud(), detect_surfaces(), choose_solids(). Points that lie on known primitives are not
+/// offered to the detection; known primitives that the points do not bear out are in no tree, and a warning names them.
+/// The same seed gives the same for any number of threads.
 /// @throws Error when the cloud has too few points, no surface was found in it, it has no inside, or a known primitive
 /// is invalid or has the id of another, or the time limit of the extraction is over before surfaces were found; then
 /// on, there are solids to give at any time, with a warning. Cancelled.

@@ -19,9 +19,8 @@ namespace cloud2csg::python {
 
 ReconstructOptions raw_options(const ReconstructOptions& options, const Cloud& cloud,
                                std::optional<std::uint64_t> seed) {
-  ReconstructOptions raw = options;
+  ReconstructOptions raw = seed ? with_seed(options, *seed) : options;
   if (cloud.is_exact()) raw.preparation.is_exact = true;
-  if (seed) raw.extraction.seed = raw.detection.seed = raw.solids.places.seed = *seed;
   return raw;
 }
 

@@ -22,22 +22,18 @@
 namespace cloud2csg::python {
 namespace {
 
-struct Request {
-  ReconstructOptions options;
-  std::optional<RefineOptions> refine;
-};
-
 using AnyOptions = std::optional<std::variant<ExtractOptions, ReconstructOptions>>;
 
 std::optional<RefineOptions> refine_options(const py::object& refine, const ExtractOptions& options) {
   if (py::isinstance<RefineOptions>(refine)) return refine.cast<RefineOptions>();
   if (!py::isinstance<py::bool_>(refine)) throw py::type_error("refine: expected a bool or RefineOptions");
   if (!refine.cast<bool>()) return std::nullopt;
-  return RefineOptions{.angle_tolerance_deg = options.segmentation.angle_tolerance_deg};
+  return refine_options_for(options);
 }
 
-Request make_request(const AnyOptions& options, const Cloud& cloud, std::optional<std::uint64_t> seed,
-                     const py::object& refine) {
+/// `seed` and `refine` win over what the options say.
+ReconstructOptions asked_for(const AnyOptions& options, const Cloud& cloud, std::optional<std::uint64_t> seed,
+                             const py::object& refine) {
   ReconstructOptions raw;
   if (options && std::holds_alternative<ExtractOptions>(*options)) {
     raw.extraction = std::get<ExtractOptions>(*options);
@@ -45,33 +41,30 @@ Request make_request(const AnyOptions& options, const Cloud& cloud, std::optiona
     raw = std::get<ReconstructOptions>(*options);
   }
   raw = raw_options(raw, cloud, seed);
-  return {.options = raw, .refine = refine_options(refine, raw.extraction)};
+  if (const std::optional<RefineOptions> given = refine_options(refine, raw.extraction)) raw.refine = given;
+  return raw;
 }
 
 /// Over primitives that are known.
-Extraction extract_over(const Cloud& cloud, const PrimitiveSet& primitives, const Request& request,
+Extraction extract_over(const Cloud& cloud, const PrimitiveSet& primitives, const ReconstructOptions& options,
                         const RunContext& run) {
-  const ExtractOptions& options = request.options.extraction;
-  validate(request.options);
-  const std::optional<RefineOptions>& refine = request.refine ? request.refine : request.options.refine;
-  if (!refine) return extract_csg(cloud.points(), primitives, options, run);
-  return extract_refined_csg(cloud.points(), primitives, options, *refine, run);
+  validate(options);
+  if (!options.refine) return extract_csg(cloud.points(), primitives, options.extraction, run);
+  return extract_refined_csg(cloud.points(), primitives, options.extraction, *options.refine, run);
 }
 
 Result extract(const py::object& cloud, const py::object& primitives, const AnyOptions& options,
                std::optional<std::uint64_t> seed, const py::object& refine, int threads, const py::object& progress) {
   const auto given = to_cloud(cloud).cast<std::shared_ptr<Cloud>>();
-  const Request request = make_request(options, *given, seed, refine);
+  const ReconstructOptions asked = asked_for(options, *given, seed, refine);
   const RunArguments arguments{.threads = threads, .progress = progress};
   if (primitives.is_none()) {
-    ReconstructOptions raw = request.options;
-    if (request.refine) raw.refine = request.refine;
-    return result_of(run_work(arguments, [&](const RunContext& run) { return reconstruct(given->points(), raw, run); }),
-                     given);
+    return result_of(
+        run_work(arguments, [&](const RunContext& run) { return reconstruct(given->points(), asked, run); }), given);
   }
   const PrimitiveSet known = to_primitives(primitives);
-  return result_of(
-      run_work(arguments, [&](const RunContext& run) { return extract_over(*given, known, request, run); }), given);
+  return result_of(run_work(arguments, [&](const RunContext& run) { return extract_over(*given, known, asked, run); }),
+                   given);
 }
 
 py::object statistics_of(const Result& result) {

@@ -1,23 +1,6 @@
-#include "cloud2csg/extract.hpp"
+#include "cloud2csg/reconstruct.hpp"
 
 namespace cloud2csg {
-std::string_view to_string(MergeWay way) {
-  switch (way) {
-    case MergeWay::single:
-      return "single";
-    case MergeWay::paper:
-      return "paper";
-    case MergeWay::dominance:
-      return "dominance";
-    case MergeWay::largest_common_subtree:
-      return "largest_common_subtree";
-    case MergeWay::joint:
-      return "joint";
-    case MergeWay::search:
-      return "search";
-  }
-  return "";
-}
 
 ExtractOptions paper_options() {
   ExtractOptions options;
@@ -27,6 +10,15 @@ ExtractOptions paper_options() {
   options.search = paper_ga_options();
   options.without_strangers = false;
   options.polish = false;
+  return options;
+}
+
+RefineOptions refine_options_for(const ExtractOptions& extraction) {
+  return {.angle_tolerance_deg = extraction.segmentation.angle_tolerance_deg};
+}
+
+ReconstructOptions with_seed(ReconstructOptions options, std::uint64_t seed) {
+  options.extraction.seed = options.detection.seed = options.solids.places.seed = seed;
   return options;
 }
 

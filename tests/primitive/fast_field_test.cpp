@@ -13,6 +13,7 @@
 
 #include "cloud2csg/primitive.hpp"
 #include "core/primitive/displacement-inl.hpp"
+#include "core/primitive/sampled_field.hpp"
 #include "primitive/random_primitives.hpp"
 #include "support/forced_target.hpp"
 
@@ -23,21 +24,6 @@ using test::ForcedTarget;
 using testing::any_primitive;
 using testing::points_near;
 
-struct Evaluated {
-  std::vector<double> distance;
-  Points slope;
-};
-
-Evaluated fast_field(const Primitive& primitive, PointsView points) {
-  Evaluated result{.distance = std::vector<double>(points.size()), .slope = Points(points.size())};
-  evaluate_field(primitive, points,
-                 {.distance = result.distance,
-                  .gradient_x = result.slope.x,
-                  .gradient_y = result.slope.y,
-                  .gradient_z = result.slope.z});
-  return result;
-}
-
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -46,9 +32,9 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return true;
 }
 
-bool same_bits(const Evaluated& a, const Evaluated& b) {
-  return same_bits(a.distance, b.distance) && same_bits(a.slope.x, b.slope.x) && same_bits(a.slope.y, b.slope.y) &&
-         same_bits(a.slope.z, b.slope.z);
+bool same_bits(const SampledField& a, const SampledField& b) {
+  return same_bits(a.distances, b.distances) && same_bits(a.slopes.x, b.slopes.x) &&
+         same_bits(a.slopes.y, b.slopes.y) && same_bits(a.slopes.z, b.slopes.z);
 }
 
 /// Random points, and a few on the loci where comparisons are between equals and zeros have signs.
@@ -72,13 +58,13 @@ TEST(EvaluateField, HasMoreThanOneInstructionSetToCompare) {
 RC_GTEST_PROP(EvaluateField, IsBitForBitThePlainReferenceOnEveryInstructionSet, ()) {
   const Primitive primitive = any_primitive();
   const Points points = varied_points(primitive, static_cast<std::size_t>(testing::integer(0, 71)));
-  const Evaluated plain{.distance = signed_distance(primitive, points), .slope = gradient(primitive, points)};
+  const SampledField plain{.distances = signed_distance(primitive, points), .slopes = gradient(primitive, points)};
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const ForcedTarget forced(target);
-    if (!same_bits(fast_field(primitive, points), plain)) RC_FAIL(std::string(hwy::TargetName(target)));
+    if (!same_bits(sample_field(primitive, points), plain)) RC_FAIL(std::string(hwy::TargetName(target)));
     std::vector<double> distance(points.size());
     evaluate_distance(primitive, points, distance);
-    if (!same_bits(distance, plain.distance)) RC_FAIL(std::string("distance only on ") + hwy::TargetName(target));
+    if (!same_bits(distance, plain.distances)) RC_FAIL(std::string("distance only on ") + hwy::TargetName(target));
   }
 }
 
@@ -178,13 +164,13 @@ TEST(EvaluateField, MayRunInSeveralThreads) {
   Points points(200);
   for (std::size_t i = 0; i < points.size(); ++i)
     points.set(i, Eigen::Vector3d::Constant(0.01 * static_cast<double>(i)));
-  const Evaluated expected = fast_field(primitive, points);
-  std::vector<Evaluated> results(4);
+  const SampledField expected = sample_field(primitive, points);
+  std::vector<SampledField> results(4);
   std::vector<std::thread> threads;
   threads.reserve(results.size());
-  for (Evaluated& result : results) threads.emplace_back([&] { result = fast_field(primitive, points); });
+  for (SampledField& result : results) threads.emplace_back([&] { result = sample_field(primitive, points); });
   for (std::thread& thread : threads) thread.join();
-  for (const Evaluated& result : results) EXPECT_TRUE(same_bits(result, expected));
+  for (const SampledField& result : results) EXPECT_TRUE(same_bits(result, expected));
 }
 
 const HWY_NAMESPACE::SineCosineFormula<HWY_NAMESPACE::PlainTag> k_sine_cosine{HWY_NAMESPACE::PlainTag()};

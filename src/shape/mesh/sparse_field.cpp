@@ -15,6 +15,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
 #include "core/base/parallel.hpp"
+#include "core/fields/bounded_field.hpp"
 #include "core/fields/lipschitz.hpp"
 #include "core/geometry/boxes.hpp"
 

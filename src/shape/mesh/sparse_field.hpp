@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/run_context.hpp"
-#include "core/fields/bounded_field.hpp"
 
 namespace cloud2csg {
 

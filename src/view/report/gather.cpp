@@ -9,7 +9,6 @@
 #include "cloud2csg/advanced/overlap_graph.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/view.hpp"
-#include "core/fields/point_fit.hpp"
 #include "shape/mesh/model_extent.hpp"
 #include "view/report/cloud_sections.hpp"
 #include "view/report/deviation.hpp"
