@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "cloud2csg/sample.hpp"
 #include "raw/solids/write_solids.hpp"
@@ -121,6 +122,17 @@ RC_GTEST_PROP(DecisionList, BehindARuleThatSaysTheSameAPositionIsAsGoodAsBeforeI
                 insertion_gains(list, deciding, space.pulls, position - 1, is_in));
     }
   }
+}
+
+TEST(DecisionList, AtItsLimitOfWorkAddsSimpleTermsOnly) {
+  const TermSpace& space = scene().space;
+  const DecisionList hurried = search_list(space, k_costs, {.rules = 20, .work = 0});
+  ASSERT_GT(hurried.size(), 1U);
+  const auto is_simple = [](const Rule& rule) { return rule.term.parts.size() == 1; };
+  EXPECT_LE(std::ranges::count_if(hurried, std::not_fn(is_simple)), 1) << "the first rule is chosen among all terms";
+  const double cost = cost_of(hurried, space.pulls, k_costs);
+  EXPECT_LT(cost, cost_of({}, space.pulls, k_costs));
+  EXPECT_GE(cost, cost_of(search_list(space, k_costs, {.rules = 20}), space.pulls, k_costs));
 }
 
 RC_GTEST_PROP(WriteSolids, TheTreeDecidesAsTheListDoes, ()) {

@@ -85,7 +85,7 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   run.throw_if_stopped();
   const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance, terms);
   const TermCosts costs{.leaf = options.leaf_cost, .plane = options.plane_cost};
-  const DecisionList list = search_list(space, costs, options.most_rules, run);
+  const DecisionList list = search_list(space, costs, {.rules = options.most_rules}, run);
   WrittenSolids written = write_solids(space, list);
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);

@@ -19,12 +19,9 @@ constexpr double k_least_gain = 1e-7;  // less is rounding
 constexpr std::size_t k_most_sweeps = 20;
 constexpr std::size_t k_most_pairs = 40;
 constexpr std::size_t k_large_work = 500'000;
-/// Pricings times the work of each, after which a list is no longer improved. Counted, so that the result does not
-/// depend on the machine: some ten seconds on one core.
-constexpr double k_most_work = 3e9;
-
 /// About what it takes to price all terms once.
-std::size_t work_of(const TermSpace& space) {
+std::size_t work_of(const TermSpace& space, TermKinds kinds = TermKinds::all) {
+  if (kinds == TermKinds::simple) return space.size() * (space.revolved.size() + space.boxes.size());
   const std::size_t with_boxes = 2 * space.revolved.size() * space.boxes.size();
   return space.size() * (space.planes.size() + space.boxes.size() + with_boxes);
 }
@@ -51,8 +48,8 @@ std::vector<std::size_t> insertion_positions(const DecisionList& list, bool is_i
 
 class ListSearch {
  public:
-  ListSearch(const TermSpace& space, const TermCosts& costs, std::size_t most_rules, const RunContext& run)
-      : space_(space), costs_(costs), most_rules_(most_rules), is_large_(work_of(space) > k_large_work), run_(run) {}
+  ListSearch(const TermSpace& space, const TermCosts& costs, const ListLimits& limits, const RunContext& run)
+      : space_(space), costs_(costs), limits_(limits), is_large_(work_of(space) > k_large_work), run_(run) {}
 
   DecisionList run() {
     DecisionList best;
@@ -64,7 +61,7 @@ class ListSearch {
       const Term first = list.empty() ? Term{} : list[0].term;
       if (std::ranges::find(tried, first) != tried.end()) continue;
       tried.push_back(first);
-      list = pruned(grown(std::move(list), most_rules_));
+      list = pruned(grown(std::move(list), limits_.rules));
       if (!is_large_) list = improved(std::move(list));
       const double list_cost = cost(list);
       if (list_cost < best_cost - k_least_gain) {
@@ -76,7 +73,7 @@ class ListSearch {
   }
 
  private:
-  [[nodiscard]] bool is_over() const { return run_.stop.stop_requested() || spent_ > k_most_work; }
+  [[nodiscard]] bool is_over() const { return run_.stop.stop_requested() || spent_ > limits_.work; }
 
   [[nodiscard]] double cost(const DecisionList& list) const { return cost_of(list, space_.pulls, costs_); }
 
@@ -126,7 +123,7 @@ class ListSearch {
       }
     }
     if (candidates.empty()) return {};
-    spent_ += static_cast<double>(candidates.size() * work_of(space_));
+    spent_ += static_cast<double>(candidates.size() * work_of(space_, focus.kinds));
     for_each_index(candidates.size(), without_stop(run_), [&](std::size_t c) {
       Insertion& candidate = candidates[c];
       std::vector<double> gains = insertion_gains(list, deciding, space_.pulls, candidate.position, candidate.is_in);
@@ -148,13 +145,13 @@ class ListSearch {
     return first.found.term.parts.empty() ? DecisionList{} : with({}, first);
   }
 
-  /// Puts rules in as long as that gains.
+  /// Puts rules in as long as that gains; when the work is over, rules of simple terms only.
   [[nodiscard]] DecisionList grown(DecisionList list, std::size_t most_more,
                                    const std::vector<std::uint8_t>* on = nullptr) {
-    for (std::size_t k = 0; k < most_more && list.size() < most_rules_ && !run_.stop.stop_requested(); ++k) {
+    for (std::size_t k = 0; k < most_more && list.size() < limits_.rules && !run_.stop.stop_requested(); ++k) {
       Insertion insertion;
-      if (is_large_) insertion = best_insertion(list, {.kinds = TermKinds::simple, .on = on});
-      if (insertion.found.term.parts.empty()) insertion = best_insertion(list, {.on = on});
+      if (is_large_ || is_over()) insertion = best_insertion(list, {.kinds = TermKinds::simple, .on = on});
+      if (insertion.found.term.parts.empty() && !is_over()) insertion = best_insertion(list, {.on = on});
       if (insertion.found.term.parts.empty()) break;
       list = with(list, insertion);
     }
@@ -303,7 +300,7 @@ class ListSearch {
     double now = cost(list);
     for (std::size_t sweep = 0; sweep < k_most_sweeps && !is_over(); ++sweep) {
       const double before = now;
-      take(grown(grown_by_two(list), most_rules_), list, now);
+      take(grown(grown_by_two(list), limits_.rules), list, now);
       exchange_rules(list, now);
       exchange_pairs(list, now);
       if (now >= before - k_least_gain) break;
@@ -313,7 +310,7 @@ class ListSearch {
 
   const TermSpace& space_;
   const TermCosts& costs_;
-  std::size_t most_rules_;
+  const ListLimits& limits_;
   double spent_ = 0;  ///< work of all pricings so far
   std::size_t improvements_ = 0;
   bool is_large_;  ///< simple terms are tried first, and only the best start is improved
@@ -377,9 +374,9 @@ std::vector<double> insertion_gains(const DecisionList& list, std::span<const st
   return gains;
 }
 
-DecisionList search_list(const TermSpace& space, const TermCosts& costs, std::size_t most_rules,
+DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
                          const RunContext& run) {
-  return ListSearch(space, costs, most_rules, run).run();
+  return ListSearch(space, costs, limits, run).run();
 }
 
 }  // namespace cloud2csg

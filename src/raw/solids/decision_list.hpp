@@ -32,10 +32,19 @@ using DecisionList = std::vector<Rule>;
 [[nodiscard]] std::vector<double> insertion_gains(const DecisionList& list, std::span<const std::uint16_t> deciding,
                                                   std::span<const double> pulls, std::size_t position, bool is_in);
 
+struct ListLimits {
+  std::size_t rules = 0;
+  /// Places times families that are priced, over all rules that are tried. Then no list is improved any more, and only
+  /// simple terms are added. Counted, so that the result does not depend on the machine: some six seconds on one core.
+  /// The largest part that was tried takes half of it. At half, such parts would lose rules; at double, a cloud that is
+  /// not made of our surfaces takes twice the time.
+  double work = 3e9;
+};
+
 /// A decision list of low cost: rules are put in where they gain most, one by one or two that only gain together, from
 /// several starts; then each is taken out, or exchanged for what gains more, as long as the cost falls. Deterministic.
 /// Stopped early, the best list so far.
-[[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, std::size_t most_rules,
+[[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
                                        const RunContext& run = {});
 
 }  // namespace cloud2csg
