@@ -171,10 +171,8 @@ void check_normals(const PointCloud& cloud, const std::string& file) {
 
 /// The points that the tree contradicts.
 PointCloud ExtractCommand::unexplained_part(const Extraction& result, int threads) const {
-  const SegmentationTolerances tolerances =
-      segmentation_tolerances(options.extraction.segmentation, result.statistics.noise);
   const std::vector<std::uint32_t> indices =
-      unexplained_points(result.model, result.cloud, tolerances, {.threads = threads});
+      unexplained_points(result.model, result.cloud, result.statistics.fit.tolerances, {.threads = threads});
   return select_points(result.cloud, indices);
 }
 

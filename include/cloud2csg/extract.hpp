@@ -199,12 +199,13 @@ struct TreeStatistics {
 [[nodiscard]] TreeStatistics statistics_of(const CsgTree& tree);
 
 struct FitStatistics {
-  double objective = 0;                ///< E of the result over all points
-  double rms_distance = 0;             ///< of the points to the surface of the result
-  double p95_distance = 0;             ///< 95 % of the points are nearer than this
-  double rms_angle_deg = 0;            ///< between normals and the surface's
-  double p95_angle_deg = 0;            ///< 95 % of the normals are nearer than this to the surface's
-  std::size_t unexplained_points = 0;  ///< how many unexplained_points() there are
+  double objective = 0;                    ///< E of the result over all points
+  double rms_distance = 0;                 ///< of the points to the surface of the result
+  double p95_distance = 0;                 ///< 95 % of the points are nearer than this
+  double rms_angle_deg = 0;                ///< between normals and the surface's
+  double p95_angle_deg = 0;                ///< 95 % of the normals are nearer than this to the surface's
+  SegmentationTolerances tolerances = {};  ///< in force
+  std::size_t unexplained_points = 0;      ///< how many unexplained_points() there are with these tolerances
 };
 
 /// Of extract_refined_csg(): what became of the primitives. See Refinement.

@@ -72,10 +72,10 @@ py::object statistics_of(const Result& result) {
 }
 
 py::array_t<std::uint32_t> unexplained_in(const Result& self, int threads, const py::object& progress) {
-  const SegmentationTolerances tolerances = segmentation_tolerances({}, self.statistics.noise);
-  const std::vector<std::uint32_t> indices = run_work(
-      {.threads = threads, .progress = progress},
-      [&](const RunContext& run) { return unexplained_points(*self.model, self.cloud->points(), tolerances, run); });
+  const std::vector<std::uint32_t> indices =
+      run_work({.threads = threads, .progress = progress}, [&](const RunContext& run) {
+        return unexplained_points(*self.model, self.cloud->points(), self.statistics.fit.tolerances, run);
+      });
   return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(indices.size()), indices.data());
 }
 
@@ -94,11 +94,10 @@ std::string repr_of(const Result& self) {
 
 void bind_result_outputs(py::class_<Result>& result) {
   result
-      .def(
-          "unexplained_points", &unexplained_in, py::kw_only(), py::arg("threads") = 0,
-          py::arg("progress") = py::none(),
-          "Indices into `cloud` of the points that the tree contradicts: farther from its surface than three times the "
-          "noise, or with another normal. Ascending, shape (k,), uint32.")
+      .def("unexplained_points", &unexplained_in, py::kw_only(), py::arg("threads") = 0,
+           py::arg("progress") = py::none(),
+           "Indices into `cloud` of the points that the tree contradicts: farther from its surface than the "
+           "tolerance of the extraction, or with another normal. Ascending, shape (k,), uint32.")
       .def(
           "write",
           [](const Result& self, const std::filesystem::path& file, const std::optional<ExportOptions>& options,

@@ -51,6 +51,9 @@ def test_known_primitives(m0, cloud):
     assert some.model.tree == result.model.tree
     unexplained = result.unexplained_points()
     assert unexplained.dtype == np.uint32 and len(unexplained) < 0.1 * len(cloud)
+    strict = cloud2csg.SegmentationOptions(distance_tolerance=0.01)
+    result = cloud2csg.extract(cloud, m0, cloud2csg.ExtractOptions(segmentation=strict))
+    assert len(result.unexplained_points()) == result.statistics["fit"]["unexplained_points"] > len(unexplained)
 
 
 def test_options_reach_the_search(m0, cloud):

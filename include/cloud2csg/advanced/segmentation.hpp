@@ -39,8 +39,8 @@ void option_table(OptionsOf<SegmentationOptions>, auto&& field) {
 
 /// The tolerances in force: options with what was absent filled in from the measured noise.
 struct SegmentationTolerances {
-  double distance;
-  double cosine;  ///< of the angle
+  double distance = 0;
+  double cosine = 0;  ///< of the angle
 };
 [[nodiscard]] SegmentationTolerances segmentation_tolerances(const SegmentationOptions& options, double noise);
 

@@ -143,7 +143,8 @@ FitStatistics measure_fit(const Model& model, const PointCloud& cloud, double no
   FitStatistics fit;
   fit.objective = -objective.alpha * static_cast<double>(tree_of(model).size());
   for (double& distance : points.signed_distances) distance = std::abs(distance);
-  const Explanation explanation(segmentation_tolerances(options.segmentation, noise));
+  fit.tolerances = segmentation_tolerances(options.segmentation, noise);
+  const Explanation explanation(fit.tolerances);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!explanation.holds(points.signed_distances[i], points.angles[i])) ++fit.unexplained_points;
     fit.objective += point_score(points.signed_distances[i], points.angles[i], objective);
