@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Detects the surfaces of point clouds, in the form that a score of segmentations reads.
+
+    PYTHONPATH=build/release/python bench/fit4cad.py CLOUDS RESULTS
+
+For each NAME.xyz.gz of the folder CLOUDS (Fit4CAD: Romanengo et al. 2021) it writes RESULTS/NAME.json: the seconds, and the
+surfaces with their parameters and the indices of their points. Two patches of one plane are two surfaces here, as in the truth:
+each surface is split into connected pieces. Needs python3-numpy and python3-scipy.
+"""
+
+import argparse
+import gzip
+import json
+import pathlib
+import time
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+import cloud2csg
+
+# Points of one piece are linked within so many spacings. At half, sparse pieces fall apart; at double, faces across a
+# narrow slot become one.
+LINK_SPACINGS = 3
+LEAST_POINTS = 5  # smaller pieces are points at an edge that belong to a neighbour
+
+
+def pieces_of(points, spacing):
+    """Lists of indices into `points`, one a connected piece."""
+    links = cKDTree(points).sparse_distance_matrix(cKDTree(points), LINK_SPACINGS * spacing)
+    count, label = connected_components(links, directed=False)
+    pieces = [np.flatnonzero(label == k) for k in range(count)]
+    return [piece for piece in pieces if len(piece) >= min(LEAST_POINTS, len(points))]
+
+
+def surfaces_of(result, positions):
+    """One a piece, with indices into `positions`. Cleaning drops points, but moves none."""
+    tree = cKDTree(positions)
+    spacing = np.median(tree.query(positions, k=2)[0][:, 1])
+    original = tree.query(result.cloud.positions)[1]
+    for surface in result.surfaces:
+        own = np.unique(original[surface.points])
+        for piece in pieces_of(positions[own], spacing) if len(own) else []:
+            yield {"type": surface.type, "position": surface.position.tolist(), "axis": surface.axis.tolist(),
+                   "radius": surface.radius, "minor_radius": surface.minor_radius, "half_angle": surface.half_angle,
+                   "points": own[piece].tolist()}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("clouds", type=pathlib.Path)
+    parser.add_argument("results", type=pathlib.Path)
+    parser.add_argument("--threads", type=int, default=0)
+    arguments = parser.parse_args()
+    arguments.results.mkdir(parents=True, exist_ok=True)
+    for file in sorted(arguments.clouds.glob("*.xyz.gz")):
+        with gzip.open(file, "rt") as text:
+            positions = np.loadtxt(text)[:, :3]
+        start = time.process_time()
+        try:
+            result = cloud2csg.detect(cloud2csg.PointCloud(positions), threads=arguments.threads)
+        except cloud2csg.Error as error:
+            print(f"{file.name}: {error}")
+            continue
+        seconds = time.process_time() - start
+        surfaces = list(surfaces_of(result, positions))
+        name = file.name.removesuffix(".xyz.gz")
+        (arguments.results / f"{name}.json").write_text(json.dumps({"seconds": seconds, "surfaces": surfaces}))
+        print(f"{name}: {len(positions)} points, {len(surfaces)} surfaces, {seconds:.2f} s of the processor")
+
+
+if __name__ == "__main__":
+    main()
