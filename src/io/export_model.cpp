@@ -16,7 +16,7 @@ std::string text_of(const Eigen::Vector3d& corner) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", corner.x(), corner.y(), corner.z());
 }
 
-/// The comment for the head of a script: the caller's, else the model's, and where the solid is cut.
+/// The comment at the head of a script: the caller's or else the model's, plus where the solid is cut.
 std::string head_comment(std::string comment, const Model& model, const std::optional<AlignedBox>& cut) {
   if (comment.empty()) comment = model.description;
   if (cut) {
@@ -26,7 +26,7 @@ std::string head_comment(std::string comment, const Model& model, const std::opt
   return comment;
 }
 
-/// With the mark by which the file is known as ours when it is to be overwritten.
+/// Adds the mark by which a later overwrite recognises the file as ours.
 void write_marked(const std::filesystem::path& file, std::string_view comment, const std::string& text) {
   write_text_file(file, fmt::format("{} {}\n{}", comment, k_program_mark, text));
 }
@@ -40,9 +40,9 @@ ExportReport export_script(const std::filesystem::path& file, std::string_view c
   return report;
 }
 
-/// The surface of the exact solid, where there is a kernel that makes one without fault.
+/// The surface of the exact solid; absent without a kernel or when the solid has a fault.
 std::optional<TriangleMesh> exact_surface(const Model& model, const ExportOptions& options, const RunContext& run) {
-  constexpr std::size_t k_most_leaves = 100;  // of more, the kernel is slow
+  constexpr std::size_t k_most_leaves = 100;  // the kernel is slow on larger trees
   constexpr double k_share_of_cell = 0.02;
   if (!options.exact_meshes || leaf_count(*model.tree) > k_most_leaves || !has_brep()) return std::nullopt;
   BrepOptions brep = options.brep;

@@ -16,7 +16,7 @@ namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_chunk_points = 4096;
-constexpr std::uint64_t k_sampling_stage = 0x696e'7075'74;  // names its stream of random numbers
+constexpr std::uint64_t k_sampling_stage = 0x696e'7075'74;
 
 Input read_cloud(const std::filesystem::path& file, const RunContext& run) {
   RawCloud raw = read_raw_cloud(file, run);
@@ -33,7 +33,7 @@ Input read_cloud(const std::filesystem::path& file, const RunContext& run) {
   return input;
 }
 
-/// Most files of meshes hold numbers in single precision.
+/// Most mesh files hold single-precision numbers.
 bool is_in_single_precision(const TriangleMesh& mesh) {
   return std::ranges::all_of(std::array{&mesh.vertices.x, &mesh.vertices.y, &mesh.vertices.z}, [](const auto* axis) {
     return std::ranges::all_of(*axis, [](double x) { return x == static_cast<double>(static_cast<float>(x)); });
@@ -41,7 +41,7 @@ bool is_in_single_precision(const TriangleMesh& mesh) {
 }
 
 void warn_of_coarse_corners(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
-  constexpr double k_coarse = 1e-4;  // of the diagonal: a tenth of the least tolerance
+  constexpr double k_coarse = 1e-4;  // in diagonals: a tenth of the least tolerance
   const AlignedBox box = bounds_of(mesh.vertices);
   const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
   const double step = farthest * static_cast<double>(std::numeric_limits<float>::epsilon());

@@ -36,7 +36,7 @@ void check_sensor(const FileContent& content, FilePosition where, const Eigen::V
       "give every point the sensor's position, or leave these columns out");
 }
 
-/// The normal at unit length. One that has it already keeps its bits, so that writing and reading changes nothing.
+/// Scales a normal to unit length. A normal of unit length keeps its bits, so writing and reading change nothing.
 Eigen::Vector3d unit_normal(const FileContent& content, FilePosition where, InvalidPoints invalid,
                             const Eigen::Vector3d& normal) {
   constexpr double k_unit_tolerance = 8 * std::numeric_limits<double>::epsilon();
@@ -60,8 +60,7 @@ std::optional<std::size_t> index_of(std::span<const std::string> names, std::str
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// The columns of x, y, z after one of the prefixes; absent where there is none of them.
-/// @throws Error at `where` when only some are there.
+/// The columns of x, y, z after one of the prefixes; absent if none exist. @throws Error at `where` for only some.
 std::optional<std::array<std::size_t, 3>> find_vector(const FileContent& content, FilePosition where,
                                                       std::span<const std::string> names,
                                                       const std::array<std::string_view, 2>& prefixes,

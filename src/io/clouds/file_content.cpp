@@ -30,7 +30,7 @@ FileContent::FileContent(const std::filesystem::path& file, const RunContext& ru
   if (in == nullptr) {
     fail(fmt::format("cannot be read ({})", std::strerror(errno)), "check the path and its permissions");
   }
-  // A pipe has no size: it grows block by block. One byte more than a regular file has finds its end.
+  // A pipe has no size, so the buffer grows block by block. For a regular file, one extra byte detects the end.
   const std::uintmax_t announced = std::filesystem::file_size(file, status_error);
   grow(status_error ? k_bytes_a_read : std::min<std::size_t>(announced, limit - 1) + 1);
   while (size_ < limit) {

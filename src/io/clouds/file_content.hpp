@@ -11,31 +11,27 @@
 
 namespace cloud2csg {
 
-/// A place in a file, for messages: a line of text, counted from 1, or something else, counted from 0.
+/// A place in a file, for messages. Lines count from 1, all other units from 0.
 struct FilePosition {
   enum class Unit { line, byte, vertex, triangle };
   Unit unit;
   std::size_t number;
 };
 
-/// What to do about a file that ends too early.
 constexpr const char* k_copy_again = "the file is cut off or damaged: copy or export it again";
 
-/// The bytes of a file, with the name to use in messages.
 class FileContent {
  public:
-  /// Reads the file, or its first `limit` bytes. O(n).
-  /// @throws Error when it is missing, unreadable or a directory; Cancelled.
+  /// Reads the file, or its first `limit` bytes. O(n). @throws Error for a directory or an unreadable file; Cancelled.
   explicit FileContent(const std::filesystem::path& file, const RunContext& run = {},
                        std::size_t limit = std::numeric_limits<std::size_t>::max());
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::string_view bytes() const { return {bytes_.get(), size_}; }
 
-  /// @throws Error with this file's name.
   [[noreturn]] void fail(FilePosition where, std::string expected, std::string remedy = {}) const;
   [[noreturn]] void fail(std::string expected, std::string remedy = {}) const;
-  /// @throws Error: so many of some things were announced, only `found` are there.
+  /// @throws Error: the file announces `announced` things but holds only `found`.
   [[noreturn]] void fail_truncated(FilePosition where, std::size_t announced, std::size_t found,
                                    const char* things = "points") const;
 

@@ -5,9 +5,9 @@
 namespace cloud2csg {
 namespace {
 
-/// A control byte below this announces that many bytes, plus one, to copy as they are; any other a repetition.
+/// A control byte below this precedes that many literal bytes plus one. Any other announces a repetition.
 constexpr std::size_t k_literal_limit = 32;
-/// No three bytes of input give more output than this.
+/// Three bytes of input give at most this much output.
 constexpr std::size_t k_longest_repetition = 264;
 
 }  // namespace
@@ -33,7 +33,7 @@ std::optional<std::string> decompress_lzf(std::string_view compressed, std::size
     if (long_form) length += next_byte();
     const std::size_t distance = ((control & 31U) << 8U) + next_byte() + 1;
     if (distance > out.size() || size - out.size() < length) return std::nullopt;
-    // Byte by byte: a repetition may overlap what it produces.
+    // Copies byte by byte, because a repetition may overlap its own output.
     for (std::size_t i = 0; i < length; ++i) out.push_back(out[out.size() - distance]);
   }
   if (out.size() != size) return std::nullopt;

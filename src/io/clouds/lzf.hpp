@@ -7,8 +7,7 @@
 
 namespace cloud2csg {
 
-/// Decompresses LZF (Lehmann), as in .pcd files with DATA binary_compressed. Absent when the data is damaged or
-/// does not give exactly `size` bytes. O(size)
+/// Decompresses LZF (Lehmann), as in .pcd with DATA binary_compressed; absent if damaged or not `size` bytes. O(size)
 [[nodiscard]] std::optional<std::string> decompress_lzf(std::string_view compressed, std::size_t size);
 
 }  // namespace cloud2csg

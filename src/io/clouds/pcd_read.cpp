@@ -35,16 +35,16 @@ struct PcdHeader {
   std::vector<PcdField> fields;
   std::size_t points;
   PcdData data;
-  std::size_t data_offset;  ///< first byte after the header
-  std::size_t line_count;   ///< lines of the header
+  std::size_t data_offset;
+  std::size_t line_count;
   std::size_t fields_line;
-  std::optional<Eigen::Vector3d> sensor_position = {};  ///< of all points; absent where VIEWPOINT says nothing
+  std::optional<Eigen::Vector3d> sensor_position = {};  ///< common to all points; absent if VIEWPOINT does not tell
 
-  [[nodiscard]] std::size_t stride() const;   ///< bytes of a point
+  [[nodiscard]] std::size_t stride() const;
   [[nodiscard]] std::size_t columns() const;  ///< numbers of a point
 };
 
-/// Far above any real file; keeps products of header numbers from overflowing.
+/// Far above any real file; prevents overflow in products of header numbers.
 constexpr std::size_t k_most_columns = 1'000'000;
 constexpr std::size_t k_most_points = std::size_t{1} << 40;
 
@@ -66,7 +66,7 @@ std::optional<ScalarType> scalar_type(std::string_view type, std::string_view si
   return std::nullopt;
 }
 
-/// The words that follow each keyword, and the line they stand in (0 = not there).
+/// The words after a header keyword and their line number (0 = keyword missing).
 struct Entry {
   std::vector<std::string> values = {};
   std::size_t line = 0;
@@ -119,7 +119,7 @@ class PcdHeaderParser {
             {"POINTS", &points_}, {"VIEWPOINT", &viewpoint_}, {"DATA", &data_}};
   }
 
-  /// Programs that do not know where the sensor was write 0 0 0 1 0 0 0.
+  /// Programs that do not know the sensor position write 0 0 0 1 0 0 0.
   [[nodiscard]] std::optional<Eigen::Vector3d> sensor_position() const {
     if (viewpoint_.line == 0) return std::nullopt;
     constexpr std::array<double, 7> k_unknown{0, 0, 0, 1, 0, 0, 0};
@@ -210,7 +210,6 @@ std::size_t PcdHeader::columns() const {
   return numbers;
 }
 
-/// @throws Error naming the line.
 PcdHeader parse_pcd_header(const FileContent& content) {
   return PcdHeaderParser(content).parse();
 }
@@ -223,7 +222,7 @@ PointLayout find_fields(const FileContent& content, const PcdHeader& header) {
   return find_layout(content, {FilePosition::Unit::line, header.fields_line}, names);
 }
 
-/// The same layout, in columns of text instead of fields.
+/// Converts a layout from field indices to text columns.
 PointLayout columns_of(const PcdHeader& header, const PointLayout& layout) {
   std::vector<std::size_t> first_column;
   std::size_t column = 0;
@@ -259,7 +258,7 @@ PointCloud read_ascii(const FileContent& content, const PcdHeader& header, const
   return std::move(assembly).finish();
 }
 
-/// Columns of the fields: in records side by side, or (compressed) one whole field after another.
+/// The columns of the fields: interleaved in records or, in compressed files, one whole field after another.
 CloudColumns columns_at(const PcdHeader& header, const PointLayout& layout, const char* data, bool field_after_field) {
   std::vector<BinaryColumn> columns;
   const std::size_t stride = header.stride();

@@ -31,7 +31,7 @@ constexpr std::array<std::pair<std::string_view, ScalarType>, 16> k_type_names{{
     {"float64", ScalarType::float64},
 }};
 
-/// Reads a header line by line; holds the line number for messages.
+/// Parses a header line by line and keeps the line number for messages.
 class PlyHeaderParser {
  public:
   explicit PlyHeaderParser(const FileContent& content) : content_(content) {}
@@ -150,7 +150,7 @@ bool PlyRecords::next_line(const PlyElement& element) {
     const bool is_there = start < row->size();
     const std::optional<std::size_t> length =
         is_there && property.list_count ? whole_number((*row)[start], row->size()) : std::size_t{0};
-    // One more than there are makes the row wrong.
+    // Exceeding the row's length marks the row as wrong.
     start += is_there && length ? 1 + *length : row->size() + 1;
   }
   if (start == row->size()) return true;

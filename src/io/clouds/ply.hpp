@@ -17,7 +17,7 @@ namespace cloud2csg {
 struct PlyProperty {
   std::string name;
   ScalarType type;
-  /// For a list: the type of the number of entries that precedes them.
+  /// For a list: the type of its leading entry count.
   std::optional<ScalarType> list_count = {};
 };
 
@@ -37,37 +37,35 @@ enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
 struct PlyHeader {
   PlyFormat format;
   std::vector<PlyElement> elements;  ///< in the order of the data
-  std::size_t data_offset;           ///< first byte after the header
-  std::size_t line_count;            ///< lines of the header
+  std::size_t data_offset;
+  std::size_t line_count;
 };
 
 /// @throws Error naming the line.
 [[nodiscard]] PlyHeader parse_ply_header(const FileContent& content);
 
-/// Walks over the records of a .ply file one by one, of text or binary, in the order of the header.
+/// Reads the records of a text or binary .ply file one by one, in the order of the header.
 class PlyRecords {
  public:
   PlyRecords(const FileContent& content, const PlyHeader& header);
 
-  /// Steps to the next record. False when the file ends before its end.
-  /// @throws Error for a line of text that does not have what the element wants.
+  /// Moves to the next record; false if the file ends first. @throws Error for a line that does not fit the element.
   [[nodiscard]] bool next(const PlyElement& element);
-  /// Steps over all records of an element. @returns how many there are, at most element.count.
+  /// Skips all records of an element. @returns the number of records found, at most element.count.
   std::size_t skip(const PlyElement& element);
 
-  /// A property of the record that was stepped to: the number, or those of a list. Valid until the next step.
+  /// A property of the current record: its number, or the numbers of a list. Valid until the next step.
   [[nodiscard]] double number(std::size_t property) const { return numbers_[starts_[property]]; }
   [[nodiscard]] std::span<const double> list(std::size_t property) const;
 
-  /// The record that was stepped to.
   [[nodiscard]] FilePosition where() const;
-  /// The first byte after it in a binary file.
+  /// The first byte after the current record in a binary file.
   [[nodiscard]] std::size_t offset() const { return offset_; }
 
  private:
   [[nodiscard]] bool next_line(const PlyElement& element);
   [[nodiscard]] bool next_bytes(const PlyElement& element);
-  /// Appends `count` numbers of the type to the record's. False when the file ends before.
+  /// Appends `count` numbers of a type to the record. False when the file ends first.
   [[nodiscard]] bool take(ScalarType type, std::size_t count);
 
   const FileContent& content_;
@@ -76,8 +74,8 @@ class PlyRecords {
   std::endian order_;
   std::size_t offset_;
   std::size_t record_offset_;
-  std::vector<double> numbers_ = {};      ///< of the record: its properties, a list's length before its numbers
-  std::vector<std::size_t> starts_ = {};  ///< of each property among these
+  std::vector<double> numbers_ = {};      ///< a list's length precedes its numbers
+  std::vector<std::size_t> starts_ = {};  ///< start of each property in `numbers_`
 };
 
 }  // namespace cloud2csg

@@ -33,7 +33,7 @@ Eigen::Vector3d vector_of(const PlyRecords& records, const std::array<std::size_
   return {records.number(properties[0]), records.number(properties[1]), records.number(properties[2])};
 }
 
-/// Of text, or of binary records whose length is only known from the lists in them.
+/// For text, and for binary records whose length depends on lists.
 PointCloud read_one_by_one(const FileContent& content, const PlyElement& element, const PointLayout& layout,
                            PlyRecords records, InvalidPoints invalid, const RunContext& run) {
   CloudAssembly assembly(content, element.count, std::min(element.count, content.bytes().size() / 4), invalid, run);

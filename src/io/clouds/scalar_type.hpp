@@ -10,7 +10,6 @@
 
 namespace cloud2csg {
 
-/// The types a number may have in a binary file.
 enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
 [[nodiscard]] constexpr std::size_t size_of(ScalarType type) {
@@ -18,7 +17,7 @@ enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64
   return k_sizes[static_cast<std::size_t>(type)];
 }
 
-/// The number of type T at `bytes`, which need not be aligned, in the given byte order.
+/// Reads a T at `bytes`, which need not be aligned, in the given byte order.
 template <typename T>
 [[nodiscard]] T load(const char* bytes, std::endian order) {
   std::array<char, sizeof(T)> raw;
@@ -27,7 +26,7 @@ template <typename T>
   return std::bit_cast<T>(raw);
 }
 
-/// One property of many records: `base` is its first byte in the first record, `stride` the bytes between records.
+/// One property of many records: `base` is its first byte, `stride` the bytes from one record to the next.
 struct BinaryColumn {
   const char* base;
   std::size_t stride;
@@ -35,10 +34,9 @@ struct BinaryColumn {
   std::endian order;
 };
 
-/// Reads the column's first out.size() numbers. Precondition: the bytes are there.
+/// Decodes the column's first out.size() numbers. Precondition: the bytes exist.
 void decode_column(const BinaryColumn& column, std::span<double> out);
 
-/// One number of a type that is known only at run time.
 [[nodiscard]] inline double decode(const char* bytes, ScalarType type, std::endian order) {
   double value = 0.0;
   decode_column({bytes, 0, type, order}, {&value, 1});

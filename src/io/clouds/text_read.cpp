@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t k_plain_columns = 3;
 constexpr std::size_t k_normal_columns = 6;
-/// A guide for how much room to make, not a bound.
+/// An estimate for reserving memory, not a bound.
 constexpr std::size_t k_typical_number_bytes = 12;
 
 void add_row(CloudAssembly& assembly, std::span<const double> row, bool with_normals, FilePosition where) {
@@ -20,7 +20,7 @@ void add_row(CloudAssembly& assembly, std::span<const double> row, bool with_nor
   assembly.add(point, where);
 }
 
-/// Rows of equal length to the end of the file; the first row has been read.
+/// Reads rows of equal length to the end of the file. The caller has read the first row.
 PointCloud read_rows(const FileContent& content, TextRows& rows, std::span<const double> first, InvalidPoints invalid,
                      const RunContext& run) {
   const std::size_t columns = first.size();

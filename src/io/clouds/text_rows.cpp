@@ -57,7 +57,7 @@ std::span<const double> TextRows::numbers_in(std::string_view text) {
   const char* cursor = std::find_if_not(text.data(), end, is_blank);
   while (cursor != end) {
     const char* const token = cursor;
-    if (*cursor == '+') ++cursor;  // from_chars knows no plus sign
+    if (*cursor == '+') ++cursor;  // from_chars rejects a plus sign
     double value = 0.0;
     const auto [stop, error] = std::from_chars(cursor, end, value);
     if (error != std::errc{} || (stop != end && !is_separator(*stop))) {

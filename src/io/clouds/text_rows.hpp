@@ -12,27 +12,27 @@
 
 namespace cloud2csg {
 
-/// Walks over the lines of a text file that hold something: what follows on `#`, lines that start with `//` and blank
-/// ones are skipped. Keeps a reference to the content.
+/// The lines of a text without blanks and comments (from `#` on, or lines that begin with `//`). `content` must
+/// outlive this.
 class TextRows {
  public:
   explicit TextRows(const FileContent& content, std::size_t first_byte = 0, std::size_t lines_before = 0);
 
-  /// The next line without its end and surrounding blanks; absent at the end of the file.
+  /// The next line, trimmed; absent at the end of the file.
   [[nodiscard]] std::optional<std::string_view> next_line();
 
-  /// The numbers of the next line, separated by blanks, commas or semicolons; absent at the end of the file. Valid
-  /// until the next call. @throws Error naming the line for anything that is not a number.
+  /// The next line's numbers, separated by blanks, commas or semicolons; absent at the end. Valid until the next call.
+  /// @throws Error naming the line for anything that is not a number.
   [[nodiscard]] std::optional<std::span<const double>> next_row();
 
-  /// The same of a part of the line that was read last; may be empty.
+  /// The numbers in a part of the current line; may be empty.
   [[nodiscard]] std::span<const double> numbers_in(std::string_view text);
-  /// @throws Error: expected a number, found this word in the line that was read last.
+  /// @throws Error: expected a number, found `word` in the current line.
   [[noreturn]] void fail_number(std::string_view word) const;
 
-  /// Of the line that was read last, counted from 1.
+  /// The current line, counted from 1.
   [[nodiscard]] FilePosition where() const { return {FilePosition::Unit::line, line_number_}; }
-  /// Bytes of the file that were not yet looked at; an upper bound of what is still to come.
+  /// Number of unread bytes: an upper bound on the remaining text.
   [[nodiscard]] std::size_t bytes_left() const { return rest_.size(); }
 
  private:
@@ -42,16 +42,14 @@ class TextRows {
   std::vector<double> row_;
 };
 
-/// The first word of a line, and what follows on it.
 [[nodiscard]] std::pair<std::string_view, std::string_view> first_word(std::string_view line);
-/// The words of a line, as separated by blanks.
 [[nodiscard]] std::vector<std::string> split_words(std::string_view line);
 
-/// A whole number that is not negative; absent when the word is anything else.
+/// A non-negative whole number; absent for any other word.
 [[nodiscard]] std::optional<std::size_t> parse_count(std::string_view word);
-/// A finite number; absent when the word is anything else.
+/// A finite number; absent for any other word.
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
-/// A number of things as a file gives it; absent when it is not a whole number up to `most`.
+/// Converts a count read as a double; absent unless it is a whole number from 0 to `most`.
 [[nodiscard]] std::optional<std::size_t> whole_number(double number, std::size_t most);
 
 }  // namespace cloud2csg

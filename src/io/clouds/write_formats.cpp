@@ -19,13 +19,13 @@
 namespace cloud2csg {
 namespace {
 
-/// Which numbers each point becomes, and how they are written.
+/// Which numbers a point has in the file, and how they are written.
 struct RecordFormat {
-  bool binary;            ///< little endian, else text: a row a point, the shortest that reads back to the same number
-  bool double_precision;  ///< else float
-  bool normals;           ///< after the coordinates
-  bool sensor_positions;  ///< after these
-  std::span<const Colour> colours = {};  ///< one a point, after these, as three bytes
+  bool binary;                           ///< little endian; else text, a row a point, with the shortest exact decimals
+  bool double_precision;                 ///< else float
+  bool normals;                          ///< after the coordinates
+  bool sensor_positions;                 ///< after the normals
+  std::span<const Colour> colours = {};  ///< one a point, after all numbers, as three bytes
 };
 
 constexpr std::size_t k_bytes_a_write = std::size_t{1} << 20;
@@ -66,11 +66,11 @@ void append_colour(std::string& block, const Colour& colour, bool binary) {
     for (const std::uint8_t value : {colour.red, colour.green, colour.blue}) append_binary(block, value);
     return;
   }
-  block.back() = ' ';  // instead of the end of the line
+  block.back() = ' ';  // replaces the line end
   block += fmt::format("{} {} {}\n", colour.red, colour.green, colour.blue);
 }
 
-/// Writes all points in large blocks. @throws Error when a number is not finite or out of a float's range.
+/// Writes all points in large blocks. @throws Error for a number that is not finite or out of a float's range.
 void write_records(AtomicFile& out, const PointCloud& cloud, const RecordFormat& format) {
   std::string block;
   std::array<double, 9> numbers{};
@@ -93,8 +93,7 @@ void write_records(AtomicFile& out, const PointCloud& cloud, const RecordFormat&
   out.write(block);
 }
 
-/// Where the sensor stood, if all points were seen from one place and a VIEWPOINT can say so: at the origin it means
-/// that the place is unknown.
+/// The sensor position of all points. Absent if they differ or lie at the origin, where VIEWPOINT means "unknown".
 std::optional<Eigen::Vector3d> common_sensor_position(const PointCloud& cloud) {
   if (!cloud.has_sensor_positions()) return std::nullopt;
   const Eigen::Vector3d first = cloud.sensor_positions[0];

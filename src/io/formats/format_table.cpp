@@ -21,19 +21,19 @@ bool has(const Start& start, std::string_view mark) {
   return start.text.find(mark) != std::string::npos;
 }
 
-/// People write such files by hand, too.
+/// People write such files by hand, too, so only the mark tells.
 bool is_marked(const Start& start) {
   return has(start, k_program_mark);
 }
 
-/// JSON is the same with spaces or without.
+/// Compares without white space, which does not matter in JSON.
 bool has_in_json(const Start& start, std::string_view mark) {
   std::string text = start.text;
   std::erase_if(text, [](char c) { return std::string_view(" \t\r\n").find(c) != std::string_view::npos; });
   return text.starts_with('{') && text.find(mark) != std::string::npos;
 }
 
-/// Words of the lines that hold something and are no comments; without the last line when the file goes on behind it.
+/// The words of all lines except blank lines and comments. Drops the last line if the file continues after it.
 Rows rows_of(const Start& start) {
   std::string text = start.text;
   if (text.size() < start.file_size) text.resize(text.rfind('\n') + 1);
@@ -65,7 +65,7 @@ bool is_pcd(const Start& start) {
   return std::ranges::any_of(rows_of(start), [](const auto& row) { return row[0] == "FIELDS"; });
 }
 
-/// Text with triangles, or as many bytes as the binary form counts triangles.
+/// Text with facets, or a size that matches the triangle count of the binary form.
 bool is_stl(const Start& start) {
   constexpr std::size_t k_header = 80;
   constexpr std::uintmax_t k_triangle = 50;
@@ -76,13 +76,13 @@ bool is_stl(const Start& start) {
   return start.file_size == k_header + 4 + k_triangle * count;
 }
 
-/// The first word is OFF, or with letters before it that tell of colours and normals.
+/// The first word is OFF, possibly after letters for colours and normals.
 bool is_off(const Start& start) {
   const Rows rows = rows_of(start);
   return !rows.empty() && rows[0][0].ends_with("OFF") && rows[0][0].size() < 8;
 }
 
-/// Each line begins with a word of the format, one of them with that of a vertex.
+/// Each line begins with a keyword of the format, and at least one is a vertex.
 bool is_obj(const Start& start) {
   constexpr std::array<std::string_view, 13> k_words{"v", "vt", "vn",     "vp",     "f", "l",     "p",
                                                      "o", "g",  "usemtl", "mtllib", "s", "cstype"};

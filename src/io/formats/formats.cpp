@@ -27,7 +27,7 @@ FileStart start_of(const std::filesystem::path& file, std::size_t size = 4096) {
   return start;
 }
 
-/// Whether a PLY file announces faces, so that it is a mesh, not a cloud.
+/// Whether a PLY file announces faces and thus is a mesh.
 bool has_faces(const std::filesystem::path& file) {
   constexpr std::size_t k_longest_header = std::size_t{1} << 20;
   static const std::regex k_faces("\nelement\\s+face\\s+0*[1-9]");
@@ -35,7 +35,7 @@ bool has_faces(const std::filesystem::path& file) {
   return std::regex_search(text.substr(0, text.find("end_header")), k_faces);
 }
 
-/// The format that the content is of: the given one where it may be. Null where neither ending nor content says it.
+/// The format of the content, preferably `by_ending`. Null when neither ending nor content tells.
 const FileFormat* format_by_content(const std::filesystem::path& file, const FileFormat* by_ending) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return by_ending;

@@ -19,20 +19,19 @@
 namespace cloud2csg {
 namespace {
 
-/// What was turned to make the triangles of a mesh agree on which side is outside.
 struct TurnedTriangles {
   std::size_t disagreeing = 0;  ///< triangles that disagreed with most of their piece
-  bool whole = false;           ///< the volume was negative then: all were turned
-  std::size_t pieces = 0;       ///< after that, closed pieces that were inside out and no cavities
+  bool whole = false;           ///< the volume was then negative: all triangles were turned
+  std::size_t pieces = 0;       ///< closed pieces, other than cavities, that were still inside out
 };
 
 using Eigen::Vector3d;
-using Piece = std::vector<std::uint32_t>;  // triangles
+using Piece = std::vector<std::uint32_t>;  // triangle indices
 
-/// Two triangles at an edge that no third one has.
+/// Two triangles at an edge that has no third.
 struct Neighbour {
   std::uint32_t triangle;
-  bool agrees;  ///< they run through the edge in opposite directions
+  bool agrees;  ///< the triangles run through the edge in opposite directions
 };
 using Neighbours = std::vector<std::vector<Neighbour>>;  // by triangle
 
@@ -75,7 +74,7 @@ void turn(TriangleMesh& mesh, std::uint32_t triangle) {
   std::swap(mesh.triangles[triangle][1], mesh.triangles[triangle][2]);
 }
 
-/// The piece of a triangle, and which of its triangles are to be turned to agree with that one.
+/// The piece of a triangle, and which of its members must be turned to agree with that triangle.
 struct Reached {
   Piece triangles;
   std::vector<bool> is_against;
@@ -95,7 +94,7 @@ Reached reach_from(std::uint32_t first, const Neighbours& neighbours, std::vecto
   return reached;
 }
 
-/// Turns the smaller part, by area. Returns how many triangles that were.
+/// Turns the part with the smaller area. Returns the number of turned triangles.
 std::size_t make_agree(TriangleMesh& mesh, const Reached& reached) {
   double against = 0;
   double all = 0;
@@ -115,7 +114,7 @@ std::size_t make_agree(TriangleMesh& mesh, const Reached& reached) {
 }
 
 double volume_of(const TriangleMesh& mesh, std::span<const std::uint32_t> piece) {
-  // Near the piece, so that far from the origin little is lost.
+  // An origin near the piece loses little precision far from the origin of coordinates.
   const Vector3d origin = mesh.vertices[mesh.triangles[piece.front()][0]];
   double sum = 0;
   for (const std::uint32_t t : piece) {
@@ -125,8 +124,7 @@ double volume_of(const TriangleMesh& mesh, std::span<const std::uint32_t> piece)
   return sum / 6;
 }
 
-/// How often the triangles of a piece go around a place, whichever way they are turned: the sum of the solid angles
-/// (Van Oosterom and Strackee 1983).
+/// Absolute winding number of a piece around a place: sum of solid angles (Van Oosterom and Strackee 1983).
 double turns_around(const Vector3d& place, const TriangleMesh& mesh, std::span<const std::uint32_t> piece) {
   double sum = 0;
   for (const std::uint32_t t : piece) {
@@ -140,7 +138,7 @@ double turns_around(const Vector3d& place, const TriangleMesh& mesh, std::span<c
   return std::abs(sum) / (4 * std::numbers::pi);
 }
 
-/// Whether all of a piece's vertices are within the other; one that is not tells soon.
+/// Whether all vertices of a piece are within the other. An outside piece fails at an early vertex.
 bool is_within(const TriangleMesh& mesh, const Piece& piece, const Piece& other) {
   return std::ranges::all_of(
       piece, [&](std::uint32_t t) { return turns_around(mesh.vertices[mesh.triangles[t][0]], mesh, other) > 0.5; });
@@ -154,7 +152,7 @@ AlignedBox bounds_of(const TriangleMesh& mesh, const Piece& piece) {
   return box;
 }
 
-/// Returns how many.
+/// Turns closed pieces of negative volume, except cavities. Returns their number.
 std::size_t turn_pieces(TriangleMesh& mesh, const std::vector<Piece>& pieces) {
   std::vector<AlignedBox> boxes;
   boxes.reserve(pieces.size());
@@ -173,10 +171,10 @@ std::size_t turn_pieces(TriangleMesh& mesh, const std::vector<Piece>& pieces) {
   return turned;
 }
 
-/// Turns triangles such that neighbours across an edge of two agree, as most of the area of their piece has it; all, if
-/// the volume is negative then; and closed pieces whose own volume still is, but for those within another, which are
-/// cavities. A piece hangs together by edges of two triangles each. One that is not orientable keeps edges that
-/// disagree. O(triangles log triangles), and for each piece of negative volume its triangles times those around it.
+/// Makes neighbours agree: in each piece, the part with less area turns. If the volume is then negative, all triangles
+/// turn. Last, closed pieces of negative volume turn unless they are cavities within another piece. A piece is
+/// connected by edges of two triangles. A piece that is not orientable keeps edges that disagree. O(triangles log
+/// triangles); each piece of negative volume adds its triangles times those around it.
 TurnedTriangles orient_pieces(TriangleMesh& mesh) {
   const Neighbours neighbours = neighbours_of(mesh);
   std::vector<bool> is_reached(mesh.triangles.size());
@@ -192,7 +190,7 @@ TurnedTriangles orient_pieces(TriangleMesh& mesh) {
   if (turned.whole) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) turn(mesh, t);
   }
-  // An open piece may be any part of a surface, and its volume says nothing.
+  // The volume of an open piece has no meaning.
   std::erase_if(pieces, [&](const Piece& piece) {
     return std::ranges::any_of(piece, [&](std::uint32_t t) { return neighbours[t].size() != 3; });
   });
@@ -202,10 +200,10 @@ TurnedTriangles orient_pieces(TriangleMesh& mesh) {
 
 using CornerIndices = std::array<std::uint32_t, 3>;
 
-/// Of the squared size: triangles with less area are taken for lines.
+/// In squared size of the mesh: a triangle with less area counts as a line.
 constexpr double k_least_area = 1e-14;
 
-/// The corners in the same cyclic order, the least first.
+/// Rotates the corners so that the least index comes first.
 CornerIndices rotated(CornerIndices corners) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   return corners;
@@ -228,7 +226,7 @@ void leave_out_repeated(MendedMesh& mended) {
   struct Entry {
     CornerIndices sorted;
     std::uint32_t index;
-    bool is_even;  ///< of the two ways round
+    bool is_even;  ///< orientation of the triangle relative to `sorted`
   };
   std::vector<Entry> entries;
   entries.reserve(triangles.size());

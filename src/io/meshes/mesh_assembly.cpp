@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t k_most_repeated = 10'000'000;
-/// A few seconds. Polygons of people's files, cogwheels with thousands of teeth too, take a thousandth of it.
+/// A few seconds. Real polygons, even cogwheels with thousands of teeth, take a thousandth of it.
 constexpr std::size_t k_most_looks = 1'000'000'000;
 
 }  // namespace
@@ -21,7 +21,7 @@ void MeshAssembly::start_part(const Eigen::Affine3d& motion) {
   motion_ = motion;
   mirrors_ = motion.linear().determinant() < 0.0;
   part_begin_ = mesh_.vertices.size();
-  constexpr std::size_t k_like_vertices = 16;  // the time it takes, more or less
+  constexpr std::size_t k_like_vertices = 16;  // a part costs about as much time
   grow(k_like_vertices);
 }
 
@@ -37,7 +37,7 @@ void MeshAssembly::add_vertex(std::span<const double> numbers, FilePosition wher
     content_.fail(where, fmt::format("expected coordinates x, y, z, found {} numbers", numbers.size()));
   }
   const Vector3d position = motion_ * Vector3d(numbers[0], numbers[1], numbers[2]);
-  // Squares of larger ones may not be finite.
+  // Squares of larger coordinates may not be finite.
   if (!(position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= std::numeric_limits<float>::max())) {
     content_.fail(where, fmt::format("expected finite coordinates of at most 3.4e38, found ({}, {}, {})", numbers[0],
                                      numbers[1], numbers[2]));
@@ -66,7 +66,7 @@ void MeshAssembly::add_triangle(const Corners& corners) {
   mesh_.triangles.push_back(mirrors_ ? Corners{a, c, b} : corners);
 }
 
-/// Takes one ear after the other off, until three corners are left.
+/// Ear clipping: cuts off ears until three corners are left.
 void MeshAssembly::cut_ring(FilePosition where) {
   const std::size_t count = ring_.size();
   const Points& points = mesh_.vertices;
@@ -81,7 +81,7 @@ void MeshAssembly::cut_ring(FilePosition where) {
     after[i] = (i + 1) % count;
   }
   const auto ear_at = [&](std::size_t tip) { return Corners{ring_[before[tip]], ring_[tip], ring_[after[tip]]}; };
-  // Only these corners can lie in an ear. There are none in a convex polygon, which becomes a fan.
+  // Only reflex or flat corners can lie in an ear. A convex polygon has none and becomes a fan.
   std::vector<std::uint32_t> inward;
   for (std::size_t i = 0; i < count; ++i) {
     if (!(area(ear_at(i), normal) > 0.0)) inward.push_back(ring_[i]);
@@ -95,7 +95,7 @@ void MeshAssembly::cut_ring(FilePosition where) {
       content_.fail(where, "the polygons have too many corners to cut them into triangles",
                     "let the program that wrote them do it");
     }
-    // After a round without an ear the polygon is not simple: any cut will do.
+    // A full round without an ear means the polygon is not simple. Then any cut will do.
     const bool is_simple = failures <= left;
     if (is_simple && (!(area(ear, normal) > 0.0) ||
                       std::ranges::any_of(inward, [&](std::uint32_t vertex) { return is_in(vertex, ear, normal); }))) {
@@ -119,7 +119,7 @@ double MeshAssembly::area(const Corners& corners, const Vector3d& normal) const 
 
 bool MeshAssembly::is_in(std::uint32_t vertex, const Corners& ear, const Vector3d& normal) const {
   const Points& points = mesh_.vertices;
-  // Where a hole is joined to the outside, two corners are at one place.
+  // A bridge from a hole to the outline has two corners at one place.
   if (std::ranges::any_of(ear, [&](std::uint32_t corner) { return points[corner] == points[vertex]; })) return false;
   return area({ear[0], ear[1], vertex}, normal) >= 0.0 && area({ear[1], ear[2], vertex}, normal) >= 0.0 &&
          area({ear[2], ear[0], vertex}, normal) >= 0.0;

@@ -22,7 +22,7 @@ using IndexBox = bg::model::box<IndexPoint>;
 using TriangleIndex = bg::index::rtree<std::pair<IndexBox, std::uint32_t>, bg::index::linear<16>>;
 
 constexpr std::size_t k_triangles_a_task = 1024;
-/// Of a length: nearer than this counts as touching. Most files of meshes are in single precision.
+/// Relative to a length: closer than this counts as touching, because most mesh files are in single precision.
 constexpr double k_touching = 1e-6;
 
 using CornerPoints = std::array<Vector3d, 3>;
@@ -38,7 +38,7 @@ IndexBox box_of(const CornerPoints& corners) {
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
-/// Whether the segment goes through the inside of the triangle, by more than rounding.
+/// Whether the segment crosses the interior of the triangle by more than rounding.
 bool passes_through(const Vector3d& from, const Vector3d& to, const CornerPoints& triangle) {
   const Vector3d along = to - from;
   const Vector3d first = triangle[1] - triangle[0];

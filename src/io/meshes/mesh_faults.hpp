@@ -7,7 +7,7 @@
 
 namespace cloud2csg {
 
-/// How often something is wrong with a mesh, and where it is for the first time.
+/// How often a fault occurs, and the place of its first occurrence.
 struct MeshFault {
   std::size_t count = 0;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
@@ -20,9 +20,8 @@ struct EdgeFaults {
 /// O(triangles log triangles)
 [[nodiscard]] EdgeFaults find_edge_faults(const TriangleMesh& mesh);
 
-/// Triangles whose edge goes through another one that they share no vertex with. Touching does not count.
-/// O(triangles log triangles) for meshes whose triangles' boxes meet few others.
-/// @throws Cancelled
+/// Counts triangles with an edge through another triangle, without a shared vertex. Touching does not count.
+/// O(triangles log triangles) if the triangles' boxes meet few others. @throws Cancelled
 [[nodiscard]] MeshFault find_self_intersections(const TriangleMesh& mesh, const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -17,13 +17,13 @@
 namespace cloud2csg {
 namespace {
 
-/// Text of 3D models packs 5 to 20 times; a hundred times this is what a few bytes can be made to unpack to.
+/// Text of 3D models compresses 5 to 20 times. A hundred times this ratio needs a crafted archive.
 constexpr std::size_t k_most_packing = 100;
 constexpr std::size_t k_least_limit = std::size_t{1} << 26U;
-/// Seven million triangles. What is made of the text needs six times as much memory.
+/// Seven million triangles. The mesh made from the text needs six times its memory.
 constexpr std::size_t k_most_text = std::size_t{1} << 29U;
 
-/// In millimetres.
+/// Lengths in millimetres.
 constexpr std::array<std::pair<std::string_view, double>, 6> k_units{
     {{"micron", 0.001}, {"millimeter", 1.0}, {"centimeter", 10.0}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000.0}}};
 
@@ -47,7 +47,6 @@ class ThreeMfReader {
                               visible_text(node.attribute(attribute).value(), k_longest_quote)));
   }
 
-  /// The file in the archive that holds the model.
   [[nodiscard]] std::string model_name() const {
     const pugi::xml_document relations = load("_rels/.rels");
     for (const pugi::xml_node relation : relations.child("Relationships").children("Relationship")) {
@@ -83,7 +82,7 @@ class ThreeMfReader {
     return *number;
   }
 
-  /// The objects that items or components name.
+  /// Places the objects that items or components name.
   void place(const pugi::xml_node& parent, const char* name, const Eigen::Affine3d& outer, std::size_t level) {
     for (const pugi::xml_node node : parent.children(name)) {
       const auto object = objects_.find(node.attribute("objectid").value());
@@ -108,7 +107,7 @@ class ThreeMfReader {
     }
   }
 
-  /// Twelve numbers: the columns of the motion, the last of them where the origin goes.
+  /// Twelve numbers: the columns of the affine map, the last column being the translation.
   [[nodiscard]] Eigen::Affine3d motion_of(const pugi::xml_node& node) const {
     Eigen::Affine3d motion = Eigen::Affine3d::Identity();
     const pugi::xml_attribute attribute = node.attribute("transform");
@@ -125,7 +124,7 @@ class ThreeMfReader {
 
   const FileContent& content_;
   MeshAssembly assembly_;
-  std::map<std::string_view, pugi::xml_node> objects_ = {};  ///< by id
+  std::map<std::string_view, pugi::xml_node> objects_ = {};
 };
 
 }  // namespace

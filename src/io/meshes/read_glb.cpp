@@ -23,7 +23,7 @@ constexpr std::array<std::optional<ScalarType>, 7> k_component_types{
     ScalarType::int8, ScalarType::uint8,  ScalarType::int16,  ScalarType::uint16,
     std::nullopt,     ScalarType::uint32, ScalarType::float32};  // from 5120 on
 
-/// The first chunk says what there is, in JSON; the second one has the numbers.
+/// The first chunk describes the content in JSON, the second holds the numbers.
 struct GlbChunks {
   std::string_view text;
   std::string_view numbers;
@@ -52,7 +52,7 @@ GlbChunks split_glb(const FileContent& content) {
   return {.text = chunks[0], .numbers = chunks[1]};
 }
 
-/// Numbers in the file: `count` groups of some, `stride` bytes from one to the next.
+/// Numbers in the file: `count` groups, `stride` bytes from one to the next.
 struct GlbView {
   const char* base;
   std::size_t count;
@@ -64,7 +64,7 @@ struct GlbView {
   }
 };
 
-/// What the JSON has not, or has of another type, throws json::exception.
+/// A JSON field that is missing or of the wrong type throws json::exception.
 class GlbReader {
  public:
   explicit GlbReader(const FileContent& content)
@@ -77,7 +77,7 @@ class GlbReader {
   }
 
  private:
-  /// What an index, a size or a count can be: so small that products do not overflow.
+  /// Converts an index, size or count; its limit keeps products from overflowing.
   [[nodiscard]] std::size_t whole(const json& value) const {
     constexpr std::uint64_t k_most = std::numeric_limits<std::uint32_t>::max();
     if (value.is_number_unsigned() && value.get<std::uint64_t>() <= k_most) return value.get<std::size_t>();
@@ -143,7 +143,6 @@ class GlbReader {
     }
   }
 
-  /// The numbers of an accessor.
   [[nodiscard]] GlbView view_of(const json& index, std::string_view type, std::size_t components) const {
     const json& accessor = document_.at("accessors").at(whole(index));
     if (accessor.contains("sparse")) content_.fail("a sparse accessor is not read", "write the mesh without");

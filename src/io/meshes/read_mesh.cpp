@@ -22,14 +22,14 @@ constexpr std::array<MeshFormat, 6> k_mesh_formats{{{FileFormat::Id::stl, read_s
                                                     {FileFormat::Id::threemf, read_3mf},
                                                     {FileFormat::Id::glb, read_glb}}};
 
-/// Vertices at the same place become one; triangles that lose a corner by it go.
+/// Joins vertices at the same place and drops triangles that thereby lose a corner.
 TriangleMesh joined(const TriangleMesh& mesh) {
   const Points& points = mesh.vertices;
   const auto place = [&points](std::uint32_t i) { return std::tuple(points.x[i], points.y[i], points.z[i]); };
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
-  // Each vertex's first appearance stands for it, so that the order of the file is kept.
+  // The first vertex at a place represents it, which keeps the order of the file.
   std::vector<std::uint32_t> first(points.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool repeats = i > 0 && place(order[i]) == place(order[i - 1]);

@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// With normals, colours or texture coordinates behind the coordinates of a vertex.
+/// Prefixes announce normals, colours or texture coordinates after the coordinates of a vertex.
 constexpr std::array<std::string_view, 8> k_off_words{"OFF",   "COFF",   "NOFF",   "CNOFF",
                                                       "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
 
@@ -20,7 +20,7 @@ struct OffCounts {
   std::size_t faces;
 };
 
-/// The numbers stand in the line of the first word, or in the next one.
+/// The counts are in the line of the first word or in the next one.
 OffCounts read_off_header(const FileContent& content, TextRows& rows) {
   const auto [word, rest] = first_word(rows.next_line().value_or(""));
   if (std::ranges::find(k_off_words, word) == k_off_words.end()) {

@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// The place of a property in an element. @throws Error at the element's line when it is not there.
+/// The index of a property in an element. @throws Error at the element's line when it is missing.
 std::size_t find_property(const FileContent& content, const PlyElement& element, std::string_view name,
                           std::string_view other_name, bool is_list) {
   const auto found = std::ranges::find_if(element.properties, [&](const PlyProperty& property) {
@@ -48,7 +48,7 @@ TriangleMesh read_ply_mesh(const FileContent& content) {
     } else if (element.name == "face") {
       const std::size_t corners = find_property(content, element, "vertex_indices", "vertex_index", true);
       step_through(element, [&] { assembly.add_polygon(records.list(corners), records.where()); });
-      break;  // all that is needed was there
+      break;  // later elements are not needed
     } else if (records.skip(element) < element.count) {
       content.fail_truncated(records.where(), element.count, 0, "records");
     }

@@ -13,7 +13,7 @@
 namespace cloud2csg {
 namespace {
 
-// A head of 80 bytes and the number of triangles; a triangle's normal, three corners and two bytes.
+// Head: 80 bytes and the number of triangles. Triangle: normal, three corners and two bytes.
 constexpr std::size_t k_stl_head = 84;
 constexpr std::size_t k_stl_triangle = 50;
 constexpr std::size_t k_stl_vector = 12;
@@ -72,7 +72,7 @@ TriangleMesh read_stl(const FileContent& content) {
   const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
   const bool begins_like_text =
       begin != std::string_view::npos && lower_case(std::string(bytes.substr(begin, 5))) == "solid";
-  // Some binary files begin with that word, too.
+  // Some binary files also begin with "solid".
   const bool is_exact = has_head && bytes.size() == k_stl_head + announced * k_stl_triangle;
   if (begins_like_text && !is_exact) return read_stl_text(content);
   if (!has_head) content.fail("expected a .stl file, of text or binary, found neither", "is it a .stl file?");

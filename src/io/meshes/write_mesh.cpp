@@ -12,7 +12,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Little endian, as binary STL is.
+/// Little endian, as in binary STL.
 template <typename Unsigned>
 void append_bytes(std::string& out, Unsigned value) {
   for (std::size_t i = 0; i < sizeof value; ++i) out.push_back(static_cast<char>(value >> (8 * i)));

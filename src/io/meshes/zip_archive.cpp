@@ -21,7 +21,7 @@ struct CloseZip {
 template <typename Handle>
 using ZipHandle = std::unique_ptr<Handle, CloseZip>;
 
-/// An archive over bytes, which both hold. Empty when the bytes are none.
+/// Opens an archive that shares ownership of the bytes. Empty if the bytes are no archive.
 ZipHandle<zip_t> open_zip(const ZipHandle<zip_source_t>& bytes, int flags) {
   ZipHandle<zip_t> archive(bytes ? zip_open_from_source(bytes.get(), flags, nullptr) : nullptr);
   if (archive) zip_source_keep(bytes.get());
@@ -29,12 +29,12 @@ ZipHandle<zip_t> open_zip(const ZipHandle<zip_source_t>& bytes, int flags) {
 }
 
 bool add_entry(zip_t* archive, const ZipEntry& entry) {
-  constexpr zip_uint32_t k_level = 6;  // of zlib: its default
+  constexpr zip_uint32_t k_level = 6;  // zlib's default
   constexpr zip_uint16_t k_first_of_january_1980 = 0x21;
   ZipHandle<zip_source_t> bytes(zip_source_buffer(archive, entry.bytes.data(), entry.bytes.size(), 0));
   const zip_int64_t index = bytes ? zip_file_add(archive, entry.name, bytes.get(), ZIP_FL_ENC_UTF_8) : -1;
   if (index < 0) return false;
-  (void)bytes.release();  // the archive has it
+  (void)bytes.release();  // the archive owns it now
   const auto added = static_cast<zip_uint64_t>(index);
   return zip_set_file_compression(archive, added, ZIP_CM_DEFLATE, k_level) == 0 &&
          zip_file_set_dostime(archive, added, 0, k_first_of_january_1980, 0) == 0;

@@ -14,11 +14,10 @@ struct ZipEntry {
   std::string_view bytes;
 };
 
-/// The bytes of a zip archive, compressed and without a time: the same for the same entries. @throws Error
+/// The bytes of a compressed zip archive without a time stamp: equal entries give equal bytes. @throws Error
 [[nodiscard]] std::string zip_archive(std::span<const ZipEntry> entries);
 
-/// One entry of the archive that a file is. Nothing beyond `limit` bytes is unpacked.
-/// @throws Error when the archive is damaged, has no such entry, or when that is larger
+/// Unpacks one entry of a zip file. @throws Error for a damaged archive, a missing entry, or one of over `limit` bytes
 [[nodiscard]] std::string unzip_entry(const FileContent& file, const std::string& name, std::size_t limit);
 
 }  // namespace cloud2csg

@@ -29,7 +29,7 @@ constexpr int k_max_tree_depth = 10'000;
 
 using nlohmann::json;
 
-// Each level of the tree is an object within a list; the rest of a model is far flatter than the spare levels.
+// Each level of the tree is an object within a list. The rest of a model needs far fewer than the 16 spare levels.
 constexpr std::size_t k_max_nesting = 2 * k_max_tree_depth + 16;
 constexpr std::size_t k_longest_reason = 80;
 
@@ -40,8 +40,8 @@ std::string place_of(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
 }
 
-/// What is wrong in the library's words, without its head "[json.exception...] parse error at line 1, column 2: syntax
-/// error while parsing value - " and, where that is no text to show, its tail "; last read: '...'".
+/// The reason in the JSON library's words. Removes its head "[json.exception...] parse error at line 1, column 2:
+/// syntax error while parsing value - " and, if not printable or too long, its tail "; last read: '...'".
 std::string reason_of(const json::exception& exception) {
   std::string reason = exception.what();
   for (const char* end_of_head : {": ", " - "}) {
@@ -59,9 +59,8 @@ std::string reason_of(const json::exception& exception) {
                .remedy = "correct the text there"});
 }
 
-/// Goes through a text before it becomes values: whether it is JSON, and what JSON as such allows: numbers that no
-/// double holds, fields given twice, bottomless nesting. (The library's own callback while parsing takes a time that is
-/// quadratic in the length of lists.)
+/// Checks a text before parsing: its syntax, and faults that JSON allows: numbers beyond double, duplicate fields,
+/// bottomless nesting. (The library's own callback takes time quadratic in the length of lists.)
 class ParseGuard : public nlohmann::json_sax<json> {
  public:
   explicit ParseGuard(std::string_view text) : text_(text) {}
@@ -88,7 +87,6 @@ class ParseGuard : public nlohmann::json_sax<json> {
   }
 
  private:
-  /// JSON pointer of the value that is being read.
   [[nodiscard]] std::string path() const {
     json::json_pointer pointer;
     for (const Level& level : levels_) {
@@ -101,11 +99,11 @@ class ParseGuard : public nlohmann::json_sax<json> {
     return pointer.to_string();
   }
 
-  /// An object or a list that has not ended.
+  /// An open object or list, with the index or name of its current value.
   struct Level {
     bool is_list;
-    std::size_t index = 0;   ///< of the value in a list
-    std::string field = {};  ///< of the value in an object
+    std::size_t index = 0;
+    std::string field = {};
     std::set<std::string> fields = {};
   };
 
@@ -142,11 +140,10 @@ class ParseGuard : public nlohmann::json_sax<json> {
   std::vector<Level> levels_ = {};
 };
 
-/// JSON text as a value. @throws Error with line and column (in bytes) for a syntax error; with the path of the field
-/// for one that appears twice in an object, for a number that no double holds, for nesting beyond what a tree of
-/// k_max_tree_depth levels needs. The error names no file.
+/// Parses JSON. @throws Error with line and column (in bytes) for a syntax error; with the path of the field for a
+/// duplicate field, a number that no double holds, or nesting too deep for k_max_tree_depth. The error names no file.
 json parse_json(std::string_view text) {
-  // To the library the text ends there.
+  // The JSON library stops at a zero byte.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     refuse_text(text, nul + 1, "a byte of value 0");
   }
@@ -158,15 +155,14 @@ json parse_json(std::string_view text) {
 using nlohmann::json;
 
 constexpr double k_unit_tolerance = 1e-6;
-// Below this a length is 1 as well as doubles can say; scaling again would only change the last bits at every reading.
+// Double precision cannot tell a smaller error from unit length. Rescaling would change the last bits at each reading.
 constexpr double k_unit_rounding = 1e-15;
 
 Eigen::Vector3d vector_of(const json& value) {
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
-/// What a direction must be multiplied with to have unit length.
-/// @throws Error when it is further from unit length than rounding explains.
+/// The factor to unit length. @throws Error if the length differs from 1 by more than rounding explains.
 double unit_scale(double length, const std::string& where) {
   if (!(std::abs(length - 1.0) <= k_unit_tolerance)) {
     throw Error({.where = where,
@@ -249,7 +245,7 @@ class ModelReader {
     if (!violations.empty()) throw Error(explain_violation(schema_, definition, value, violations, where));
   }
 
-  /// The type's name, which is that of its definition too.
+  /// The type's name, which is also the name of its schema definition.
   std::string type_of(const json& value, const std::string& where) const {
     std::vector<std::string> types;
     for (const json& definition : schema_["definitions"]["primitive"]["oneOf"]) {

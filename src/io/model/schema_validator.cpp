@@ -14,7 +14,7 @@
 namespace cloud2csg {
 namespace {
 
-/// The schema with the definitions that recurse replaced by "anything".
+/// The schema with its recursive definitions replaced by "anything".
 nlohmann::json without_nesting(nlohmann::json schema) {
   for (const char* nested : {"primitive", "node"}) schema["definitions"][nested] = nlohmann::json::object();
   return schema;
@@ -37,7 +37,7 @@ const json& resolve(const json& schema, const json& subschema) {
   return schema.at(json::json_pointer(reference->get<std::string>().substr(1)));
 }
 
-/// The part of the schema that rules the field at `path` below a value of the definition.
+/// The part of the schema for the field at `path` below a value of the definition.
 const json& rules_at(const json& schema, std::string_view definition, const FieldPath& path) {
   const json* rules = &schema.at("definitions").at(std::string(definition));
   for (const std::string& step : path) {
@@ -110,7 +110,7 @@ std::vector<FieldPath> SchemaValidator::violations(std::string_view definition, 
 std::string brief(const json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return fmt::format("a list of {}", value.size());
-  // Bytes that are no text must not make the message itself throw.
+  // Invalid UTF-8 must not make the message itself throw.
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
   return text.size() <= k_longest_text ? text : fmt::format("a text of {} bytes", text.size());
 }
@@ -118,7 +118,7 @@ std::string brief(const json& value) {
 Error::Parts explain_violation(const json& schema, std::string_view definition, const json& value,
                                const std::vector<FieldPath>& violations, const std::string& value_path) {
   assert(!violations.empty());
-  // An unknown field is most often a misspelt one, so it explains a missing one: look for it first.
+  // An unknown field is usually a misspelt one and explains a missing one, so it goes first.
   for (const FieldPath& path : violations) {
     const json& rules = rules_at(schema, definition, path);
     const json& found = value_at(value, path);

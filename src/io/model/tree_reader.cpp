@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 struct Kind {
-  const char* definition;  ///< in the schema
+  const char* definition;  ///< name in the schema
   Operation operation;
 };
 constexpr std::array k_kinds = {Kind{"n_ary", Operation::union_of},        Kind{"n_ary", Operation::intersection},
@@ -22,7 +22,6 @@ constexpr std::array k_kinds = {Kind{"n_ary", Operation::union_of},        Kind{
                                 Kind{"constant", Operation::empty},        Kind{"constant", Operation::full}};
 constexpr Kind k_leaf = {"leaf", Operation::primitive};
 
-/// An inner node whose children are being read.
 struct OpenNode {
   const json* children;
   Operation operation;
@@ -73,7 +72,7 @@ class TreeReader {
     }
   }
 
-  /// Joins the child just read with its elder siblings.
+  /// Combines the latest child with its preceding siblings.
   void finish_child() {
     if (open_.empty()) return;
     OpenNode& parent = open_.back();
@@ -112,7 +111,6 @@ class TreeReader {
                                          node.is_object() ? "neither" : brief(node))});
   }
 
-  /// JSON pointer of the node that is being entered.
   [[nodiscard]] std::string path() const {
     std::string path = "/tree";
     for (const OpenNode& node : open_) path += fmt::format("/children/{}", node.children_done);

@@ -11,12 +11,11 @@
 #include "cloud2csg/model.hpp"
 #include "core/base/files.hpp"
 
-// The text is put together by hand, not by nlohmann's dump(): one primitive and one leaf a line is what a person
-// can edit, and dump() recurses as deep as the tree.
+// Not by nlohmann's dump(), which recurses as deep as the tree. One primitive or leaf a line is easy to edit.
 namespace cloud2csg {
 namespace {
 
-// Deeper levels are not indented further, so that a long chain does not grow quadratically.
+// Limits indentation, so that a long chain does not grow quadratically.
 constexpr std::size_t k_deepest_indent = 40;
 
 std::string quoted(const std::string& text) {
@@ -79,7 +78,7 @@ std::string line_of(const Primitive& primitive) {
   return line + "}";
 }
 
-/// The operands of a chain: the topmost subtrees below `node` that are of another operation, from left to right.
+/// The operands of a chain, from left to right: the topmost subtrees below `node` with another operation.
 std::vector<std::size_t> operands(const CsgTree& tree, std::size_t node) {
   const Operation operation = tree.nodes()[node].operation();
   if (operation == Operation::complement) return {node - 1};
@@ -132,7 +131,7 @@ std::string tree_text(const CsgTree& tree, const PrimitiveSet& primitives) {
   return text;
 }
 
-/// A file that could not be read again must not be written.
+/// Refuses to write a file that could not be read again.
 void require_valid(const PrimitiveSet& primitives) {
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     try {

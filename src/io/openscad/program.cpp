@@ -24,7 +24,7 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
   return std::ranges::find(names, name) != names.end();
 }
 
-/// All numbers of a solid and where it is: those of equal solids are equal.
+/// All numbers of a solid's shape and pose: equal for equal solids.
 std::vector<double> key_of(const Primitive& primitive) {
   std::vector<double> numbers{static_cast<double>(primitive.shape.index())};
   const auto add = [&numbers](const auto& vector) { numbers.insert(numbers.end(), vector.begin(), vector.end()); };
@@ -40,7 +40,7 @@ std::vector<double> key_of(const Primitive& primitive) {
   return numbers;
 }
 
-/// The first of a name has it, the others have it with a number.
+/// Numbers repeated names, except at their first use.
 void number_names(PrimitiveSet& primitives) {
   std::map<std::string, std::size_t, std::less<>> count;
   for (const Primitive& primitive : primitives) count.emplace(primitive.id, 0);
@@ -55,24 +55,24 @@ void number_names(PrimitiveSet& primitives) {
   }
 }
 
-/// Solids that are combined, while they are read.
+/// A union, intersection or difference while its operands are read.
 struct Block {
   Operation operation;
-  std::size_t begin;      ///< of its nodes in the tree
-  std::size_t count = 0;  ///< of operands so far
-  bool is_solid = false;  ///< whether they make any solid
+  std::size_t begin;      ///< first node in the postfix tree
+  std::size_t count = 0;  ///< operands so far
+  bool is_solid = false;  ///< whether the operands so far make a solid
 };
 
-/// A circle or square, of which tori are turned.
+/// A circle or square in the profile of a torus.
 struct FlatShape {
   bool is_circle;
   Vector3d position;
-  Eigen::Vector2d size;  ///< of a circle, its radius twice
+  Eigen::Vector2d size;  ///< for a circle, twice its radius
 };
 
-/// Whether a square leaves all of a circle but what is next to the axis, where no solid can be without a hole.
+/// Whether a square cuts only a pinhole next to the axis from a circle. Without it, the torus may be no valid solid.
 bool leaves_pinhole(const FlatShape& square, const FlatShape& circle) {
-  constexpr double k_widest = 0.1;  // of the circle's radius, more or less; what is missing goes with its power 5/2
+  constexpr double k_widest = 0.1;  // in circle radii, roughly; the missing volume grows with its power 5/2
   constexpr double k_rounding = 1e-6;
   const double radius = circle.size.x();
   const Vector3d from = (square.position - circle.position) / radius;
@@ -81,8 +81,8 @@ bool leaves_pinhole(const FlatShape& square, const FlatShape& circle) {
          std::min(to.x(), to.y()) >= 1 - k_rounding;
 }
 
-/// Carries a program out while it reads it: each statement adds the nodes of its solid to the end of the tree, or none.
-/// What is repeated, the turns of loops and modules, is read again.
+/// Executes a program while reading it. Each statement appends its solid, if any, to the postfix tree. Loops and
+/// modules are reread at each iteration and call.
 class Program {
  public:
   explicit Program(std::string_view text) : reader_(text, globals_, locals_) {}
@@ -107,14 +107,14 @@ class Program {
   }
 
  private:
-  /// Modules and variables, which may be told behind the place where they are used.
+  /// Collects modules and variables first, because a program may use them before their definition.
   void collect() {
     while (reader_.peek().kind != Token::Kind::end) {
       const Token first = reader_.next();
       if (first.raw == "module") {
         collect_module();
       } else if (first.kind == Token::Kind::name && reader_.take("=")) {
-        // The last one has its value everywhere in OpenSCAD.
+        // In OpenSCAD the last definition holds everywhere.
         if (!globals_.emplace(first.raw, reader_.value()).second) {
           throw Refusal(first.offset, "expected one value of a variable, found a second");
         }
@@ -158,7 +158,7 @@ class Program {
     join(block, add_children(Operation::union_of, frame));
   }
 
-  /// What follows on a call: nothing, one statement, or a block of them. Whether that is a solid.
+  /// Reads the children of a call: nothing, a statement or a block. Returns whether they make a solid.
   bool add_children(Operation operation, const Affine3d& frame) {
     Block block{.operation = operation, .begin = postfix_.size()};
     if (reader_.take("{")) {
@@ -169,7 +169,7 @@ class Program {
     return block.is_solid;
   }
 
-  /// Combines a block with the solid whose nodes were added last, if they are any.
+  /// Combines a block with the solid whose nodes were added last, if any.
   void join(Block& block, bool is_added) {
     const bool is_union = block.operation == Operation::union_of;
     if (is_added && block.is_solid) {
@@ -178,13 +178,13 @@ class Program {
     } else if (block.count == 0 || is_union) {
       block.is_solid = block.is_solid || is_added;
     } else if (!block.is_solid || block.operation == Operation::intersection) {
-      block.is_solid = false;  // nothing less something, nothing and something
+      block.is_solid = false;  // empty minus something, or something and empty
       postfix_.erase(postfix_.begin() + static_cast<std::ptrdiff_t>(block.begin), postfix_.end());
     }
     ++block.count;
   }
 
-  /// Whether it is a solid.
+  /// Returns whether the call makes a solid.
   bool call(const Token& name, const Affine3d& frame) {
     count_calls(1);
     if (const auto module = modules_.find(name.raw); module != modules_.end()) return call_module(*module, frame);
@@ -226,7 +226,7 @@ class Program {
     return is_solid;
   }
 
-  /// The turns of a loop combined, from the variable on that comes next.
+  /// Reads a loop from its variable on, and combines the solids of all iterations.
   bool repeat(Operation operation, const Affine3d& frame) {
     const Level level(reader_);
     const Token variable = reader_.next();
@@ -253,7 +253,7 @@ class Program {
     return block.is_solid;
   }
 
-  /// As a leaf of a tree that is taken away again once it is complete.
+  /// Adds a leaf to a temporary tree, which add_torus() removes.
   bool add_flat(const Arguments& call, const Affine3d& frame) {
     const bool is_circle = call.call.raw == "circle";
     const bool is_moved_only = frame.linear().isIdentity(1e-9) && frame.translation().z() == 0.0;
@@ -269,7 +269,7 @@ class Program {
     throw Refusal(call.offset, "expected a torus: a circle that is moved, and turned around wholly");
   }
 
-  /// A circle beside the axis, turned around it; a square may leave a pinhole.
+  /// A torus from a circle beside the axis, perhaps cut by a square that leaves a pinhole.
   bool add_torus(const Arguments& call, const Affine3d& frame) {
     if (std::exchange(is_flat_, true) || call.number("angle", 0, 360) != 360) refuse_profile(call.call);
     const auto begin = static_cast<std::ptrdiff_t>(postfix_.size());
@@ -289,7 +289,7 @@ class Program {
     return true;
   }
 
-  /// A solid that is there already is the same primitive again.
+  /// Reuses the primitive of an equal solid.
   void add_leaf(const Shape& shape, std::string_view name, const Affine3d& frame, std::size_t offset) {
     if (is_flat_) throw Refusal(offset, fmt::format("expected a circle, found '{}'", name));
     Primitive primitive = place_solid(shape, frame, offset);
@@ -306,13 +306,13 @@ class Program {
   }
 
   Variables globals_ = {};
-  Variables locals_ = {};  ///< of the loops around
+  Variables locals_ = {};  ///< those of the enclosing loops
   Reader reader_;
-  std::map<std::string_view, std::size_t> modules_ = {};  ///< where their bodies begin
+  std::map<std::string_view, std::size_t> modules_ = {};  ///< offsets of their bodies
   PrimitiveSet primitives_ = {};
   std::map<std::vector<double>, PrimitiveIndex> index_of_ = {};
   std::vector<CsgNode> postfix_ = {};
-  bool is_flat_ = false;  ///< within the profile of a torus
+  bool is_flat_ = false;  ///< inside the profile of a torus
   std::vector<FlatShape> flat_ = {};
   std::size_t calls_ = 0;
 };

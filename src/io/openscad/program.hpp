@@ -5,7 +5,7 @@
 
 namespace cloud2csg::scad {
 
-/// The model that a text makes. O(n log n) @throws Refusal
+/// Reads a model from OpenSCAD text. O(n log n) @throws Refusal
 [[nodiscard]] Model read_program(std::string_view text);
 
 }  // namespace cloud2csg::scad

@@ -22,8 +22,8 @@ namespace {
 /// "line 3, column 5", counted in characters.
 std::string place_of(std::string_view text, std::size_t offset) {
   const std::string_view before = text.substr(0, std::min(offset, text.size()));
-  const std::size_t begin = before.rfind('\n') + 1;  // 0 where there is none
-  // Those that continue a character in UTF-8 are not counted.
+  const std::size_t begin = before.rfind('\n') + 1;  // 0 in the first line
+  // Ignores UTF-8 continuation bytes.
   const auto column =
       std::ranges::count_if(before.substr(begin), [](char c) { return (static_cast<unsigned char>(c) >> 6U) != 2; });
   return fmt::format("line {}, column {}", 1 + std::ranges::count(before, '\n'), 1 + column);
@@ -36,7 +36,7 @@ Error::Parts parts_of(const scad::Refusal& refusal, std::string_view text, const
           .remedy = "let OpenSCAD flatten it (-o part.csg), or extract a tree from its mesh (-o part.stl)"};
 }
 
-/// What OpenSCAD said that begins with this word.
+/// The messages of OpenSCAD that begin with `word`, without it.
 std::vector<std::string> lines_after(const std::string& word, const std::string& said) {
   std::vector<std::string> lines;
   std::istringstream all(said);
@@ -46,9 +46,8 @@ std::vector<std::string> lines_after(const std::string& word, const std::string&
   return lines;
 }
 
-/// What OpenSCAD makes of a file that is refused here.
 Model read_flattened(const std::filesystem::path& file, Error::Parts refused) {
-  constexpr std::chrono::seconds k_limit(60);  // making meshes takes hours at times, but flattening does not
+  constexpr std::chrono::seconds k_limit(60);  // meshing takes hours at times, flattening does not
   const ScratchFile flat(".csg");
   const ScratchFile said(".txt");
   const auto fail = [&refused](std::string remedy) {

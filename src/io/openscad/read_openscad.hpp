@@ -6,8 +6,8 @@
 
 namespace cloud2csg {
 
-/// The model of a .scad file. Where it has more in it than parse_openscad() reads, OpenSCAD flattens it, which a
-/// warning of the model tells. O(n log n), without OpenSCAD's share @throws Error
+/// Reads a .scad file. OpenSCAD flattens what parse_openscad() refuses, and the model says so in a warning.
+/// O(n log n), without OpenSCAD's share. @throws Error
 [[nodiscard]] Model read_openscad(const std::filesystem::path& file);
 
 }  // namespace cloud2csg

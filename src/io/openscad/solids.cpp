@@ -54,9 +54,9 @@ std::vector<Face> faces_of(const Arguments& call) {
   return faces;
 }
 
-/// The plane of a face, with the point `inside` under it; absent for a sliver, which says nothing of a plane.
+/// The plane of a face, with `inside` below it; absent for a sliver, which determines no plane.
 std::optional<Plane> plane_of(const Face& face, const Vector3d& inside, double size) {
-  Vector3d area = Vector3d::Zero();  // twice, along the normal (Newell)
+  Vector3d area = Vector3d::Zero();  // doubled, along the normal (Newell)
   for (std::size_t i = 0; i < face.size(); ++i) {
     area += (face[i] - face[0]).cross(face[(i + 1) % face.size()] - face[0]);
   }
@@ -67,10 +67,9 @@ std::optional<Plane> plane_of(const Face& face, const Vector3d& inside, double s
                                      : Plane{.normal = normal, .offset = offset};
 }
 
-/// O(planes x corners), with one plane for all faces in it. What is open is refused by validate(), as a polytope
-/// without bounds.
+/// One plane for coplanar faces. validate() refuses the unbounded polytope of an open surface. O(planes x corners)
 Polytope convex_polytope(const std::vector<Face>& faces, const Arguments& call) {
-  constexpr std::size_t k_most_planes = 64;  // what a polytope's corners cost grows with the fourth power of these
+  constexpr std::size_t k_most_planes = 64;  // finding a polytope's corners takes time of the fourth power
   Points corners;
   for (const Face& face : faces) {
     for (const Vector3d& corner : face) corners.push_back(corner);
@@ -100,7 +99,7 @@ Polytope convex_polytope(const std::vector<Face>& faces, const Arguments& call) 
   return polytope;
 }
 
-/// With few corners around, as OpenSCAD draws it.
+/// A frustum with few corners, placed as OpenSCAD draws them.
 std::vector<Face> frustum(double radius_bottom, double radius_top, double height, int facets) {
   const auto corner = [&](int i, bool is_top) {
     const double angle = 2 * std::numbers::pi * (i % facets) / facets;
@@ -117,7 +116,7 @@ std::vector<Face> frustum(double radius_bottom, double radius_top, double height
 }
 
 LeafSolid cylinder(const Arguments& call) {
-  constexpr double k_most_corners = 8;  // drawn with so few, a circle is meant to have corners
+  constexpr double k_most_corners = 8;  // so few facets mean a polygon, not a circle
   const double height = call.number("h", 0, 1);
   const double radius = call.number("r", Arguments::k_by_name, 1);
   const double bottom = call.number("r1", 1, radius);
@@ -182,7 +181,7 @@ Affine3d matrix(const Arguments& call) {
   return map;
 }
 
-/// A box or polytope under any map.
+/// A box or polytope under any linear map.
 Polytope mapped(const Shape& shape, const Matrix3d& linear) {
   Polytope polytope;
   if (const auto* const box = std::get_if<Box>(&shape)) {
@@ -263,7 +262,7 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
         fmt::format("expected a scaling that keeps what is round so, and upright, found one by {:.6g}, {:.6g}, {:.6g}",
                     across, scale.y(), along));
   }
-  // All of these are their own mirror images along x. The rotation that is nearest: digits are missing.
+  // All these solids are symmetric in x. The SVD gives the nearest rotation, since the text rounds digits.
   if (axes.determinant() < 0) axes.col(0) *= -1;
   const Eigen::JacobiSVD<Matrix3d> parts(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
   placed.pose.orientation = Eigen::Quaterniond(Matrix3d(parts.matrixU() * parts.matrixV().transpose())).normalized();

@@ -13,7 +13,7 @@
 namespace cloud2csg::scad {
 namespace {
 
-// Not those of <cctype>, which depend on the locale and are undefined for negative characters.
+// <cctype> depends on the locale and is undefined for negative characters.
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
@@ -28,7 +28,7 @@ Value number_at(std::size_t offset, double number) {
   return {.offset = offset, .number = number};
 }
 
-/// Numbers with numbers, vectors with vectors of their length, vectors times and by numbers.
+/// Combines two numbers, two vectors of equal length, or a vector and a factor or divisor.
 Value combined(char operation, const Value& a, const Value& b) {
   Value result = a.is_list ? a : b;
   if (a.is_list && b.is_list && is_one_of(operation, "+-") && a.items.size() == b.items.size()) {
@@ -48,15 +48,15 @@ Value combined(char operation, const Value& a, const Value& b) {
   return result;
 }
 
-/// `bounds`: from where, in steps of what where that is told, to where.
+/// `bounds`: begin, step if given, and end.
 std::vector<Value> range_of(const std::vector<Value>& bounds) {
   constexpr double k_most = 1e6;
   const double begin = number_of(bounds.front());
   const double end = number_of(bounds.back());
   const double step = bounds.size() == 3 ? number_of(bounds[1]) : 1.0;
-  // The next larger number, as in OpenSCAD: [0 : 0.1 : 0.3] has its end, though three tenths are a little more.
+  // Rounds up as OpenSCAD does: [0 : 0.1 : 0.3] includes its end, although 3 * 0.1 is slightly more.
   const double steps = std::nextafter((end - begin) / step, std::numeric_limits<double>::max());
-  // OpenSCAD turns a range around that falls without a step, and says that it will not for ever.
+  // OpenSCAD reverses a falling range without a step, but has deprecated that.
   if (!(steps < k_most) || (bounds.size() == 2 && begin > end)) {
     throw Refusal(bounds[0].offset, fmt::format("expected a range that rises, in at most {:.0f} steps", k_most));
   }
@@ -182,7 +182,7 @@ void Reader::skip_brackets() {
 }
 
 void Reader::advance() {
-  // Loops in each other read few words any number of times. Reading so much more than the text takes seconds.
+  // Nested loops reread a few words many times. Rereading this much takes seconds.
   constexpr std::size_t k_most_again = 200'000'000;
   const std::size_t before = place_;
   skip_blanks();
@@ -236,7 +236,7 @@ Value Reader::value() {
   return chain("+-", &Reader::product);
 }
 
-/// Operands with operators of the same rank between them, from left to right.
+/// Operands joined by operators of equal precedence, from left to right.
 Value Reader::chain(std::string_view signs, Value (Reader::*operand)()) {
   Value left = (this->*operand)();
   while (token_.kind == Token::Kind::sign && is_one_of(token_.raw.front(), signs)) {
@@ -288,7 +288,7 @@ Value Reader::list() {
     if (take("]")) break;
     const Token item = token_;
     list.items.push_back(value());
-    // Else a few lines, each a list of the one before many times over, would need all memory.
+    // Otherwise a few lines, each listing the previous list many times, could exhaust memory.
     if (list.items.back().is_list && item.raw != "[") throw Refusal(item.offset, "expected a number, found a list");
   }
   return list;

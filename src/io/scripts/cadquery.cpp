@@ -80,7 +80,7 @@ std::set<std::string> cadquery_reserved_names() {
   return names;
 }
 
-/// The turn of least angle that places a solid: of one of revolution, that of its axis; of a sphere, none.
+/// The least rotation that places a solid: none for a sphere, that of the axis for other solids of revolution.
 Eigen::AngleAxisd turn_of(const brep::KernelSolid& solid) {
   const Eigen::Quaterniond& q = solid.pose.orientation;
   if (std::holds_alternative<Sphere>(solid.shape)) return {0, Eigen::Vector3d::UnitZ()};
@@ -88,12 +88,12 @@ Eigen::AngleAxisd turn_of(const brep::KernelSolid& solid) {
     return Eigen::AngleAxisd(q);
   }
   Eigen::Vector3d axis = q * Eigen::Vector3d::UnitZ();
-  // A cone has an upper end, a cylinder and a torus have none.
+  // A cylinder or torus looks the same upside down, a cone does not.
   if (!std::holds_alternative<Cone>(solid.shape) && axis.z() < 0) axis = -axis;
   return Eigen::AngleAxisd(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis));
 }
 
-/// The variables of a solid, and the statement that makes it of them.
+/// Writes a solid's variables and the statement that makes the solid from them.
 class SolidWriter {
  public:
   SolidWriter(const std::string& name, script::UniqueNames& names, const script::NumberFormat& number)
@@ -165,7 +165,7 @@ script::Dialect dialect(script::UniqueNames& names, const script::NumberFormat& 
               [](Operands operands) {
                 return fmt::format("{}.fuse({})", operands.front(), script::arguments(operands.subspan(1)));
               },
-          // One after the other: intersect() of several would be with what these have together.
+          // One at a time: intersect() intersects with the union of several operands.
           .common =
               [](Operands operands) {
                 std::string chain = operands.front();

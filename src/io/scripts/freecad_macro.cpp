@@ -12,8 +12,8 @@ namespace {
 
 using script::exact;
 
-// FreeCAD's boxes begin at a corner, its cylinders and cones at the middle of the lower end: the placement moves them
-// there. MultiCommon means different things in different versions of FreeCAD, as soon as it has more than two operands.
+// The placement centres FreeCAD's boxes, which begin at a corner, and its cylinders and cones, which begin at the lower
+// end. MultiCommon of more than two operands differs between versions of FreeCAD.
 constexpr std::array k_freecad_functions{
     script::Function{" = box(", R"(def box(label, size, position, rotation=(0, 0, 0, 1)):
     x, y, z = size
@@ -165,7 +165,6 @@ script::Dialect dialect() {
               }};
 }
 
-/// Those functions of the macro that its statements call.
 std::string freecad_functions(const std::string& statements) {
   std::string helpers;
   bool combines = false;

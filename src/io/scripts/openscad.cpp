@@ -19,7 +19,7 @@ using Kind = script::Step::Kind;
 
 /// The parts of the program, in their order.
 struct Program {
-  std::string parameters;  ///< before the first brace: there OpenSCAD's customiser looks for them
+  std::string parameters;  ///< before the first brace, where OpenSCAD's customiser looks for them
   std::string tree;
   std::string modules;
   std::string meshes;  ///< long lists of triangles last: nobody edits them
@@ -33,7 +33,7 @@ std::string everything_module(const openscad::SolidContext& context) {
       openscad::list(context.everything.sizes().eval(), context.number));
 }
 
-/// A member as the comment on its loop names it.
+/// A pattern member as the comment on its loop names it.
 std::string member_name(const script::Plan& plan, std::size_t member, const std::vector<std::string>& names) {
   std::vector<std::string> solids;
   for (const PrimitiveIndex index : openscad::primitives_of_step(plan, member)) solids.push_back(names[index]);
@@ -54,7 +54,7 @@ class ProgramWriter {
   }
 
   Program write() {
-    std::map<PrimitiveIndex, std::size_t> loop_of;  // of single primitives, by what they repeat
+    std::map<PrimitiveIndex, std::size_t> loop_of;  // loops over single primitives
     for (const auto& [step, loop] : loops_.first) {
       if (plan_.steps[step].kind == Kind::primitive) loop_of.emplace(plan_.steps[step].primitive, step);
     }
@@ -67,7 +67,7 @@ class ProgramWriter {
     }
     for (const auto& [step, loop] : loops_.first) {
       if (plan_.steps[step].kind == Kind::primitive) continue;
-      // The values of its solids have sections of their own.
+      // The loop's own section, because the values of its solids have theirs.
       const std::string name = modules_.take(names_[openscad::primitives_of_step(plan_, step).front()] + "_part");
       openscad::Parameters parameters(name, variables_);
       add_head(step, parameters);
@@ -116,7 +116,7 @@ class ProgramWriter {
   script::UniqueNames variables_{openscad::reserved_words()};
   std::vector<std::string> names_;
   openscad::Loops loops_ = {};
-  std::map<std::size_t, std::string> heads_ = {};  ///< of loops, by the step that they repeat
+  std::map<std::size_t, std::string> heads_ = {};  ///< heads of loops, by the step that they repeat
   Program program_ = {};
 };
 

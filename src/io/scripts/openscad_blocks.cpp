@@ -10,7 +10,7 @@ namespace {
 
 using Kind = script::Step::Kind;
 
-/// Without recursion: a chain may be as deep as it is long.
+/// Not recursive: a chain may be as deep as it is long.
 class BlockPrinter {
  public:
   BlockPrinter(const script::Plan& plan, const Wording& wording, Intersections intersections)
@@ -31,7 +31,7 @@ class BlockPrinter {
   }
 
  private:
-  /// What is still to be written: a line, or a step if there is none.
+  /// Pending output: a line, or a step if the text is empty.
   struct Item {
     std::size_t step;
     std::string text;
@@ -39,7 +39,7 @@ class BlockPrinter {
   };
 
   void print_line(const std::string& text, std::size_t level) {
-    constexpr std::size_t k_deepest = 40;  // a long chain must not grow quadratically
+    constexpr std::size_t k_deepest = 40;  // keeps a long chain from growing quadratically
     out_.append(2 * std::min(level, k_deepest), ' ');
     out_ += text + "\n";
   }
@@ -95,7 +95,7 @@ class BlockPrinter {
     to_do_.push_back({.step = 0, .text = text, .level = level});
   }
 
-  /// Last in, first out: what comes last is pushed first.
+  /// Pushes in reverse, because the stack is last in, first out.
   void push(const std::vector<std::size_t>& steps, std::size_t level) {
     for (std::size_t i = steps.size(); i-- > 0;) to_do_.push_back({.step = steps[i], .text = {}, .level = level});
   }

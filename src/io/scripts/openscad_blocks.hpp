@@ -8,18 +8,17 @@
 
 namespace cloud2csg::openscad {
 
-/// How steps are worded.
 struct Wording {
-  /// The statement for a step that is a primitive or everything.
+  /// The statement for a primitive or everything.
   std::function<std::string(std::size_t step)> statement_of;
-  /// What stands before a step: the head of a loop, or nothing. Absent: another step stands for it.
+  /// A loop head or nothing before a step; absent if another step's loop replaces this step.
   std::function<std::optional<std::string>(std::size_t step)> before;
 };
 
-/// FreeCAD reads intersections of two only.
+/// FreeCAD reads only intersections of two.
 enum class Intersections { of_all, in_pairs };
 
-/// The plan as blocks of union(), intersection() and difference(), indented. O(size), no recursion
+/// Prints the plan as indented blocks of union(), intersection() and difference(). O(size), no recursion
 [[nodiscard]] std::string print_blocks(const script::Plan& plan, const Wording& wording, Intersections intersections);
 
 }  // namespace cloud2csg::openscad

@@ -43,14 +43,14 @@ class FlatBody {
     return fmt::format("rotate_extrude({}, convexity = 2) {{ {} }}", round(torus.major_radius + torus.minor_radius),
                        profile);
   }
-  /// FreeCAD wants a convexity.
+  /// FreeCAD requires a convexity.
   std::string operator()(const brep::Facets& facets) const {
     return fmt::format("polyhedron({}, convexity = 2);", openscad::facet_lists(facets, number_, " "));
   }
 
  private:
-  /// As few facets as asked for. FreeCAD makes facets, too, of circles with $fn up to 16 (its preference for the most
-  /// facets), and none where that is 0; but by length OpenSCAD makes none shorter than 0.01.
+  /// As few facets as requested. FreeCAD keeps a true circle for $fn = 0, or above 16 (its preference for the most
+  /// facets). With $fn = 0, OpenSCAD makes no facet shorter than 0.01, so a small circle gets $fn of at least 17.
   [[nodiscard]] std::string round(double radius) const {
     constexpr double k_least_length = 0.01;
     constexpr int k_fewest_of_true_circle = 17;
@@ -72,7 +72,7 @@ class FlatBody {
   int facets_;
 };
 
-/// All digits: a reader wants to find a rotation in the matrix.
+/// All digits, so that a reader can recover the rotation from the matrix.
 std::string matrix_text(const Pose& pose, const script::NumberFormat& number) {
   const Eigen::Matrix3d turn = pose.orientation.toRotationMatrix();
   std::string rows;
@@ -97,7 +97,7 @@ std::string to_openscad_csg(const Model& model, const OpenScadOptions& options) 
   const brep::KernelSolid everything{.shape = Box{.size = plan.everything.sizes()},
                                      .pose = {.position = plan.everything.center()}};
   const auto solid_of = [&](const Primitive& primitive) {
-    // With the minor radius that it has: solid_of() makes it smaller where there is no hole.
+    // Keeps the minor radius, which solid_of() reduces for a torus without a hole.
     if (const auto* torus = std::get_if<Torus>(&primitive.shape); torus != nullptr && is_plain(primitive)) {
       return brep::KernelSolid{.shape = *torus, .pose = primitive.pose};
     }

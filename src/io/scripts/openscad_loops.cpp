@@ -15,15 +15,13 @@ namespace {
 
 using Kind = script::Step::Kind;
 
-constexpr std::size_t k_most_solids = 64;  ///< of one member: patterns of larger ones are seldom
+constexpr std::size_t k_most_solids = 64;  ///< in one member; patterns of larger members are rare
 
-/// The loop's words.
 struct Head {
   std::string variables;
   std::string motion;
 };
 
-/// As a parameter.
 std::string count_of(std::size_t members, Parameters& parameters) {
   return parameters.add("count", fmt::format("{}", members));
 }
@@ -48,7 +46,7 @@ Head head_of(const script::CirclePattern& circle, std::size_t members, const scr
              Parameters& parameters) {
   const std::string count = count_of(members, parameters);
   const script::NumberFormat plain(1.0);
-  // A full circle stays one when the count is changed.
+  // A full circle stays full when the count changes.
   const std::string angle = circle.is_full ? "360 / " + count : parameters.add("angle", plain(circle.angle_deg));
   const std::string axis = parameters.add("axis", list(circle.axis, plain));
   std::string there;
@@ -62,7 +60,7 @@ Head head_of(const script::CirclePattern& circle, std::size_t members, const scr
           fmt::format("{}rotate(a = i * {}, v = {}){}", there, angle, axis, back)};
 }
 
-/// mirror() of no direction leaves all as it is.
+/// mirror() by a zero vector is the identity.
 Head head_of(const script::MirrorPattern& mirror, std::size_t /*members*/, const script::NumberFormat& number,
              Parameters& parameters) {
   const std::string normal = parameters.add("mirror", list(mirror.plane.normal, script::NumberFormat(1.0)));
@@ -81,7 +79,7 @@ const char* way_of(const decltype(script::Pattern::motion)& motion) {
                     motion);
 }
 
-/// Solids of each step, and whether any of them cannot be part of a pattern.
+/// Number of solids in a step, and whether a pattern may contain all of them.
 struct Weight {
   std::size_t solids = 0;
   bool can_repeat = true;
@@ -90,13 +88,13 @@ struct Weight {
 class LoopFinder {
  public:
   LoopFinder(const script::Plan& plan, const PrimitiveSet& primitives) : plan_(plan), primitives_(primitives) {
-    constexpr double k_tolerance = 1e-6;  // of the model's size: more than rounding, less than any measurement
+    constexpr double k_tolerance = 1e-6;  // relative to the model: more than rounding, less than any measurement
     tolerance_ = k_tolerance * plan.everything.sizes().maxCoeff();
     weigh();
   }
 
   Loops find() {
-    // Users before their operands: within members that are replaced, nothing is written.
+    // Goes from users to operands, because replaced members write none of theirs.
     for (std::size_t index = plan_.steps.size(); index-- > 0;) {
       const script::Step& step = plan_.steps[index];
       if (loops_.replaced.contains(index)) {
@@ -152,7 +150,7 @@ class LoopFinder {
     }
   }
 
-  /// Not deeper than it has solids.
+  /// The recursion is no deeper than the number of solids.
   [[nodiscard]] script::Part part_of(std::size_t index) const {
     const script::Step& step = plan_.steps[index];
     if (step.kind == Kind::primitive) return {.solid = primitives_[step.primitive]};

@@ -11,28 +11,26 @@
 
 namespace cloud2csg::openscad {
 
-/// One step of a plan that is written as a loop around its first member. Members are steps.
+/// A loop around the first member of a pattern. Members are steps of the plan.
 struct Loop {
   script::Pattern pattern;
-  bool is_intersection = false;  ///< members are not united, but what they have in common is meant
+  bool is_intersection = false;  ///< intersects its members instead of uniting them
 };
 
-/// Which steps of a plan are written as loops.
 struct Loops {
   std::map<std::size_t, Loop> first = {};   ///< by the step that is written
-  std::set<std::size_t> replaced = {};      ///< those that the loops make of it, without what they are made of
+  std::set<std::size_t> replaced = {};      ///< other members of the loops, and the operands of all replaced steps
   std::set<PrimitiveIndex> unwritten = {};  ///< primitives of replaced steps
 };
 
-/// The patterns among what is united, taken away together or intersected. What has a primitive that the tree has twice
-/// stays alone, and so does what has more than 64 solids.
+/// Finds patterns among operands that are united, removed or intersected together. Leaves out steps of more than 64
+/// solids and steps with a primitive that occurs twice in the tree.
 [[nodiscard]] Loops loops_of(const script::Plan& plan, const PrimitiveSet& primitives);
 
 /// The primitives of a step, in their order in the plan.
 [[nodiscard]] std::vector<PrimitiveIndex> primitives_of_step(const script::Plan& plan, std::size_t step);
 
-/// `for (...) translate(...) `, to stand before the first member; adds counts and steps to its parameters. `names` are
-/// those of the members, in their order.
+/// `for (...) translate(...) ` before the first member. Adds counts and steps to its parameters. `names`: the members'.
 [[nodiscard]] std::string loop_over(const Loop& loop, const std::vector<std::string>& names,
                                     const script::NumberFormat& number, Parameters& parameters);
 

@@ -18,18 +18,18 @@ namespace {
 
 using script::degrees_of;
 
-/// Angles for OpenSCAD's rotate([x, y, z]): about x first, z last, in the fixed frame.
+/// Angles for rotate([x, y, z]): about the fixed axes, x first and z last.
 Eigen::Vector3d euler_angles(const Eigen::Matrix3d& m) {
   const double y = std::atan2(-m(2, 0), std::hypot(m(0, 0), m(1, 0)));
   constexpr double k_pole = 1e-9;
   if (std::hypot(m(0, 0), m(1, 0)) < k_pole) {
-    // Looking along z: turning about x and about z is the same.
+    // Gimbal lock: rotations about x and z coincide.
     return {degrees_of(std::atan2(-m(1, 2), m(1, 1))), degrees_of(y), 0.0};
   }
   return {degrees_of(std::atan2(m(2, 1), m(2, 2))), degrees_of(y), degrees_of(std::atan2(m(1, 0), m(0, 0)))};
 }
 
-/// Angles that turn the z axis into `axis`: about x alone if that does it, else about y, then z.
+/// Angles that turn the z axis into `axis`: about x alone if possible, else about y, then z.
 Eigen::Vector3d axis_angles(const Eigen::Vector3d& axis) {
   constexpr double k_flat = 1e-12;
   if (std::abs(axis.x()) < k_flat) return {degrees_of(std::atan2(-axis.y(), axis.z())), 0.0, 0.0};
@@ -68,11 +68,11 @@ class Body {
         "rotate_extrude() intersection() {{\n    {}\n    translate([{:.3g} * {}, -{}]) square(2 * {});\n  }}", circle,
         *pinhole, minor, minor, minor);
   }
-  /// A cube whose top face is the half-space's, and large enough to hold all that is below it.
+  /// A cube with the half-space's face on top, large enough to hold everything below it.
   std::string operator()(const HalfSpace& /*half_space*/) const {
     const double reach =
         (context_.everything.center() - primitive_.pose.position).norm() + 0.5 * context_.everything.diagonal().norm();
-    // Two digits are enough for a size that only has to be large.
+    // Two digits suffice for a size that only has to be large.
     const double unit = std::pow(10.0, std::floor(std::log10(reach)) - 1.0);
     const double half = std::ceil(reach / unit) * unit;
     return fmt::format("translate([-{0}, -{0}, -{1}]) cube({1});", context_.number(half), context_.number(2.0 * half));
@@ -136,9 +136,9 @@ std::string Parameters::section() const {
 
 std::optional<double> pinhole_of(const Torus& torus, int facets) {
   constexpr double k_least = 1e-4;
-  // OpenSCAD puts corners on a grid of lengths: those around the pinhole must not come to lie on each other.
+  // OpenSCAD snaps corners to a grid, where those around the pinhole must stay apart.
   constexpr double k_corner_distance = 1.2e-5;
-  constexpr double k_most = 0.1;  // in units so small all corners lie on each other
+  constexpr double k_most = 0.1;  // in units that are too small, all corners coincide
   const double least = k_corner_distance * facets / (2 * std::numbers::pi * torus.minor_radius);
   const double pinhole = std::clamp(least, k_least, k_most);
   const bool has_hole = torus.major_radius - torus.minor_radius > pinhole * torus.minor_radius;
@@ -168,7 +168,7 @@ std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& 
   std::vector<std::string> faces;
   faces.reserve(facets.faces.size());
   for (const auto& face : facets.faces) {
-    // OpenSCAD turns the other way: clockwise seen from outside.
+    // OpenSCAD's faces run clockwise seen from outside.
     faces.push_back(fmt::format("[{}]", fmt::join(face.rbegin(), face.rend(), ", ")));
   }
   return fmt::format("points = [{}],{}faces = [{}]", fmt::join(points, ", "), separator, fmt::join(faces, ", "));

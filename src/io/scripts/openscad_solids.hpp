@@ -12,29 +12,27 @@
 /// Solids, their parameters, and the words and numbers of an OpenSCAD program.
 namespace cloud2csg::openscad {
 
-/// Words of the language, its modules, and the modules that every file of ours may define.
+/// OpenSCAD's keywords and modules, and the modules that our files may define.
 [[nodiscard]] const std::set<std::string>& reserved_words();
 
 /// [x, y, z]
 [[nodiscard]] std::string list(const Eigen::Vector3d& vector, const script::NumberFormat& number);
 
-/// Angles for rotate() that turn the solid as its pose does. A solid of revolution about z is turned about two axes
-/// only.
+/// Angles for rotate() that give the solid its orientation; for a solid of revolution about z, two angles suffice.
 [[nodiscard]] Eigen::Vector3d rotation_angles(const Primitive& primitive);
 
 /// The named values of a solid: a section of OpenSCAD's customiser.
 class Parameters {
  public:
-  /// Both must outlive it.
+  /// Both must outlive this.
   Parameters(const std::string& solid, script::UniqueNames& variables) : solid_(solid), variables_(variables) {}
 
-  /// Adds `<solid>_<what> = <value>;` and gives the variable's name.
+  /// Adds `<solid>_<what> = <value>;` and returns the variable's name.
   [[nodiscard]] std::string add(const std::string& what, const std::string& value);
 
-  /// Adds a comment.
   void remark(const std::string& text) { lines_ += script::comment(text, "// "); }
 
-  /// `/* [solid] */` and the values; nothing when there are none.
+  /// `/* [solid] */` and the values; empty without values.
   [[nodiscard]] std::string section() const;
 
  private:
@@ -44,24 +42,24 @@ class Parameters {
 };
 
 struct SolidContext {
-  AlignedBox everything;  ///< finite; half-spaces reach to its ends
-  int mesh_resolution;    ///< of solids that OpenSCAD has no name for
+  AlignedBox everything;  ///< finite; half-spaces extend to its ends
+  int mesh_resolution;    ///< for solids without an OpenSCAD primitive
   script::NumberFormat number;
-  int facets;  ///< of a full circle
+  int facets;  ///< in a full circle
 };
 
-/// Where the profile of a torus touches the axis the solid is no 2-manifold, which OpenSCAD refuses: the radius of the
-/// pinhole that is left there, in units of the minor radius. Absent for a torus with a hole.
+/// Radius of the pinhole, in minor radii, for a torus that touches its axis. Without one it is not 2-manifold and
+/// OpenSCAD refuses it. Absent for a torus with a hole.
 [[nodiscard]] std::optional<double> pinhole_of(const Torus& torus, int facets);
 
 /// Whether the solid becomes a long list of triangles: displaced solids and expressions.
 [[nodiscard]] bool needs_mesh(const Primitive& primitive);
 
-/// The OpenSCAD statement for a primitive, in place, by the values that it adds to `parameters`:
+/// The placed statement for a primitive, by values that it adds to `parameters`:
 /// `translate(bore_position) cylinder(h = bore_height, r = bore_radius, center = true);`
 [[nodiscard]] std::string solid(const Primitive& primitive, const SolidContext& context, Parameters& parameters);
 
-/// `points = ...,<separator>faces = ...`, as polyhedron() takes them.
+/// `points = ...,<separator>faces = ...`, as polyhedron() expects.
 [[nodiscard]] std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number,
                                       const std::string& separator);
 

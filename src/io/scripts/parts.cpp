@@ -20,7 +20,7 @@ double size_difference(const Shape& a, const Shape& b) {
   return most;
 }
 
-/// How far directions of unit length are apart where a solid looks the same turned; its symmetries do not count.
+/// Distance between the unit directions of two solids' axes; ignores rotations that are symmetries.
 double turn_difference(const Primitive& a, const Primitive& b) {
   if (std::holds_alternative<Sphere>(a.shape)) return 0;
   const Eigen::Matrix3d m = a.pose.orientation.toRotationMatrix();
@@ -33,7 +33,7 @@ double turn_difference(const Primitive& a, const Primitive& b) {
   return line(2);
 }
 
-/// The part with each solid as `map` has it.
+/// Maps the pose of each solid in a part.
 template <class Map>
 Part mapped(const Part& part, const Map& map) {
   Part result{.kind = part.kind, .solid = part.solid};
@@ -53,7 +53,7 @@ void for_each_solid(const Part& part, const Visit& visit) {
 template <class Difference>
 double largest_difference(const Part& a, const Part& b, double tolerance, const Difference& difference);
 
-/// Each operand has one of the others to itself: the first that fits, of which there is one only but for twins.
+/// Matches each operand with the first free operand that fits. Only coincident operands fit twice.
 template <class Difference>
 double largest_difference(const std::vector<Part>& a, const std::vector<Part>& b, double tolerance,
                           const Difference& difference) {
@@ -91,7 +91,7 @@ Part moved(const Part& part, const Pose& motion) {
 
 Part mirrored(const Part& part, const MirrorPlane& plane) {
   const Eigen::Matrix3d flip = Eigen::Matrix3d::Identity() - 2 * plane.normal * plane.normal.transpose();
-  // All solids that repeat are the same mirrored in their own x, which makes a turn of the flip.
+  // Each repeatable solid is symmetric in its own x. Mirroring in it makes the reflection a rotation.
   const Eigen::Vector3d own(-1, 1, 1);
   return mapped(part, [&](const Pose& pose) {
     const Eigen::Matrix3d turn = flip * pose.orientation.toRotationMatrix() * own.asDiagonal();

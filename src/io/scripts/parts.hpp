@@ -4,10 +4,9 @@
 
 #include "cloud2csg/primitive.hpp"
 
-/// Solids, or combinations of some, as those see them who look for what repeats.
 namespace cloud2csg::script {
 
-/// A solid in its place; or what all of `kept` unite to, or have in common, less all of `removed`.
+/// A solid in its place, or the union or intersection of `kept` minus `removed`.
 struct Part {
   enum class Kind { solid, united, common };
   Kind kind = Kind::solid;
@@ -16,32 +15,31 @@ struct Part {
   std::vector<Part> removed = {};  ///< Kind::common only; in any order
 };
 
-/// All points x of normal . x = offset.
+/// All points x with normal . x = offset.
 struct MirrorPlane {
-  Eigen::Vector3d normal;  ///< of unit length
+  Eigen::Vector3d normal;  ///< unit length
   double offset;
 };
 
 [[nodiscard]] Part moved(const Part& part, const Pose& motion);
 [[nodiscard]] Part mirrored(const Part& part, const MirrorPlane& plane);
 
-/// The mean of where its solids are: goes with the part wherever it is moved.
+/// The mean position of the part's solids. It moves with the part.
 [[nodiscard]] Eigen::Vector3d centre_of(const Part& part);
 
 [[nodiscard]] std::size_t solid_count(const Part& part);
 
-/// Whether all solids are of those that are compared: boxes, spheres, cylinders, cones and tori.
+/// Whether patterns can contain the solid: boxes, spheres, cylinders, cones and tori.
 [[nodiscard]] bool can_repeat(const Primitive& primitive);
 
-/// How far the surfaces of two solids are apart at most, about; infinite for solids of different or of other types than
-/// those of patterns.
+/// Approximate largest distance between two solids' surfaces; infinite for different or unrepeatable types.
 [[nodiscard]] double misfit(const Primitive& a, const Primitive& b);
 
-/// The same of parts whose solids are combined alike; infinite where solids of one have none of the other within
-/// `tolerance`. O(product of the operands, of each pair of combinations)
+/// The same for parts of equal structure; infinite if a solid has no counterpart within `tolerance`.
+/// O(product of the operands, for each pair of combinations)
 [[nodiscard]] double misfit(const Part& a, const Part& b, double tolerance);
 
-/// Whether solids are combined alike and of the same sizes within `tolerance`, wherever they are.
+/// Whether structure and sizes are equal within `tolerance`, wherever the parts are.
 [[nodiscard]] bool are_alike(const Part& a, const Part& b, double tolerance);
 
 }  // namespace cloud2csg::script

@@ -38,7 +38,7 @@ Pose motion_of(const CirclePattern& circle, std::size_t place) {
   return {.position = circle.centre - turn * circle.centre, .orientation = turn};
 }
 
-/// Longer, or once around where the other goes around more often.
+/// More members, or as many at smaller angles, so that the pattern goes round only once.
 bool is_better_circle(const Pattern& a, const Pattern& b) {
   if (a.members.size() != b.members.size()) return a.members.size() > b.members.size();
   const auto angle = [](const Pattern& pattern) { return std::get<CirclePattern>(pattern.motion).angle_deg; };
@@ -47,7 +47,7 @@ bool is_better_circle(const Pattern& a, const Pattern& b) {
 
 using Motion = decltype(Pattern::motion);
 
-/// Where the motion puts what it begins with.
+/// The part at a place of the pattern that begins with `first`.
 Part placed(const Part& first, const Motion& motion, std::size_t place) {
   return std::visit(
       Overloaded{[&](const MirrorPattern& mirror) { return place == 0 ? first : mirrored(first, mirror.plane); },
@@ -61,7 +61,7 @@ bool is_backward(const Eigen::Vector3d& step) {
   return step[largest] < 0;
 }
 
-/// The same members from another end, so that steps are positive where they are largest.
+/// Reorders the members so that the largest coordinate of each step is positive.
 void turn_forward(Pattern& pattern) {
   const auto begin = pattern.members.begin();
   if (auto* line = std::get_if<LinePattern>(&pattern.motion); line && is_backward(line->step)) {
@@ -92,7 +92,6 @@ bool is_along_axes(const GridPattern& grid, double tolerance) {
   return is_along(grid.step) && is_along(grid.row_step);
 }
 
-/// Equal parts among which patterns are looked for.
 class Group {
  public:
   Group(std::span<const Part> parts, double tolerance) : parts_(parts), tolerance_(tolerance) {}
@@ -103,7 +102,6 @@ class Group {
   }
   [[nodiscard]] bool takes(std::size_t index) const { return are_alike(at(free_.front()), at(index), tolerance_); }
 
-  /// Takes the longest pattern out of the group.
   std::optional<Pattern> take_longest() {
     Pattern longest;
     const auto keep_longer = [&longest](std::optional<Pattern> pattern) {
@@ -141,7 +139,7 @@ class Group {
     return pattern;
   }
 
-  /// Two parts of several solids: of single ones, a loop would be no shorter.
+  /// Two parts of several solids. For single solids a loop would be no shorter.
   std::optional<Pattern> take_pair() {
     if (free_.size() < 2 || free_.size() > k_most_in_circle || at(free_.front()).kind == Part::Kind::solid) return {};
     const auto any_pair = [this](const auto& motion_between) -> std::optional<Pattern> {
@@ -166,7 +164,6 @@ class Group {
     return pair ? std::optional(taken(std::move(*pair))) : std::nullopt;
   }
 
-  /// The member of the group that is where `wanted` is.
   [[nodiscard]] std::optional<std::size_t> find(const Part& wanted) const {
     const Eigen::Vector3d centre = centre_of(wanted);
     for (const std::size_t index : free_) {
@@ -185,7 +182,7 @@ class Group {
     return most;
   }
 
-  /// All that the motion reaches from the first, one after the other.
+  /// All members that repeating the motion reaches from the first.
   [[nodiscard]] Pattern chain(std::size_t first, const Motion& motion) const {
     Pattern pattern{.members = {first}, .motion = motion};
     while (true) {
@@ -217,7 +214,7 @@ class Group {
     return longest;
   }
 
-  /// The line and all that the row step reaches from it, or goes back to; nothing if that is nothing.
+  /// The grid of all rows that the row step reaches from the line; absent if the line is not its first row.
   [[nodiscard]] std::optional<Pattern> grid_of(const Pattern& line, const Eigen::Vector3d& row_step) const {
     const LinePattern along = std::get<LinePattern>(line.motion);
     const auto row_from = [&](const Eigen::Vector3d& offset) {
@@ -230,7 +227,7 @@ class Group {
       }
       return row;
     };
-    if (!row_from(-row_step).empty()) return {};  // found from there
+    if (!row_from(-row_step).empty()) return {};  // that row finds the grid
     Pattern grid{.members = line.members, .motion = GridPattern{along.step, row_step, line.members.size()}};
     for (double rows = 1;; ++rows) {
       const std::vector<std::size_t> row = row_from(rows * row_step);
@@ -244,7 +241,7 @@ class Group {
     return grid;
   }
 
-  /// The grid of most rows like the line, those nearest to each other; or else the line itself.
+  /// The grid of most rows like `line`, with the least row step; the line itself if it has one row.
   [[nodiscard]] std::optional<Pattern> widest_grid(const std::optional<Pattern>& line) const {
     if (!line) return {};
     Pattern widest = *line;
@@ -269,7 +266,7 @@ class Group {
     return widest;
   }
 
-  /// Two rows of two, or more: the corners of a rectangle.
+  /// The largest grid of at least two rows of two: corners of rectangles.
   [[nodiscard]] std::optional<Pattern> grid_of_pairs() const {
     std::optional<Pattern> widest;
     for (const std::size_t first : free_) {
@@ -303,7 +300,7 @@ class Group {
     const Eigen::Vector3d b = position(third) - position(second);
     if (std::abs(a.norm() - b.norm()) > 2 * tolerance_ || a.norm() <= 2 * tolerance_) return {};
     const Eigen::Vector3d normal = a.cross(b);
-    if (normal.norm() <= 1e-3 * a.squaredNorm()) return {};  // on a line, nearly
+    if (normal.norm() <= 1e-3 * a.squaredNorm()) return {};  // nearly on a line
     std::optional<CirclePattern> motion = circle_of(a, b, normal.normalized(), position(second));
     if (!motion) return {};
     Pattern circle = chain(first, *motion);
@@ -311,16 +308,16 @@ class Group {
     const bool divides = std::abs(std::remainder(360.0, motion->angle_deg)) < 1e-9;
     motion->is_full = std::abs(count * motion->angle_deg - 360.0) < 1e-9;
     circle.motion = *motion;
-    // Three solids lie on a circle by accident, unless the angle is one that a person would choose.
+    // Three solids may lie on a circle by accident, unless their angle divides 360 degrees.
     const bool is_meant = divides ? count >= 3 : count >= 4;
     return is_meant ? std::optional(circle) : std::nullopt;
   }
 
-  /// The circle on which two chords of equal length follow each other at `corner`.
+  /// The circle of two consecutive chords of equal length that meet at `corner`.
   [[nodiscard]] std::optional<CirclePattern> circle_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                                        const Eigen::Vector3d& axis,
                                                        const Eigen::Vector3d& corner) const {
-    // Each circle can be gone through in two directions: take that about the positive axis.
+    // Each circle has two directions; takes the one about the positive axis.
     Eigen::Index largest = 0;
     axis.cwiseAbs().maxCoeff(&largest);
     if (axis[largest] < 0) return {};

@@ -47,14 +47,14 @@ std::vector<Step> steps_of(const brep::SolidPlan& solid) {
   return steps;
 }
 
-/// Puts the box of everything before the last step, and into it, or takes the last step from the box.
+/// Intersects the last step with the box of everything, or subtracts it from the box. Inserts the box before it.
 void bound(std::vector<Step>& steps, bool is_complement) {
   Step last = std::move(steps.back());
   const std::size_t box = steps.size() - 1;
   steps.back() = {.kind = Kind::everything};
   if (is_complement) {
     if (last.kind == Kind::union_of) {
-      // Of the empty solid, the box itself is left.
+      // If the removed solid is empty, the box remains.
       if (!last.kept.empty()) steps.push_back({.kind = Kind::common, .kept = {box}, .removed = std::move(last.kept)});
       return;
     }
@@ -73,7 +73,7 @@ void bound(std::vector<Step>& steps, bool is_complement) {
 }  // namespace
 
 Plan plan_script(const Model& model) {
-  // No script has a word for an empty or an infinite solid, so constants go as far as the formula allows.
+  // No script has a word for an empty or infinite solid, so simplify() removes as many constants as possible.
   const CsgTree& tree = tree_of(model);
   const brep::SolidPlan solid = brep::plan_solid(has_constants(tree) ? simplify(tree) : tree);
   Plan plan{.steps = steps_of(solid), .everything = model_extent(model)};

@@ -12,7 +12,7 @@
 namespace cloud2csg::script {
 namespace {
 
-/// The corners by the piece that their faces hang together in.
+/// The corners, joined by faces into connected pieces.
 DisjointSets pieces_of(const brep::Facets& facets) {
   DisjointSets pieces(facets.corners.size());
   for (const auto& face : facets.faces) {

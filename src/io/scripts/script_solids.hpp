@@ -5,18 +5,18 @@
 
 namespace cloud2csg::script {
 
-/// What a primitive is in programs that know exact solids: a half-space is a block that reaches beyond `everything`,
-/// polytopes and what has no exact surface (in cells of `resolution` along the longest side) have facets. A frustum
-/// with equal ends is a cylinder; a torus has a hole, if only a pinhole: these programs take no others.
+/// A primitive for programs with exact solids. A half-space becomes a block that reaches beyond `everything`. Polytopes
+/// and solids without an exact surface become facets (`resolution` cells along the longest side). A frustum with equal
+/// ends becomes a cylinder. A torus gets at least a pinhole, which these programs require.
 [[nodiscard]] brep::KernelSolid solid_of(const Primitive& primitive, const AlignedBox& everything, int resolution);
 
-/// The surface of a solid in its own frame, with as much outside of it as inside.
+/// The surface in the solid's own frame, with as much volume outside the exact surface as inside.
 [[nodiscard]] brep::Facets facets_of(Primitive primitive, const AlignedBox& everything, int resolution);
 
-/// The connected pieces of a surface, the one around most first: those that turn inward are holes in one before.
+/// The connected pieces of a surface, by decreasing volume; pieces that face inward are holes in an earlier piece.
 [[nodiscard]] std::vector<brep::Facets> shells_of(const brep::Facets& facets);
 
-/// Of a closed surface, negative when it turns inward.
+/// The volume of a closed surface; negative if it faces inward.
 [[nodiscard]] double volume_of(const brep::Facets& facets);
 
 }  // namespace cloud2csg::script

@@ -23,18 +23,17 @@ bool is_digit(char c) {
 std::string identifier(const std::string& id) {
   std::string name;
   for (const char c : id) name += is_letter(c) || is_digit(c) ? c : '_';
-  // Names with an underline in front mean something in Python.
+  // In Python a leading underscore has a special meaning.
   return name.empty() || !is_letter(name[0]) ? "solid_" + name : name;
 }
 
-/// A character of a text in UTF-8.
 struct Character {
   std::uint32_t code;
   std::string_view bytes;
 };
 constexpr std::uint32_t k_no_character = 0xFFFD;
 
-/// A byte that begins no character is one of code k_no_character.
+/// Represents an invalid byte by k_no_character.
 std::vector<Character> characters_of(std::string_view text) {
   std::vector<Character> characters;
   characters.reserve(text.size());

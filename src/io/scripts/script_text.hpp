@@ -7,11 +7,10 @@
 
 #include "cloud2csg/primitive.hpp"
 
-/// What scripts are made of, whatever their language. Names in a model are somebody else's text: they go into a script
-/// as identifiers, as comments of one line or as quoted strings, in no other way.
+/// Script text in any language. Names in a model are others' text: only identifiers, one-line comments, quoted strings.
 namespace cloud2csg::script {
 
-/// Writes lengths and positions: short, ten significant digits, and plain 0 for what is rounding of the model's size.
+/// Writes lengths and positions with ten significant digits, and rounding errors of the model's size as plain 0.
 class NumberFormat {
  public:
   /// `scale`: the size of the model.
@@ -24,33 +23,31 @@ class NumberFormat {
   double smallest_;
 };
 
-/// Angles of a quaternion carry its rounding: one that is within 1e-9 degrees of a whole number is that number.
+/// Rounds an angle within 1e-9 degrees of a whole number, because quaternions carry rounding errors.
 [[nodiscard]] double degrees_of(double radians);
 
-/// Gives out names of letters, digits and underlines, each once.
+/// Gives out unique names of letters, digits and underscores.
 class UniqueNames {
  public:
-  /// Names that are never given out.
+  /// Never gives out the reserved names.
   explicit UniqueNames(std::set<std::string> reserved) : taken_(std::move(reserved)) {}
 
-  /// `wanted` as far as it can be had: other characters become underlines, a number makes it unique.
+  /// A unique name like `wanted`: replaces other characters by underscores and adds a number if needed.
   [[nodiscard]] std::string take(const std::string& wanted);
 
  private:
   std::set<std::string> taken_;
 };
 
-/// A name for each primitive: its id as far as can be.
+/// A name for each primitive, as close to its id as possible.
 [[nodiscard]] std::vector<std::string> names_of(const PrimitiveSet& primitives, UniqueNames& names);
 
-/// `prefix` before each line; control characters, which could end a line or the script, and bytes that are no UTF-8
-/// become question marks.
+/// Puts `prefix` before each line. Control characters, which could end it, and invalid UTF-8 become question marks.
 [[nodiscard]] std::string comment(std::string_view text, std::string_view prefix);
 
 /// A Python string, in double quotes and ASCII.
 [[nodiscard]] std::string python_string(std::string_view text);
 
-/// Words that Python keeps for itself.
 [[nodiscard]] const std::set<std::string>& python_keywords();
 
 }  // namespace cloud2csg::script

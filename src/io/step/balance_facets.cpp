@@ -9,7 +9,7 @@
 namespace cloud2csg::brep {
 namespace {
 
-/// How far the surface is from points, along its normal there, outward positive; 0 where that is not known.
+/// Distances from points to the surface along the gradient, outward positive; 0 if unknown.
 std::vector<double> offsets_of_surface(const Model& field, const Points& points) {
   const std::vector<double> values = implicit_value(*field.tree, field.primitives, points);
   const Points gradients = implicit_gradient(*field.tree, field.primitives, points);
@@ -35,7 +35,7 @@ Points middles_of(const TriangleMesh& mesh) {
   return middles;
 }
 
-/// A vertex's part in what its triangles are off.
+/// A vertex's share in the volume error of its triangles.
 struct Share {
   double volume = 0;
   double area = 0;
@@ -54,7 +54,7 @@ void balance_facets(TriangleMesh& mesh, const Model& model) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto [a, b, c] = mesh.triangles[t];
       const Eigen::Vector3d area = area_of(mesh, t);
-      // The mean over the triangle, exact for offsets that are quadratic.
+      // The mean over the triangle, exact for quadratic offsets.
       const double mean = 0.75 * at_middles[t] + (at_vertices[a] + at_vertices[b] + at_vertices[c]) / 12;
       const double longest = std::sqrt(area.norm());
       const double bounded = std::clamp(mean, -0.5 * longest, 0.5 * longest);

@@ -52,7 +52,7 @@ Facets ModelHost::facets_of(std::size_t node) const {
 }
 
 Facets ModelHost::facets_of(const Model& part) const {
-  // Overlapping triangles, as they come with exact corners, would make an invalid solid.
+  // Exact corners may bring overlapping triangles, which would make the solid invalid.
   TriangleMesh mesh =
       mesh_surface(part, extent_, {.resolution = options_.facet_resolution, .corners_first = false}, quiet_);
   balance_facets(mesh, part);
@@ -72,7 +72,7 @@ PrimitiveIndex ModelHost::primitive_at(const std::vector<Eigen::Vector3d>& point
     double farthest = 0;
     for (const double value : signed_distance(primitives_[index], in_model))
       farthest = std::max(farthest, std::abs(value));
-    // Of primitives whose faces coincide, always the first.
+    // Among coincident faces, prefers the first primitive.
     constexpr double k_same = 1e-9;
     if (farthest < least - k_same * job_.size * job_.frame.scale) {
       least = farthest;

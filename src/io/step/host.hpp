@@ -5,10 +5,10 @@
 
 namespace cloud2csg::brep {
 
-/// What the kernel asks of a model.
+/// Answers the kernel's questions about a model.
 class ModelHost : public KernelHost {
  public:
-  /// All but `names`, which STEP files have in place of tokens, must outlive this.
+  /// All arguments but `names` must outlive this. `names` replace the tokens in STEP files.
   ModelHost(const KernelJob& job, const Model& model, const AlignedBox& extent, const BrepOptions& options,
             const RunContext& run, std::vector<std::string> names = {});
 

@@ -13,11 +13,10 @@
 #include "core/fields/tree_volume.hpp"
 #include "io/step/solid_plan.hpp"
 
-/// What the library and the module with OpenCASCADE say to each other. The module knows solids, not trees or meshes:
-/// what it needs of these it asks its host.
+/// Interface of library and OpenCASCADE module. The module knows solids; it asks its host about trees and meshes.
 namespace cloud2csg::brep {
 
-/// A closed surface of flat faces, in several pieces maybe: corner numbers counter-clockwise seen from outside.
+/// A closed polyhedral surface of one or more pieces: corner indices, counter-clockwise seen from outside.
 struct Facets {
   std::vector<Eigen::Vector3d> corners;
   std::vector<std::vector<std::uint32_t>> faces;
@@ -28,8 +27,8 @@ struct KernelSolid {
   Pose pose = {};
 };
 
-/// From the frame that the kernel works in to that of the model: x_model = scale * x + offset. The kernel's tolerances
-/// are absolute and meant for parts of some hundred millimetres near the origin.
+/// Maps the kernel's frame to the model's: x_model = scale * x + offset. The kernel's absolute tolerances suit parts of
+/// some hundred millimetres near the origin.
 struct WorkFrame {
   double scale = 1;
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
@@ -41,24 +40,24 @@ enum class KernelFormat { step, brep, mesh };
 
 struct KernelJob {
   SolidPlan plan = {};
-  std::vector<std::vector<std::size_t>> levels = {};  ///< of the plan, as levels_of() has them
-  AlignedBox extent = {};                             ///< in the kernel's frame: all of space, as far as the model goes
+  std::vector<std::vector<std::size_t>> levels = {};  ///< as from levels_of()
+  AlignedBox extent = {};                             ///< in the kernel's frame: all of space as far as the model goes
   double size = 1;                                    ///< diagonal of `extent`
   double volume_tolerance = 1e-3;
   WorkFrame frame = {};
   KernelFormat format = KernelFormat::step;
-  std::filesystem::path file = {};  ///< to be written over, but for a mesh
-  double mesh_deviation = 0;        ///< of a mesh from the surface, in the kernel's frame
-  /// Names are plain letters and digits: the host puts the real ones in their place (step_text.hpp).
+  std::filesystem::path file = {};  ///< overwritten, except for a mesh
+  double mesh_deviation = 0;        ///< mesh to surface, in the kernel's frame
+  /// Names are plain letters and digits, which the host replaces by the real ones (step_text.hpp).
   std::string part_name = {};
-  std::string assembly_name = {};               ///< of part and components
-  std::string program = {};                     ///< name and version, for the head of the file
-  std::vector<std::string> names = {};          ///< of all primitives
+  std::string assembly_name = {};  ///< part and components together
+  std::string program = {};        ///< name and version, for the head of the file
+  std::vector<std::string> names = {};
   std::vector<PrimitiveIndex> components = {};  ///< primitives to write beside the solid
 };
 
 struct KernelFailure {
-  std::size_t node;  ///< of the plan
+  std::size_t node;  ///< plan node
   std::string reason;
 };
 
@@ -69,12 +68,12 @@ struct KernelResult {
   std::size_t solids = 0;
   std::size_t faces = 0;
   std::size_t healed_faces = 0;
-  TriangleMesh mesh = {};  ///< in the kernel's frame, when it was asked for
+  TriangleMesh mesh = {};  ///< in the kernel's frame, if requested
   std::vector<KernelFailure> failures = {};
-  std::string error = {};  ///< not empty: the file could not be made, and this is why
+  std::string error = {};  ///< why the file could not be made; empty on success
 };
 
-/// Answers are in the kernel's frame. Called from several threads at a time.
+/// Answers are in the kernel's frame. Called concurrently from several threads.
 class KernelHost {
  public:
   KernelHost() = default;
@@ -85,19 +84,18 @@ class KernelHost {
   KernelHost& operator=(KernelHost&&) = delete;
 
   [[nodiscard]] virtual KernelSolid solid_of(PrimitiveIndex primitive) const = 0;
-  /// Of a node of the plan; absent when it has no ends. @throws Cancelled
+  /// The volume of a plan node; absent for an unbounded node. @throws Cancelled
   [[nodiscard]] virtual std::optional<VolumeEstimate> volume_of(std::size_t node) const = 0;
-  /// The node's surface with facets. @throws Cancelled
+  /// The facets of a plan node's surface. @throws Cancelled
   [[nodiscard]] virtual Facets facets_of(std::size_t node) const = 0;
-  /// The primitive on whose surface these points are best.
+  /// The primitive whose surface fits these points best.
   [[nodiscard]] virtual PrimitiveIndex primitive_at(const std::vector<Eigen::Vector3d>& points) const = 0;
-  /// Puts the real names into a STEP file in place of their tokens.
+  /// Replaces the tokens in a STEP file by the real names.
   virtual void name_step(const std::filesystem::path& file) const = 0;
   [[nodiscard]] virtual const RunContext& run() const = 0;
 };
 
-/// The module's two functions, by name. The version must be that of the library: there is no other promise between
-/// them.
+/// Symbols of the module's two functions. Only equal versions of module and library are compatible.
 inline constexpr const char* k_kernel_version_symbol = "cloud2csg_kernel_version";
 inline constexpr const char* k_kernel_run_symbol = "cloud2csg_kernel_run";
 inline constexpr int k_kernel_version = 3;

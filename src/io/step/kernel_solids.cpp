@@ -24,7 +24,7 @@ Facets facets_of(const Polytope& polytope) {
 
 KernelSolid block_below(const Pose& pose, const AlignedBox& extent) {
   const double reach = (extent.center() - pose.position).norm() + 0.5 * extent.diagonal().norm();
-  // Numbers of few digits; a tenth more, so that no side is where the model is cut.
+  // Rounds to few digits. The extra tenth keeps all sides off the box that cuts the model.
   const double unit = std::pow(10.0, std::floor(std::log10(reach)) - 1.0);
   const double half = std::ceil(1.1 * reach / unit) * unit;
   return {.shape = Box{.size = Eigen::Vector3d::Constant(2 * half)},
@@ -93,9 +93,9 @@ WorkFrame work_frame(const AlignedBox& extent) {
   constexpr double k_most = 2e4;
   const double size = extent.sizes().maxCoeff();
   WorkFrame frame;
-  // Powers of two leave the digits of all numbers as they are.
+  // Scaling by powers of two keeps all digits.
   if (size < k_least || size > k_most) frame.scale = std::exp2(std::round(std::log2(size / 100)));
-  // Far away, coordinates have no room left for the kernel's tolerance.
+  // Far from the origin, coordinates are too coarse for the kernel's tolerance.
   if (extent.center().norm() > 100 * size) frame.offset = extent.center();
   return frame;
 }

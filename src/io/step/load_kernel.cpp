@@ -28,13 +28,13 @@ Kernel find_kernel() {
   if (module == nullptr) {
     const char* const error = ::dlerror();  // NOLINT(concurrency-mt-unsafe): of this thread
     const std::string reason = error != nullptr ? error : "";
-    // It begins with the name of the file that was not found: the module itself, or one that it needs.
+    // The message begins with the file that was not found: the module or one of its dependencies.
     const bool lacks_opencascade = reason.starts_with("libTK");
     return {.missing = fmt::format("its module for OpenCASCADE cannot be loaded ({})", reason),
             .remedy = lacks_opencascade ? "install OpenCASCADE (on Debian libocct-data-exchange-7.6)" : k_reinstall,
             .lacks_opencascade = lacks_opencascade};
   }
-  // The one way to get a function out of a module.
+  // dlsym() requires the cast.
   const auto version = reinterpret_cast<KernelVersion>(::dlsym(module, k_kernel_version_symbol));
   const auto run = reinterpret_cast<KernelRun>(::dlsym(module, k_kernel_run_symbol));
   if (version == nullptr || run == nullptr || version() != k_kernel_version) {

@@ -7,20 +7,18 @@
 
 namespace cloud2csg::brep {
 
-/// The module with OpenCASCADE.
 struct Kernel {
-  KernelRun run = nullptr;          ///< absent when there is none
-  std::string missing = {};         ///< then, why
-  std::string remedy = {};          ///< and what to do about it
-  bool lacks_opencascade = false;   ///< the module is there, libraries that it needs are not
+  KernelRun run = nullptr;          ///< null if there is none
+  std::string missing = {};         ///< why there is none
+  std::string remedy = {};          ///< how to get one
+  bool lacks_opencascade = false;   ///< the module exists, but lacks some of its libraries
   std::filesystem::path file = {};  ///< where it was found
 };
 
-/// Loads it, once a process; it stays. Looked for where the program looks for its libraries: beside the installed
-/// program's (its run path), then where the system's are, then in LD_LIBRARY_PATH.
+/// Loads the module once a process and keeps it. Looks beside the installed program's libraries (its run path), then in
+/// the system's folders, then in LD_LIBRARY_PATH.
 [[nodiscard]] const Kernel& load_kernel();
 
-/// Whether there is a module to be loaded.
 [[nodiscard]] bool is_kernel_built_in();
 
 }  // namespace cloud2csg::brep

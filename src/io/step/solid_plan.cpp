@@ -9,7 +9,7 @@ namespace {
 
 using Kind = PlanNode::Kind;
 
-/// A node of the plan or all that is not in it.
+/// A node of the plan or its complement.
 struct Operand {
   std::size_t node;
   bool is_complement;
@@ -21,7 +21,7 @@ Operand complement_of(const Operand& a) {
 
 void append(std::vector<std::size_t>& list, std::vector<std::size_t> more) {
   if (list.empty()) {
-    list = std::move(more);  // a chain of thousands is not copied at each link
+    list = std::move(more);  // avoids copying a chain of thousands at each link
   } else {
     list.insert(list.end(), more.begin(), more.end());
   }
@@ -114,7 +114,7 @@ class Planner {
   std::vector<Operand> stack_ = {};
 };
 
-/// Which nodes the root needs; those that were taken up by others are not among them.
+/// The nodes that the root needs; excludes nodes merged into others.
 std::vector<bool> needed(const SolidPlan& plan, std::size_t root) {
   std::vector<bool> is_needed(plan.nodes.size(), false);
   is_needed[root] = true;

@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::string_view k_token_start = "cloud2csg-name-";
 
-/// An apostrophe may be doubled, says the standard; but some readers, OpenCASCADE's too, take it for the string's end
-/// where a bracket or comma follows.
+/// The standard doubles apostrophes, but some readers, as OpenCASCADE, end the string at one before a bracket or comma.
 bool stands_for_itself(std::uint32_t code) {
   return code >= 0x20 && code < 0x7F && code != '\'';
 }
@@ -34,7 +33,7 @@ std::string name_token(std::size_t number) {
 std::string step_string(std::string_view utf8) {
   std::string out = "'";
   while (!utf8.empty()) {
-    // What is no UTF-8 is taken for Latin 1.
+    // Treats invalid UTF-8 as Latin 1.
     const Utf8Character character =
         first_character(utf8).value_or(Utf8Character{.code = static_cast<unsigned char>(utf8[0]), .bytes = 1});
     utf8.remove_prefix(character.bytes);

@@ -30,7 +30,7 @@ const brep::Kernel& kernel_for(const std::filesystem::path& file) {
                .remedy = kernel.remedy});
 }
 
-// Which names the tokens of a job stand for.
+// Numbers of the names that a job's tokens represent.
 constexpr std::size_t k_part = 0;
 constexpr std::size_t k_assembly = 1;
 constexpr std::size_t k_first_primitive = 2;
@@ -61,7 +61,7 @@ KernelJob job_of(const Model& model, const AlignedBox& extent, const BrepOptions
   return job;
 }
 
-/// So that a message stays a line that can be read.
+/// Keeps a message readable on one line.
 std::string shortened(std::string text) {
   constexpr std::size_t k_longest = 200;
   if (text.size() <= k_longest) return text;
@@ -93,7 +93,6 @@ VolumeEstimate volume_within(const Model& model, const AlignedBox& extent, const
   return tree_volume(model, own.intersection(extent), k_levels, run);
 }
 
-/// What the kernel made, and what is to be said of it.
 struct Made {
   KernelResult result;
   BrepReport report;

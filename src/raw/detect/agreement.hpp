@@ -16,19 +16,18 @@ struct OrientedPoint {
   Eigen::Vector3d normal;  ///< unit length, outward
 };
 
-/// What a surface says of a point with its normal: the signed distance, and the cosine between the surface's normal
-/// there and the point's.
+/// A point's signed distance from a surface, and the cosine between the point's normal and the surface's.
 struct Agreement {
   double distance, cosine;
 };
 
-/// When a point lies on a surface.
+/// Limits within which a point lies on a surface.
 struct AgreementLimits {
-  double distance;         ///< at most, on either side
-  double cosine;           ///< at least
-  double most_radius = 3;  ///< of surfaces in a cloud of diagonal one: what is larger is flat
+  double distance;         ///< greatest absolute value
+  double cosine;           ///< least value
+  double most_radius = 3;  ///< in a cloud of diagonal 1; a larger surface counts as flat
 
-  /// How well they hold: from 1 for a point on the surface with the surface's normal down to 0 at either limit.
+  /// Weight of the point: 1 on the surface with its normal, falling to 0 at either limit.
   [[nodiscard]] double support(const Agreement& agreement) const {
     if (!hold(agreement)) return 0;
     const double off = agreement.distance / distance;
@@ -39,12 +38,12 @@ struct AgreementLimits {
   }
 };
 
-/// Calls f(rule), where rule(position, normal) is an Agreement with signed_distance() and normal() of the surface: the
-/// type is looked at once, not for each point. What it returns is what f does.
+/// Calls f(rule) and returns its result. rule(position, normal) gives an Agreement by signed_distance() and normal() of
+/// the surface. This dispatches on the type once, not for each point.
 template <class Function>
 auto with_agreement(const Surface& s, const Function& f) {
   using Vector = Eigen::Vector3d;
-  const double tiny = 1e-300;  // instead of zero, where a place has no normal
+  const double tiny = 1e-300;  // replaces zero where the surface has no normal
   const double side = s.concave && s.type != SurfaceType::plane ? -1 : 1;
   const auto round = [side, tiny](const Vector& v, const Vector& n, double radius) -> Agreement {
     const double length = std::max(v.norm(), tiny);
@@ -82,16 +81,15 @@ auto with_agreement(const Surface& s, const Function& f) {
   });
 }
 
-/// The sum of what the points support. Unlike their number it tells a surface through the middle of the points from one
-/// that just has them within its limits (MSAC: Torr and Zisserman 2000). O(n)
+/// Sum of the points' support. Unlike the number of agreeing points, it prefers a surface through the middle of the
+/// points (MSAC: Torr and Zisserman 2000). O(n)
 [[nodiscard]] double support_of(const Surface& surface, std::span<const OrientedPoint> points,
                                 const AgreementLimits& limits);
 
-/// How many of the points lie on the surface. O(n)
+/// Number of points on the surface. O(n)
 [[nodiscard]] std::size_t count_agreeing(const Surface& surface, std::span<const OrientedPoint> points,
                                          const AgreementLimits& limits);
 
-/// Those that do.
 [[nodiscard]] std::vector<OrientedPoint> agreeing_points(const Surface& surface, std::span<const OrientedPoint> points,
                                                          const AgreementLimits& limits);
 

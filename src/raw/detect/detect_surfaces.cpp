@@ -17,7 +17,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::size_t k_equal_sample = 200;  // points that tell whether two surfaces are one
+constexpr std::size_t k_equal_sample = 200;  // points that decide whether two surfaces are one
 constexpr double k_nearly_all = 0.9;
 
 bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, const AgreementLimits& limits,
@@ -25,13 +25,13 @@ bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, 
   return static_cast<double>(count_agreeing(surface, points, limits)) >= share * static_cast<double>(points.size());
 }
 
-/// One surface for the points of both, when there is one.
+/// One surface for the points of both, if it exists.
 std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b, const WorkCloud& cloud,
                                    const AgreementLimits& limits) {
   if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
   const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_equal_sample);
   const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_equal_sample);
-  // Each need not lie on the other, which is only sure where its points are; on one fitted to both they must.
+  // A fit is reliable only near its own points, so this test is loose. The common fit must explain nearly all points.
   AgreementLimits wide = limits;
   wide.distance *= 3;
   if (!explains(a.surface, of_b, wide, 0.5) && !explains(b.surface, of_a, wide, 0.5)) return std::nullopt;
@@ -61,8 +61,7 @@ void join_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const
   }
 }
 
-/// Each surface on all points that agree with it, whoever found them first: of two that were found on the same face,
-/// the true one now has all of it.
+/// Gives each surface all agreeing points, whoever found them first: the true surface of a face gets all of it.
 void claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
                const RunContext& run) {
   for_each_index(surfaces.size(), run, [&](std::size_t k) {
@@ -80,7 +79,7 @@ void claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, cons
   });
 }
 
-/// Leaves out the smallest surface again and again whose points nearly all lie on others.
+/// Drops surfaces, the smallest first, whose points nearly all lie on others.
 void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits) {
   std::stable_sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) {
     return preference(a.surface.type) * a.support > preference(b.surface.type) * b.support;
@@ -100,7 +99,7 @@ void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
   }
 }
 
-/// The nearest surface that each point agrees with; as many as there are surfaces for none.
+/// The nearest agreeing surface for each point; surfaces.size() if there is none.
 std::vector<std::uint32_t> nearest_surfaces(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                                             const AgreementLimits& limits, const RunContext& run) {
   constexpr std::size_t k_block = 4096;
@@ -142,10 +141,8 @@ void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const 
   });
 }
 
-/// Looks at all surfaces together: those that are one are made one (a face in several pieces, a shaft through a wall);
-/// each point of the cloud goes to the surface that it is nearest to, of those that it agrees with; those that others
-/// explain, or that are left with too few points, go; each is fitted to all of its points.
-/// O(points x surfaces)
+/// Joins equal surfaces (a face in several pieces, a shaft through a wall). Drops those that others explain or that
+/// have too few points. Each point goes to the nearest agreeing surface, which is fitted to it. O(points x surfaces)
 std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                           const SearchLimits& limits, const RunContext& run) {
   for (int round = 0; round < 2; ++round) {
@@ -164,7 +161,7 @@ std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, co
 constexpr std::uint64_t k_propose_stage = 0x70726f70;
 constexpr std::uint64_t k_subset_stage = 0x73756273;
 
-/// The candidates that most points of a subset agree with, the best first.
+/// The candidates with the most support in a random subset, the best first.
 std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimits& limits, std::size_t draws,
                                      std::uint64_t seed, std::uint64_t round, const RunContext& run) {
   std::vector<std::vector<Surface>> proposed(draws);
@@ -205,7 +202,7 @@ std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimit
   return with_simplest_type(with_widest_type(std::move(**best), points, limits), points, limits);
 }
 
-/// Takes one surface after the other, until many draws find none.
+/// Finds one surface after another until many draws in a row find none.
 std::vector<GrownSurface> find_all(const WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
                                    const RunContext& run) {
   constexpr std::size_t k_draws = 64;
@@ -243,9 +240,9 @@ double rms_distance(const GrownSurface& grown, const WorkCloud& work) {
   });
 }
 
-/// What its points leave open of the axis, in degrees: a short piece of a pipe says little.
+/// Uncertainty of the axis in degrees, which is large for a short piece of a pipe.
 double turn_of(const GrownSurface& grown, const WorkCloud& work) {
-  constexpr std::size_t k_points = 1000;  // of more, the axis is as sure as it need be
+  constexpr std::size_t k_points = 1000;  // more points make the axis no more certain
   std::vector<Eigen::Vector3d> positions;
   for (const OrientedPoint& p : work.some_of(grown.points, k_points)) positions.push_back(p.position);
   const std::optional<SurfaceFit> fit = fit_surface(grown.surface, positions);
@@ -263,14 +260,14 @@ DetectedSurface detected(const GrownSurface& grown, const WorkCloud& work) {
   return result;
 }
 
-/// In a cloud of diagonal one: as an option says, or else what is flat.
+/// In a cloud of diagonal 1: the option's value, up to the radius that counts as flat.
 double most_radius_of(const DetectOptions& options, double diagonal) {
   const double flat = AgreementLimits{.distance = 0, .cosine = 0}.most_radius;
   return options.most_size ? std::min(flat, *options.most_size / diagonal) : flat;
 }
 
-/// Whether a surface is neither smaller nor larger than surfaces are to be. Those that are are found first, so that no
-/// others make up for them: no strips of planes for a small bore.
+/// Whether a surface's size is within the options' limits. Surfaces outside are dropped only after detection, so that
+/// no others replace them: no strips of planes for a small bore.
 bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const DetectOptions& options, double link) {
   if (!options.least_size && !options.most_size) return true;
   const SurfaceType type = grown.surface.type;

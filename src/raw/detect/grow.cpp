@@ -14,7 +14,7 @@ namespace {
 constexpr int k_bits = 21;
 constexpr std::int64_t k_offset = std::int64_t{1} << (k_bits - 1);
 
-/// The cube that a place lies in, as one number; neighbours along x differ by 1.
+/// The key of the cube that contains a point. Neighbours along x differ by 1.
 std::uint64_t cube_of(const Eigen::Vector3d& p, double edge) {
   std::uint64_t key = 0;
   for (int axis = 2; axis >= 0; --axis) {
@@ -24,10 +24,9 @@ std::uint64_t cube_of(const Eigen::Vector3d& p, double edge) {
   return key;
 }
 
-/// The cubes by the group that they belong to.
 DisjointSets join_cubes(const std::vector<std::uint64_t>& cubes) {
   DisjointSets groups(cubes.size());
-  // Half of the 26 neighbours, as rows along x: the others meet when it is the neighbour's turn.
+  // Half of the 26 neighbours, as rows along x. The other half joins from the neighbour's side.
   constexpr std::uint64_t k_row = std::uint64_t{1} << k_bits;
   constexpr std::uint64_t k_slice = k_row << k_bits;
   for (std::size_t i = 0; i < cubes.size(); ++i) {
@@ -44,7 +43,7 @@ DisjointSets join_cubes(const std::vector<std::uint64_t>& cubes) {
   return groups;
 }
 
-/// So many points tell the surface of all.
+/// This many points suffice to fit a surface.
 constexpr std::size_t k_sample = 400;
 
 std::vector<std::uint32_t> agreeing_of(const Surface& surface, const FreePoints& points,
@@ -59,7 +58,7 @@ std::vector<std::uint32_t> agreeing_of(const Surface& surface, const FreePoints&
   });
 }
 
-/// The largest group of points that agree and hang together; empty when there are fewer than the least.
+/// The largest connected group of agreeing points; empty if it is smaller than the limit.
 std::vector<std::uint32_t> connected_points(const Surface& surface, const FreePoints& points,
                                             const SearchLimits& limits) {
   const std::vector<std::uint32_t> agreeing = agreeing_of(surface, points, limits.agreement);
@@ -116,7 +115,7 @@ double preference(SurfaceType type) {
 }
 
 std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints& points, const SearchLimits& limits) {
-  // Wide at first: a start from few points is not yet where it will be.
+  // Loose limits at first, because a start from few points is still inaccurate.
   SearchLimits wide = limits;
   wide.agreement.distance *= 1.5;
   std::vector<std::uint32_t> seen = connected_points(start, points, wide);
@@ -137,7 +136,7 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
 GrownSurface with_widest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
   constexpr std::array k_most_flexible{SurfaceType::cone, SurfaceType::torus};
   if (grown.surface.type == SurfaceType::plane) return grown;
-  // Beyond the points that it has: these lie on it as well as they can, and hide what it should be.
+  // Uses a wider band, because the own points fit the surface too well to show its true type.
   SearchLimits wide = limits;
   wide.agreement.distance *= 4;
   const std::vector<OrientedPoint> around =

@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_least_sine = 0.05;  // normals that are nearly parallel tell neither a centre nor an axis
+constexpr double k_least_sine = 0.05;  // nearly parallel normals determine neither centre nor axis
 
-/// Where two lines pass each other: the middle of the shortest way, absent when they are nearly parallel.
+/// The midpoint of the shortest segment between two lines; absent if they are nearly parallel.
 std::optional<Vector3d> meeting(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v) {
   const double b = u.dot(v);
   const double determinant = 1 - b * b;
@@ -26,7 +26,7 @@ std::optional<Vector3d> meeting(const Vector3d& p, const Vector3d& u, const Vect
 using Neighbourhood = std::span<const OrientedPoint>;
 
 constexpr std::size_t k_neighbours = 24;
-/// Fewer of them say nothing; and a surface must agree with half.
+/// Fewer neighbours are no evidence. Half of them must agree with a surface.
 constexpr std::size_t k_least_neighbours = 8;
 
 struct Columns {
@@ -44,11 +44,11 @@ Columns columns_of(std::span<const OrientedPoint> points) {
   return columns;
 }
 
-/// Whether a surface is one that points of a cloud of diagonal one can tell from a simpler one.
+/// Whether points of a cloud of diagonal 1 can tell the surface from a simpler one.
 bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
   if (!surface.position.allFinite() || !surface.axis.allFinite()) return false;
   constexpr double k_most_apex = 3;          // from the middle of the cloud
-  const double least = 2 * limits.distance;  // of a radius that shows
+  const double least = 2 * limits.distance;  // detectable radius
   switch (surface.type) {
     case SurfaceType::plane:
       return true;
@@ -56,7 +56,7 @@ bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
     case SurfaceType::cylinder:
       return surface.radius > least && surface.radius < limits.most_radius;
     case SurfaceType::cone:
-      // Sharper ones are cylinders and blunter ones planes, as far as points can tell.
+      // Points cannot tell sharper cones from cylinders or blunter ones from planes.
       return surface.half_angle > 0.035 && surface.half_angle < 1.5 && surface.position.norm() < k_most_apex;
     case SurfaceType::torus:
       return surface.minor_radius > least && surface.radius > surface.minor_radius &&
@@ -69,7 +69,7 @@ std::optional<Surface> if_plausible(std::optional<Surface> surface, const Agreem
   return surface && is_plausible(*surface, limits) ? surface : std::nullopt;
 }
 
-/// The surface, fitted to what of the neighbourhood agrees with it, when that is half.
+/// Fits the surface to the agreeing part of the neighbourhood; absent if less than half agrees.
 std::optional<Surface> confirmed(const std::optional<Surface>& surface, Neighbourhood points,
                                  const AgreementLimits& limits) {
   if (!surface || !is_plausible(*surface, limits)) return std::nullopt;
@@ -128,7 +128,7 @@ std::optional<Surface> cylinder_through(std::span<const OrientedPoint, 2> points
 }
 
 std::optional<Surface> cone_through(std::span<const OrientedPoint, 3> points) {
-  // The apex lies in the tangent planes of all three.
+  // The apex lies in all three tangent planes.
   Eigen::Matrix3d normals;
   Vector3d offsets;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -138,7 +138,7 @@ std::optional<Surface> cone_through(std::span<const OrientedPoint, 3> points) {
   if (std::abs(normals.determinant()) < k_least_sine * k_least_sine * k_least_sine) return std::nullopt;
   const Vector3d apex = normals.partialPivLu().solve(offsets);
 
-  // One step from the apex along each ruling: the axis is square to the plane through these places.
+  // Points at unit distance from the apex on the rulings span a plane orthogonal to the axis.
   std::array<Vector3d, 3> rulings;
   for (std::size_t i = 0; i < 3; ++i) rulings[i] = (points[i].position - apex).normalized();
   Vector3d axis = (rulings[1] - rulings[0]).cross(rulings[2] - rulings[0]);

@@ -34,7 +34,7 @@ WorkCloud make_work_cloud(const PointCloud& cloud) {
   WorkCloud work;
   work.middle = box.center();
   work.diagonal = std::max(box.diagonal().norm(), 1e-300);
-  // A little more than the points take up, so that none is on the far border.
+  // Enlarged slightly, so that no point is on the upper border.
   const double edge = std::max(box.sizes().maxCoeff(), 1e-300) * (1 + 1e-9);
   const MortonCurve curve(box.min(), edge, WorkCloud::k_levels);
   work.index = spatial_order(cloud.positions, curve, {.threads = 1});
@@ -65,7 +65,7 @@ std::vector<OrientedPoint> FreePoints::draw(std::size_t count, RandomStream& ran
 
 std::vector<OrientedPoint> FreePoints::draw_neighbours(std::size_t count, RandomStream& random) const {
   const std::uint32_t middle = list_[random.below(list_.size())];
-  // From half of the cloud's length to 1/256 of it: large surfaces show in large cells, small ones in small cells.
+  // From half of the cloud's length to 1/256 of it, so that cells match large and small surfaces.
   const int level = 1 + static_cast<int>(random.below(8));
   const auto [first, last] = cloud_.cell_of(middle, level);
   std::vector<OrientedPoint> drawn{cloud_.points[middle]};

@@ -12,24 +12,23 @@
 
 namespace cloud2csg {
 
-/// A cloud made ready for sampling: moved to its middle, scaled to a diagonal of one, and sorted along a Z curve, so
-/// that the cells of an octree are runs of points.
+/// A cloud for sampling: centred, scaled to a diagonal of 1 and sorted along a Z curve, so octree cells are runs.
 struct WorkCloud {
   std::vector<OrientedPoint> points;
-  std::vector<std::uint32_t> code;   ///< of the place on the curve, ascending: k_levels bits an axis
-  std::vector<std::uint32_t> index;  ///< of each point in the cloud that this was made of
+  std::vector<std::uint32_t> code;   ///< position on the curve, ascending: k_levels bits an axis
+  std::vector<std::uint32_t> index;  ///< original index of each point
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   double diagonal = 1;
 
   static constexpr int k_levels = 10;
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
-  /// The points [first, last) that share a cell of the octree with point i, its edge 2^-level of the cloud's longest.
-  /// O(log n). Precondition: 0 <= level <= k_levels.
+  /// The points [first, last) in the octree cell of point i. The cell's edge is 2^-level of the cloud's longest. O(log
+  /// n). Precondition: 0 <= level <= k_levels.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> cell_of(std::uint32_t i, int level) const;
-  /// The diagonal of the box around these points. O(n)
+  /// Diagonal of the points' bounding box. O(n)
   [[nodiscard]] double extent_of(const std::vector<std::uint32_t>& indices) const;
-  /// At most so many of these points, evenly along the list.
+  /// At most `most` of the points, evenly spaced along the list.
   [[nodiscard]] std::vector<OrientedPoint> some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const;
 };
 
@@ -48,10 +47,9 @@ class FreePoints {
   /// O(n)
   void take(std::span<const std::uint32_t> points);
 
-  /// So many drawn from all, with repetition; fewer when there are fewer.
+  /// Draws `count` free points with repetition; fewer if fewer are free.
   [[nodiscard]] std::vector<OrientedPoint> draw(std::size_t count, RandomStream& random) const;
-  /// A random point, and others near it: out of the same cell of an octree, of random size. Up to `count`; the fewer,
-  /// the less of the cell is free.
+  /// A random point and others from an octree cell of random size around it: up to `count`, limited by free points.
   [[nodiscard]] std::vector<OrientedPoint> draw_neighbours(std::size_t count, RandomStream& random) const;
 
  private:

@@ -23,15 +23,15 @@ constexpr std::size_t k_doubt_links = 12;
 constexpr double k_check_angle_deg = 35.0;
 constexpr double k_check_agreement = 0.8;
 constexpr std::size_t k_check_sample = 2048;
-constexpr std::size_t k_check_field = 16'384;            ///< points whose winding numbers tell inside from outside
-constexpr std::uint64_t k_field_stage = 0x6669'656c'64;  // names its stream of random numbers
-constexpr double k_inward_level = -0.2;                  ///< of winding numbers on the surface
-constexpr double k_wall_cosine = 0.7;                    ///< between normals on the two sides of a wall, at least
-constexpr double k_wall_rise = 0.35;                     ///< sine of the way across it, at least
-constexpr std::uint64_t k_check_stage = 0x6e6f'726d;     // names its stream of random numbers
+constexpr std::size_t k_check_field = 16'384;  ///< points whose winding numbers separate inside from outside
+constexpr std::uint64_t k_field_stage = 0x6669'656c'64;
+constexpr double k_inward_level = -0.2;  ///< mean winding number on the surface; inward normals give less
+constexpr double k_wall_cosine = 0.7;    ///< least, between opposed normals on the two sides of a wall
+constexpr double k_wall_rise = 0.35;     ///< least sine of the step across a wall
+constexpr std::uint64_t k_check_stage = 0x6e6f'726d;
 
-/// Whether most neighbours have a normal on the same side. Those across a thin wall, which are beside the point in the
-/// direction of its normal and have the opposite one, say nothing.
+/// Whether the normals of most neighbours are on the same side. Ignores neighbours across a thin wall: beside the point
+/// along its normal, with the opposite normal.
 bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::size_t i,
                             std::span<const std::uint32_t> near) {
   double votes = 0.0;
@@ -44,7 +44,7 @@ bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::
   return votes >= 0.0;
 }
 
-/// Whether most of a point's neighbours agree with its normal.
+/// Weighted mean agreement of a point's normal with its neighbours' normals.
 double mean_agreement(const Points& places, const Points& normals, std::size_t i,
                       std::span<const std::uint32_t> neighbours) {
   double sum = 0.0;
@@ -57,7 +57,7 @@ double mean_agreement(const Points& places, const Points& normals, std::size_t i
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-/// Points whose neighbours or, without sensors, winding number contradict; the place of the one in their middle.
+/// Counts points whose neighbours or (without sensors) winding number contradict them. Records the median one's place.
 void count_doubtful(EstimatedNormals& result, const Points& places, const Points& normals,
                     const NeighbourTable& neighbours, const std::vector<char>& is_doubtful) {
   std::vector<std::uint32_t> doubtful;
@@ -70,7 +70,7 @@ void count_doubtful(EstimatedNormals& result, const Points& places, const Points
   if (!doubtful.empty()) result.doubtful_at = places[doubtful[doubtful.size() / 2]];
 }
 
-/// Sensors know the side; without them the whole of the cloud tells.
+/// Uses sensor positions if the cloud has them, else the whole surface.
 Orientation orientation_of(const PointCloud& cloud, const LocalFits& fits, const Points& places, const Points& normals,
                            const Scale& scale, const RunContext& run, const StageShare& share) {
   if (!cloud.has_sensor_positions()) {
@@ -82,7 +82,6 @@ Orientation orientation_of(const PointCloud& cloud, const LocalFits& fits, const
   return {.flipped = orient_to_sensors(places, normals, sensors, fits.neighbours, run, share)};
 }
 
-/// Whether most of the normals at these points look away from their sensors.
 bool look_away(const PointCloud& cloud, std::span<const std::uint32_t> points) {
   double sum = 0.0;
   for (const std::uint32_t i : points) {
@@ -154,7 +153,7 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
       one_of_every_few(cloud.size(), k_check_field, RandomStream(0, k_field_stage));
   const std::vector<double> levels =
       winding_numbers(select_points(cloud, field), select_points(cloud, sample).positions, run);
-  // Half a turn less in the middle of the surface, where it closes; about none for a sheet, whose sides are alike.
+  // On a closed surface the mean is about 0.5, or -0.5 for inward normals; on an open sheet, about 0.
   const double mean = std::accumulate(levels.begin(), levels.end(), 0.0) / count;
   return mean < k_inward_level ? NormalsVerdict::inward : NormalsVerdict::outward;
 }

@@ -23,19 +23,18 @@ constexpr std::size_t k_least_points = 10;
 constexpr std::size_t k_sample = 512;
 constexpr std::size_t k_sample_chunk = 64;
 constexpr std::size_t k_spacing_neighbours = 8;
-constexpr std::array<std::size_t, 5> k_sizes{24, 48, 96, 192,
-                                             384};  ///< of the neighbourhoods that quadrics are fitted to
-/// A neighbourhood smaller than so many deviations is a ball of noise: what looks like its plane is chance.
+constexpr std::array<std::size_t, 5> k_sizes{24, 48, 96, 192, 384};  ///< neighbourhoods for fitting quadrics
+/// A neighbourhood with fewer deviations in its radius is a ball of noise, and its plane is chance.
 constexpr double k_least_radius = 5.0;
-/// Radii of equally many neighbours, the wide over the narrow: without outliers they differ less.
+/// Ratio of wide to narrow radii of equally many neighbours. Clouds without outliers are below.
 constexpr double k_uneven_density = 1.45;
-/// Of the sample's deviations: edges and details are above.
+/// Quantile of the sample's deviations; edges and details are above.
 constexpr double k_smooth_share = 0.35;
-/// Points beyond these shares along an axis count only when others are near.
+/// Points beyond these quantiles along an axis count only if other points are near.
 constexpr double k_core_share = 0.005;
 constexpr double k_stray_spacings = 6.0;
 constexpr std::size_t k_stray_neighbours = 4;
-constexpr std::uint64_t k_sampling_stage = 0x7363'616c'65;  // names its stream of random numbers
+constexpr std::uint64_t k_sampling_stage = 0x7363'616c'65;
 
 double quantile(std::vector<double> values, double share) {
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -43,7 +42,6 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-/// What the neighbourhoods of a sample of points look like.
 struct Neighbourhoods {
   std::vector<double> spacings;
   std::vector<double> radii;
@@ -71,8 +69,7 @@ Neighbourhoods measure(const Points& points, const NeighbourTree& tree, std::spa
   return result;
 }
 
-/// The deviations of the sample; where density is very uneven, of its denser half: outliers, be they as many as points,
-/// are mostly elsewhere.
+/// The sample's deviations. At very uneven density, only the denser half: even many outliers are mostly elsewhere.
 std::vector<double> credible_deviations(const Neighbourhoods& found) {
   if (quantile(found.radii, 0.8) < k_uneven_density * quantile(found.radii, 0.2)) return found.deviations;
   const double limit = quantile(found.radii, 0.5);
@@ -83,7 +80,7 @@ std::vector<double> credible_deviations(const Neighbourhoods& found) {
   return deviations;
 }
 
-/// From neighbourhoods as small as the noise allows: larger ones have more edges, and take longer.
+/// Uses the smallest neighbourhoods that the noise allows. Larger ones have more edges and take longer.
 void measure_spacing_and_noise(Scale& scale, const Points& points, const NeighbourTree& tree, const RunContext& run) {
   const std::vector<std::uint32_t> sample =
       one_of_every_few(points.size(), k_sample, RandomStream(0, k_sampling_stage));

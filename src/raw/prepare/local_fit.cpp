@@ -15,16 +15,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Neighbours of a plane: more where the noise is larger than the spacing, as the angle's error is about
-/// 2 noise / (radius sqrt(neighbours)); about three degrees.
+/// Neighbours for an angle error, about 2 noise / (radius sqrt(neighbours)), of three degrees; more at high noise.
 constexpr double k_least_neighbours = 20.0;
 constexpr double k_most_neighbours = 96.0;
 constexpr double k_neighbours_a_noise = 60.0;
 constexpr int k_trials = 16;
 constexpr int k_refinements = 3;
-/// Of the tolerance: less deviation than this and there is one plane only.
+/// In tolerances: with less deviation there is only one plane.
 constexpr double k_flat = 0.5;
-constexpr std::uint64_t k_trial_stage = 0x706c'616e'65;  // names its stream of random numbers
+constexpr std::uint64_t k_trial_stage = 0x706c'616e'65;
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -36,7 +35,6 @@ struct Plane {
   [[nodiscard]] double height(const Vector3d& place) const { return normal.dot(place - middle); }
 };
 
-/// Weighted moments of points around a first one.
 class Moments {
  public:
   void add(const Vector3d& place, double weight) {
@@ -60,7 +58,7 @@ class Moments {
   Matrix3d second_ = Matrix3d::Zero();
 };
 
-/// Places relative to the point that they surround.
+/// Places relative to the central point.
 using Places = std::vector<Vector3d>;
 
 double truncated_cost(const Places& places, const Plane& plane, double tolerance) {
@@ -72,10 +70,10 @@ double truncated_cost(const Places& places, const Plane& plane, double tolerance
   return cost;
 }
 
-/// The plane through three of the places that explains most. The point itself (the origin) must be near it.
+/// The best plane through three of the places. The central point (the origin) must be near it.
 Plane best_of_trials(const Places& places, const Plane& start, double tolerance, RandomStream& random) {
   Plane best = start;
-  // A plane that leaves out the point itself is none of its planes.
+  // The start is invalid if it misses the central point.
   double least = std::abs(start.height(Vector3d::Zero())) > tolerance ? static_cast<double>(places.size())
                                                                       : truncated_cost(places, start, tolerance);
   for (int trial = 0; trial < k_trials; ++trial) {
@@ -143,8 +141,8 @@ Vector6d monomials(double u, double v) {
   return terms;
 }
 
-/// The planes of all points. The tolerance is that of the noise, or a small share of the neighbourhood's radius where
-/// that is more: curved surfaces leave their planes. O(n k) @throws Cancelled
+/// Fits the planes of all points. The tolerance follows the noise, or a small share of the neighbourhood's radius if
+/// that is larger, because curved surfaces leave their planes. O(n k) @throws Cancelled
 std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours, double noise,
                                          const RunContext& run, const StageShare& share) {
   std::vector<LocalPlane> planes(points.size());

@@ -29,7 +29,7 @@ NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, 
     squares.resize(table.width + 1);
     const std::uint32_t i = order[place];
     tree.find(points[i], indices, squares);
-    // Of many points at one place the point itself may not be among the nearest: then the farthest is left out.
+    // Among coincident points, the point itself may be missing from its neighbours. Then the farthest one is dropped.
     std::size_t to = i * table.width;
     const std::size_t full = to + table.width;
     for (std::size_t n = 0; n < indices.size() && to < full; ++n) {

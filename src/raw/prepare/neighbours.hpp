@@ -12,22 +12,21 @@
 
 namespace cloud2csg {
 
-/// Points that one task of a loop over a cloud takes.
+/// Points a task in parallel loops.
 constexpr std::size_t k_chunk_points = 512;
 
-/// Points relative to the middle of their box, so that sums of products of coordinates do not cancel far from the
-/// origin.
+/// Points relative to the middle of their box, to avoid cancellation in products of coordinates far from the origin.
 struct CentredPoints {
   Points points;
   Eigen::Vector3d centre;
 };
 [[nodiscard]] CentredPoints centred(PointsView points);
 
-/// For each of some points, the same number of nearest ones, nearest first, without the point itself.
+/// A fixed number of nearest neighbours for each point, nearest first, without the point itself.
 struct NeighbourTable {
   std::size_t width = 0;
   std::vector<std::uint32_t> indices;  ///< [point x width]
-  std::vector<float> distances;        ///< of the same
+  std::vector<float> distances;        ///< same layout
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t point) const {
     return std::span(indices).subspan(point * width, width);
@@ -37,7 +36,7 @@ struct NeighbourTable {
   }
 };
 
-/// The table of all points; its width is at most one less than there are points. O(n k log n) @throws Cancelled
+/// The table for all points. `width` must be less than the number of points. O(n k log n) @throws Cancelled
 [[nodiscard]] NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
                                              const RunContext& run, const StageShare& share = {});
 

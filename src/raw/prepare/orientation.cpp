@@ -18,21 +18,20 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t k_links = 12;  ///< neighbours that a point votes with
-/// Patches: small beside what a part has of details, and few enough for all pairs of them.
+/// Patches are smaller than details, and few enough to consider all pairs.
 constexpr std::size_t k_wanted_patches = 2000;
 constexpr std::size_t k_least_patch = 5;
 constexpr std::size_t k_smallest_largest_patch = 16;
 constexpr std::size_t k_most_patches = 4096;
-/// Beyond so many radii the middle of a patch stands for it.
+/// In radii: beyond, a single dipole approximates a patch.
 constexpr double k_far = 3.0;
-/// Of the points: a body of less is not counted.
+/// Share of the points below which a body does not count.
 constexpr double k_body_share = 0.002;
-/// A winding number that is this far from one half contradicts the orientation.
+/// A winding number this far from one half contradicts the orientation.
 constexpr double k_doubt = 0.35;
 constexpr int k_spreads = 8;
 constexpr int k_sweeps = 3;
 
-/// Everything that the steps share.
 struct Cloud {
   const Points& places;
   const Points& normals;
@@ -43,7 +42,7 @@ struct Cloud {
   [[nodiscard]] std::span<const std::uint32_t> linked(std::size_t i) const {
     return neighbours.of(i).first(std::min(k_links, neighbours.width));
   }
-  /// Cubed: sure votes count for more than many vague ones.
+  /// Cubed, so that certain votes outweigh many vague ones.
   [[nodiscard]] double vote(std::size_t i, std::size_t j) const {
     const double vote = agreement(places[j] - places[i], normals[i], normals[j]);
     return vote * vote * vote;
@@ -87,7 +86,7 @@ struct Dipole {
   }
 };
 
-/// The dipoles of a patch, and one that stands for all of them from afar.
+/// The dipoles of a patch, and their sum for distant places.
 struct PatchSource {
   std::vector<Dipole> dipoles;
   Dipole all = {Vector3d::Zero(), Vector3d::Zero(), 0.0};
@@ -116,7 +115,7 @@ PatchSource source_of(const Cloud& cloud, const Patches& patches, std::span<cons
   return source;
 }
 
-/// The field of each patch at the middles of all. Its own is none: it lies in its plane.
+/// The field of each patch at the middles of all. A patch has no field at its own middle, which lies in its plane.
 PatchFields fields_of(const Cloud& cloud, const Patches& patches, const RunContext& run, const StageShare& share) {
   std::vector<PatchSource> sources;
   for (const std::vector<std::uint32_t>& points : patches.points) {
@@ -132,7 +131,7 @@ PatchFields fields_of(const Cloud& cloud, const Patches& patches, const RunConte
   return fields;
 }
 
-/// The patches with the most points, if there are more than pairs can be made of.
+/// The patches with the most points, limited by the cost of all pairs.
 Patches largest_of(Patches patches) {
   if (patches.points.size() <= k_most_patches) return patches;
   std::stable_sort(patches.points.begin(), patches.points.end(),
@@ -154,7 +153,7 @@ double neighbours_votes(const Cloud& cloud, std::uint32_t i, const std::vector<c
   return votes;
 }
 
-/// Points that are in no patch follow their neighbours, the next ones first.
+/// Points outside all patches follow their neighbours, the closest to a patch first.
 void spread(const Cloud& cloud, std::vector<char>& flipped, std::vector<char>& is_known) {
   for (int round = 0; round < k_spreads; ++round) {
     std::vector<char> next = flipped;
@@ -172,7 +171,7 @@ void spread(const Cloud& cloud, std::vector<char>& flipped, std::vector<char>& i
   }
 }
 
-/// Points whose neighbours outvote them turn; single ones at edges, where the local plane was none.
+/// Flips points whose neighbours outvote them, such as single points at edges without a local plane.
 void sweep(const Cloud& cloud, std::vector<char>& flipped) {
   const std::vector<char> all(cloud.size(), 1);
   for (int round = 0; round < k_sweeps; ++round) {
@@ -198,15 +197,15 @@ std::size_t count_bodies(const Patches& patches, const PatchSigns& signs, std::s
 using Eigen::Vector3d;
 
 constexpr std::size_t k_asked = 12;  ///< neighbours that a point asks
-/// Of the angle between normal and line of sight: below, an error of the normal may turn its sign (11 degrees).
+/// Cosine of normal and line of sight. Below it, an error of the normal may flip its sign (11 degrees).
 constexpr double k_grazing_cosine = 0.2;
-/// Shares of the neighbours' weight: with less on one side they are of both sides of a wall, and tell nothing.
+/// Majorities of the neighbours' weight. With less, neighbours are on both sides of a wall and tell nothing.
 constexpr double k_grazing_majority = 0.6;
-/// At an edge the plane may be that of the face around the corner, which the sensor saw from behind or not at all.
+/// At an edge the plane may belong to the adjacent face, which the sensor saw from behind or not at all.
 constexpr double k_clear_majority = 0.9;
 constexpr int k_rounds = 3;
 
-/// Cosine between a normal and the way to the sensor; 0 where the two are at one place.
+/// Cosine between a normal and the direction to the sensor; 0 if sensor and place coincide.
 double sight_cosine(const Vector3d& place, const Vector3d& normal, const Vector3d& sensor) {
   const Vector3d way = sensor - place;
   const double length = way.norm();
@@ -254,7 +253,7 @@ Orientation find_orientation(const Points& places, const Points& normals, const 
 
 std::vector<char> orient_to_sensors(const Points& places, const Points& normals, const Points& sensors,
                                     const NeighbourTable& neighbours, const RunContext& run, const StageShare& share) {
-  // How surely each normal is the right way round: its cosine, negative to turn it.
+  // Confidence in each normal: its cosine to the sensor, negative to flip.
   std::vector<double> signs(places.size());
   std::vector<char> is_grazing(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {

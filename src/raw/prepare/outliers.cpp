@@ -19,37 +19,36 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double k_isolated_spacings = 6.0;
-/// A neighbour counts when its plane explains this share of its own neighbours.
+/// Least inlier share of a credible neighbour's plane.
 constexpr double k_planar_support = 0.4;
-/// Where there are outliers: the best plane of points by chance has so much more than any.
+/// For a cloud with outliers: least inlier share above that of a random plane.
 constexpr double k_beyond_chance = 0.25;
 constexpr double k_most_support = 0.8;
-/// Of the neighbours that count: with so many planes through it a point stays. At a corner of three faces a third does,
-/// give or take chance.
+/// Share of the credible neighbours whose planes keep a point. At a corner of three faces it is about a third.
 constexpr double k_least_agreement = 0.17;
-/// The same of a point that looks like an outlier: planes go through it by chance, too.
+/// The same for a suspected outlier, which lies on some planes by chance.
 constexpr double k_suspect_agreement = 0.4;
-/// A point this much farther from others than its neighbours are looks like an outlier.
+/// A point with a gap this much larger than its neighbours' gaps is suspect.
 constexpr double k_suspect_gap = 1.4;
 constexpr std::size_t k_gap_neighbours = 8;
-/// Fewer neighbours that count are no evidence: a wire or a speck has no planes.
+/// Fewer credible neighbours are no evidence: a wire or a speck has no planes.
 constexpr std::size_t k_least_witnesses = 6;
 
-/// Neighbours whose planes tell something.
+/// The credible neighbours of a point.
 struct Witnesses {
   std::size_t count = 0;
-  std::size_t agreeing = 0;  ///< the point lies on their planes
-  double usual_gap = 0.0;    ///< the median of their distances to neighbours of their own
+  std::size_t agreeing = 0;  ///< neighbours whose planes contain the point
+  double usual_gap = 0.0;    ///< median gap of the neighbours
 };
 
 double gap_of(const LocalFits& fits, std::size_t point) {
   return fits.neighbours.distances_of(point)[std::min(k_gap_neighbours, fits.neighbours.width) - 1];
 }
 
-/// Whether the plane of a point is more than chance.
+/// Whether the plane of a point is better than chance.
 bool has_plane(const LocalFits& fits, std::size_t point, double noise, Strictness strictness) {
   if (strictness == Strictness::trusting) return fits.planes[point].support >= k_planar_support;
-  // Of points all over a ball, a slab through its middle holds this share.
+  // The share of a uniformly filled ball that a slab through its middle holds.
   const double reach = fits.neighbours.distances_of(point).back();
   const double half = std::clamp(k_noise_tolerance * noise / reach, k_bend_tolerance, 1.0);
   const double by_chance = half * (1.5 - 0.5 * half * half);
@@ -73,7 +72,6 @@ Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, 
   return witnesses;
 }
 
-/// Whether the planes of enough neighbours go through the point.
 bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Strictness strictness) {
   const Witnesses witnesses = ask_witnesses(fits, point, noise, strictness);
   if (witnesses.count < k_least_witnesses) return has_plane(fits, point, noise, strictness);
@@ -87,10 +85,9 @@ bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Stric
 using Eigen::Vector3d;
 using Indices = std::vector<std::uint32_t>;
 
-/// Of a plane among many outliers: with fewer, noise and chance look alike.
+/// Neighbours a plane among many outliers. With fewer, noise and chance look alike.
 constexpr std::size_t k_suspicious_neighbours = 48;
-/// A pass that leaves out this share of the points tells that there are more; scans have fewer, and sparse parts that
-/// are to stay.
+/// A pass that removes this share indicates many outliers. Clean scans lose less, and have sparse parts that must stay.
 constexpr double k_many = 0.06;
 constexpr int k_passes = 4;
 constexpr double k_widest_voxel_spacings = 3.0;
@@ -109,17 +106,17 @@ Indices without_duplicates(const Points& points) {
   return order;
 }
 
-/// Of the time that a pass takes, what it fits planes for.
+/// Share of a pass's time for fitting planes.
 constexpr double k_fitting = 0.9;
 
-/// Where outliers are many they bend the planes that judge them, so it takes some passes.
+/// Several passes, because many outliers bend the planes that judge them.
 Indices without_outliers(const Points& points, Indices kept, Scale scale, CleanReport& report, const RunContext& run) {
   Strictness strictness = Strictness::trusting;
   const StageShare cleaning("clean", points.size(), "points");
   for (int pass = 0; pass < k_passes && kept.size() > k_judges; ++pass) {
     PointCloud remaining{.positions = Points(kept.size())};
     for (std::size_t i = 0; i < kept.size(); ++i) remaining.positions.set(i, points[kept[i]]);
-    // Outliers pass for noise, in part: the fewer are left, the less.
+    // Outliers raise the noise estimate, so each pass measures it again.
     if (pass > 0) scale = estimate_scale(remaining, run);
     const StageShare of_pass = cleaning.part(pass / double{k_passes}, (pass + 1) / double{k_passes});
     const std::size_t width = strictness == Strictness::trusting ? k_judges : k_suspicious_neighbours;

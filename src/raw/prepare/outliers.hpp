@@ -9,20 +9,19 @@
 
 namespace cloud2csg {
 
-/// In a cloud without outliers even odd points, as at corners of sparse parts, are on a surface; where there are many
-/// outliers, those that are far from others, or among points without planes, have to prove more.
+/// `trusting`, for a cloud without outliers, keeps even odd points, such as corners of sparse parts. `suspicious`, for
+/// a cloud with many, demands more from points with large gaps or among points without planes.
 enum class Strictness : std::uint8_t { trusting, suspicious };
 
 enum class Verdict : std::uint8_t { stays, isolated, off_surface };
 
-/// Which points lie on a surface: through them go enough of the planes of their neighbours. By entry of the fits.
-/// O(n) @throws Cancelled
+/// Judges by how many neighbours' planes contain each point. Indexed by entry of the fits. O(n) @throws Cancelled
 [[nodiscard]] std::vector<Verdict> judge_points(const LocalFits& fits, const Scale& scale, Strictness strictness,
                                                 const RunContext& run, const StageShare& share);
 
 /// Neighbours whose planes judge a point.
 constexpr std::size_t k_judges = 24;
-/// Of a cleaning pass: one that leaves out less than this share of the points changes nothing that matters.
+/// A cleaning pass that removes a smaller share of the points is negligible.
 constexpr double k_settled = 0.005;
 
 }  // namespace cloud2csg

@@ -14,34 +14,34 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t k_links_a_point = 12;
-constexpr std::size_t k_least_near = 8;  ///< neighbours that tell the area of a point
+constexpr std::size_t k_least_near = 8;  ///< neighbours for estimating a point's area
 constexpr double k_least_cosine = 0.9;
-/// Slope of the step beyond what the bend explains: the error of the normals.
+/// Allowed slope of the step beyond the bend: error of the normals.
 constexpr double k_slope = 0.06;
-/// Of the noise: errors of places that were moved onto their planes.
+/// In multiples of the noise: error of places projected onto their planes.
 constexpr double k_height_noise = 0.5;
 
-/// Worth of a vote of two neighbours, against a winding number that is wrong by one at one point.
+/// Weight of a vote of two neighbours, relative to a winding number that is wrong by one at one point.
 constexpr double k_vote_weight = 0.1;
 constexpr int k_best_turns = 32;
 constexpr std::size_t k_tried_at_once = 12;
-/// Of the gain before: with less a group waits for the next round.
+/// Skips a group whose gain fell below this share in the same round.
 constexpr double k_still_best = 0.7;
 constexpr int k_patch_sweeps = 12;
-/// Of all the weight: a smaller gain is rounding.
+/// Share of the total weight below which a gain is rounding.
 constexpr double k_least_gain = 1e-7;
 constexpr std::uint32_t k_none = UINT32_MAX;
 
-/// Patches and groups of two children each; children come before their parents. The last ones have no parents.
+/// A binary forest of patches and groups. Children come before their parents, and roots come last.
 struct Groups {
   std::size_t patches = 0;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> children;  ///< of group patches + i
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> children;  ///< entry i is group patches + i
   std::vector<std::uint32_t> parents;
-  std::vector<char> flipped;           ///< of patches, as the votes have it
-  std::vector<std::uint32_t> body_of;  ///< the topmost group that votes alone make
+  std::vector<char> flipped;           ///< for each patch, according to the votes
+  std::vector<std::uint32_t> body_of;  ///< the topmost group made by votes alone
 };
 
-/// Joins the pair of groups with the clearest sum of votes, again and again.
+/// Repeatedly joins the pair of groups with the largest absolute sum of votes.
 class GroupBuilder {
  public:
   GroupBuilder(std::size_t patches, std::span<const PatchVote> votes) : sets_(patches), between_(2 * patches) {
@@ -111,11 +111,11 @@ class GroupBuilder {
   Groups groups_;
   SignedSets sets_;
   std::vector<std::map<std::uint32_t, double>> between_;
-  std::vector<std::uint32_t> member_;  ///< a patch of each group: the votes of the group are relative to its sign
+  std::vector<std::uint32_t> member_;  ///< a patch of each group; the group's votes are relative to the patch's sign
   std::priority_queue<std::tuple<double, std::uint32_t, std::uint32_t>> queue_;
 };
 
-/// The energy, and what turning a group changes.
+/// The energy, and the gain of flipping a group.
 class SignSearch {
  public:
   SignSearch(const PatchFields& fields, std::span<const double> weights, std::span<const PatchVote> votes,
@@ -136,7 +136,7 @@ class SignSearch {
     order_groups();
   }
 
-  /// Turns the groups that gain the most, each judged again after those before it. @returns whether any gained.
+  /// Flips the groups with the largest gains, rechecking each after the previous flips. @returns whether any gained.
   bool turn_best() {
     std::vector<std::pair<double, std::uint32_t>> gains;
     for_each_group([&](std::uint32_t group, std::vector<float>& column) {
@@ -158,8 +158,7 @@ class SignSearch {
     return !gains.empty();
   }
 
-  /// Turns each group that gains as it comes, smaller ones before the larger ones that they are in. @returns whether
-  /// any gained.
+  /// Flips each group that gains, children before parents. @returns whether any gained.
   bool sweep() {
     bool any = false;
     for_each_group([&](std::uint32_t group, std::vector<float>& column) {
@@ -188,7 +187,7 @@ class SignSearch {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * values[i];
   }
 
-  /// Children before parents, such that the columns of few are in use at a time.
+  /// Children before parents, so that few columns are in use at a time.
   void order_groups() {
     const std::size_t all = groups_.patches + groups_.children.size();
     begins_.resize(all);
@@ -211,7 +210,7 @@ class SignSearch {
       order_.push_back(group);
     }
   }
-  /// The votes across the border of a group, as they stand: positive where it agrees with those around it.
+  /// Current votes across a group's border: positive if it agrees with its surroundings.
   [[nodiscard]] double border_of(std::uint32_t group) const {
     double sum = 0.0;
     for (std::uint32_t place = begins_[group]; place < ends_[group]; ++place) {
@@ -223,7 +222,7 @@ class SignSearch {
     }
     return sum;
   }
-  /// Calls work(group, its field) for all, children before parents.
+  /// Calls work(group, its field) for all groups, children before parents.
   template <typename Work>
   void for_each_group(const Work& work) {
     std::vector<std::vector<float>> columns;
@@ -232,7 +231,7 @@ class SignSearch {
       work(group, columns.back());
     }
   }
-  /// Replaces the columns of the children by that of the group.
+  /// Replaces the children's columns by the group's.
   void combine(std::uint32_t group, std::vector<std::vector<float>>& columns) const {
     if (group < groups_.patches) {
       columns.emplace_back(groups_.patches, 0.0F);
@@ -260,19 +259,19 @@ class SignSearch {
   std::span<const PatchVote> votes_;
   const Groups& groups_;
   std::vector<float> signs_;
-  std::vector<float> rest_;                            ///< of the winding number at each patch, less one half
+  std::vector<float> rest_;                            ///< winding number at each patch, minus one half
   std::vector<std::vector<std::uint32_t>> incident_;   ///< votes of each patch
-  std::vector<std::uint32_t> order_;                   ///< of groups: children before parents
-  std::vector<std::uint32_t> leaves_, begins_, ends_;  ///< patches, and where those of a group begin and end
+  std::vector<std::uint32_t> order_;                   ///< groups, children before parents
+  std::vector<std::uint32_t> leaves_, begins_, ends_;  ///< patches, and each group's range among them
   double least_gain_ = 0.0;
 };
 
-/// Whether one smooth surface through two places, a step apart, may have these normals, up to their signs: they are
-/// alike, and the step lies in the surface as far as the angle between them tells. The other side of a wall does not.
+/// Whether two places, a step apart, may be on one smooth surface. The normals must be alike up to sign, and the step
+/// must lie in the surface within the angle between them. Rejects the other side of a wall.
 bool on_one_surface(const Vector3d& step, const Vector3d& normal, const Vector3d& other, double noise) {
   const double cosine = std::abs(normal.dot(other));
   if (cosine < k_least_cosine) return false;
-  // The chord of an arc and its tangents enclose half of the angle between the tangents.
+  // The angle between a chord and its tangents is half of the angle between the tangents.
   const double half_tangent = std::sqrt(std::max(0.0, 1.0 - cosine) / (1.0 + cosine));
   const double rise = std::max(std::abs(step.dot(normal)), std::abs(step.dot(other)));
   return rise <= (k_slope + 1.25 * half_tangent) * step.norm() + k_height_noise * noise;
@@ -323,7 +322,7 @@ Patches grow_patches(const Points& places, const Points& normals, const Neighbou
       }
     }
     if (patch.size() < least) {
-      // Its points may still belong to a patch that starts elsewhere.
+      // Other points may still belong to a patch with another seed.
       for (const std::uint32_t i : patch) is_done[i] = i == seed ? 1 : 0;
       continue;
     }

@@ -12,23 +12,21 @@
 
 namespace cloud2csg {
 
-/// The surface that each point stands for. Neighbours count as far as they are not on the other side of a wall or gap:
-/// those would make thin walls too light. O(n width)
+/// The area of each point, without neighbours across a wall or gap: they make thin walls too light. O(n width)
 [[nodiscard]] std::vector<double> surface_areas(const Points& places, const Points& normals,
                                                 const NeighbourTable& neighbours, double noise);
 
-/// Small pieces of a surface, each nearly flat: within one the normals agree for sure, as each of its points is held
-/// against its first point, not against the one that led to it.
+/// Small, nearly flat pieces of surface. Each point also agrees with its patch's seed, so normals certainly agree.
 struct Patches {
   static constexpr std::uint32_t k_none = UINT32_MAX;
-  std::vector<std::uint32_t> of_point;             ///< the patch of each point, k_none where it is in none
-  std::vector<char> flipped;                       ///< of each point: its normal is opposite to those of its patch
-  std::vector<std::vector<std::uint32_t>> points;  ///< of each patch
+  std::vector<std::uint32_t> of_point;             ///< patch of each point, or k_none
+  std::vector<char> flipped;                       ///< whether a point's normal is opposite to its patch's
+  std::vector<std::vector<std::uint32_t>> points;  ///< by patch
 };
 
-/// Grows patches of at most `most` points along neighbours; those of fewer than `least` points are left out. Two
-/// points are on one piece of surface when their normals, up to the sign, are alike, and the step between them lies in
-/// the surface as far as the angle between the normals tells: the other side of a wall does not. O(n width)
+/// Grows patches of at most `most` points along neighbours and drops those with fewer than `least`. Two points are on
+/// one surface if their normals are alike up to sign and the step between them lies in the surface within the angle
+/// between the normals, which excludes the other side of a wall. O(n width)
 [[nodiscard]] Patches grow_patches(const Points& places, const Points& normals, const NeighbourTable& neighbours,
                                    double noise, std::size_t least, std::size_t most);
 
@@ -41,9 +39,9 @@ class SignedSets {
 
   struct Member {
     std::uint32_t root;
-    bool is_flipped;  ///< its sign is opposite to the root's
+    bool is_flipped;  ///< sign opposite to the root's
   };
-  /// Shortens the way to the root. Amortised O(log n)
+  /// Compresses the path to the root. Amortised O(log n)
   Member find(std::uint32_t item) {
     std::uint32_t root = item;
     bool is_flipped = false;
@@ -63,7 +61,7 @@ class SignedSets {
     return {root, is_flipped};
   }
 
-  /// Joins the sets of two items, the signs of which are equal or opposite. Nothing when they are in one set.
+  /// Joins the sets of two items with equal or opposite signs. No effect within one set.
   void join(std::uint32_t one, std::uint32_t other, bool are_opposite) {
     Member a = find(one);
     Member b = find(other);
@@ -80,13 +78,13 @@ class SignedSets {
   std::vector<std::uint32_t> sizes_;
 };
 
-/// What a vote of neighbours across the border of two patches says: positive, they are oriented alike.
+/// Sum of votes across the border of two patches; positive if they are oriented alike.
 struct PatchVote {
   std::uint32_t one, other;  ///< one < other
   double votes;
 };
 
-/// The field of each patch at each other one: columns of winding numbers.
+/// The winding number of each patch at the places of all patches.
 struct PatchFields {
   std::size_t count = 0;
   std::vector<float> values;  ///< [source x count + place]
@@ -97,16 +95,14 @@ struct PatchFields {
 };
 
 struct PatchSigns {
-  std::vector<char> flipped;           ///< patches to turn
-  std::vector<double> windings;        ///< the winding number at each patch: one half where all is right
-  std::vector<std::uint32_t> body_of;  ///< of each patch: those that votes join are of one body
+  std::vector<char> flipped;           ///< patches to flip
+  std::vector<double> windings;        ///< winding number at each patch; one half if all is right
+  std::vector<std::uint32_t> body_of;  ///< by patch; votes join the patches of a body
 };
 
-/// Which patches to turn so that the winding number, the mean of both sides, is one half at all of them, weighted by
-/// `weights`, and their borders agree. Patches are joined one by one by the clearest votes; all the groups that so come
-/// to be, from single patches to all, are turned as long as that makes the result better: the best first, then any.
-/// Each pair of patches occurs once in `votes`. O(patches^2) a round
-/// @throws Cancelled
+/// Finds the patches to flip so that the winding number, averaged over both sides, is one half at each patch (weighted
+/// by `weights`) and borders agree. The clearest votes join patches into a hierarchy of groups, which flip while that
+/// gains: the best first, then any. Each pair occurs once in `votes`. O(patches^2) a round. @throws Cancelled
 [[nodiscard]] PatchSigns find_patch_signs(const PatchFields& fields, std::span<const double> weights,
                                           std::span<const PatchVote> votes, const RunContext& run);
 

@@ -13,7 +13,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Of the diagonal: more noise than this hides details that a part usually has.
+/// Relative to the diagonal: more noise hides typical details of a part.
 constexpr double k_much_noise = 0.01;
 constexpr double k_many_outliers = 0.01;
 constexpr double k_much_doubt = 0.01;
@@ -37,7 +37,7 @@ void turn(Points& normals) {
   }
 }
 
-/// Keeps the normals when they are good. @returns whether they are.
+/// Keeps the given normals if they are good, and returns whether they are.
 bool keep_given_normals(PreparedCloud& prepared, const RunContext& run) {
   switch (check_normals(prepared.cloud, prepared.scale, run)) {
     case NormalsVerdict::outward:
@@ -65,7 +65,7 @@ void warn_of_normals(PreparedCloud& prepared, const EstimatedNormals& estimated)
   }
 }
 
-/// Whether leaving out so many points changes how the rest looks.
+/// Whether removing so many points changes the rest noticeably.
 bool is_much(std::size_t left_out, std::size_t points) {
   return static_cast<double>(left_out) >= k_settled * static_cast<double>(points);
 }
@@ -78,12 +78,11 @@ bool has_duplicates(const LocalFits& fits) {
   return false;
 }
 
-/// Of most clouds cleaning leaves out nothing, or nearly so: then the planes by which it judged are those of the
-/// normals, too. @returns whether it is so, and the cloud is prepared.
+/// If cleaning removes almost nothing, as usual, its planes serve the normals. @returns whether this did it all.
 bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options, PreparedCloud& prepared,
                          Stopwatch& watch, const RunContext& run) {
   if (!options.clean.remove_outliers || cloud.size() > options.clean.point_budget) return false;
-  // Where this does not do, cleaning begins anew: it counts as the first of its passes.
+  // If this fails, cleaning starts again, and this counts as its first pass.
   const StageShare cleaning("clean", cloud.size(), "points");
   const StageShare trial = cleaning.part(0, 0.25);
   const LocalFits fits =
@@ -129,7 +128,7 @@ PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& optio
   CleanCloud clean = clean_cloud(cloud, prepared.scale, options.clean, run);
   prepared.cloud = std::move(clean.cloud);
   prepared.cleaning = clean.report;
-  // Outliers and repeated points are gone: now it is right.
+  // Outliers and duplicates distorted the first estimate.
   if (is_much(cloud.size() - prepared.cloud.size(), cloud.size())) prepared.scale = estimate_scale(prepared.cloud, run);
   warn_of_cleaning(prepared, cloud.size());
   prepared.clean_seconds = watch.lap();

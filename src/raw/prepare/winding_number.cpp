@@ -18,8 +18,7 @@ using Eigen::Vector3d;
 constexpr std::size_t k_chunk_places = 256;
 constexpr std::size_t k_area_neighbours = 8;
 constexpr std::size_t k_leaf_points = 8;
-/// Moments stand for points that are this many radii of their group away: more than the paper's 2, as there are no
-/// third moments.
+/// In group radii: beyond, moments approximate a group. Above the paper's 2, as there are no third moments.
 constexpr double k_far_radii = 2.5;
 
 }  // namespace

@@ -14,10 +14,10 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_least_tolerance = 1e-3;  // of the diagonal
+constexpr double k_least_tolerance = 1e-3;  // in diagonals
 constexpr double k_tolerance_sigmas = 2;
 
-/// The noise that was given, or else the root mean square of the residuals.
+/// The given noise, or else the root mean square of the residuals.
 double noise_of(std::span<const DetectedSurface> surfaces, std::span<const KnownSolid> known,
                 const SolidOptions& options) {
   if (options.places.noise) return *options.places.noise;
@@ -32,13 +32,12 @@ double noise_of(std::span<const DetectedSurface> surfaces, std::span<const Known
   return points > 0 ? std::sqrt(squares / points) : 0.0;
 }
 
-/// The tolerance in force.
 double tolerance_of(const PointCloud& cloud, const SolidOptions& options, double noise) {
   return options.regularity.distance_tolerance.value_or(
       std::max(k_tolerance_sigmas * noise, k_least_tolerance * bounds_of(cloud.positions).diagonal().norm()));
 }
 
-/// Gives the found surfaces the values that are given and, beside those of known solids, makes all regular.
+/// Applies the given values to the found surfaces and regularises them together with those of known solids.
 GivenSurfaces made_regular(const PointCloud& cloud, std::span<const DetectedSurface> found,
                            std::span<const DetectedSurface> of_known, const RegularityOptions& options,
                            double tolerance) {

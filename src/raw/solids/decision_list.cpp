@@ -12,14 +12,13 @@
 namespace cloud2csg {
 namespace {
 
-/// How much of what a first rule has wrong counts when it is chosen: later ones may put it right.
+/// Weights of a first rule's losses. Below 1 they allow for later rules that repair them.
 constexpr std::array k_starts{1.0, 0.5, 0.2};
 constexpr double k_hope = 0.3;         // the same for the first of two rules that only gain together
 constexpr double k_least_gain = 1e-7;  // less is rounding
 constexpr std::size_t k_most_sweeps = 20;
 constexpr std::size_t k_most_pairs = 40;
 constexpr std::size_t k_large_work = 500'000;
-/// About what it takes to price all terms once.
 std::size_t work_of(const TermSpace& space, TermKinds kinds = TermKinds::all) {
   if (kinds == TermKinds::simple) return space.size() * (space.revolved.size() + space.boxes.size());
   const std::size_t with_boxes = 2 * space.revolved.size() * space.boxes.size();
@@ -32,8 +31,8 @@ struct Insertion {
   PricedTerm found = {};
 };
 
-/// The positions where a new rule is tried: in front of all, and behind each block of rules that say otherwise. Behind
-/// rules that say the same it would gain no more than in front of them; the middle of a block is left out for speed.
+/// The positions to try for a new rule: in front, and behind each block of opposite rules. Behind an equal rule it
+/// gains no more than in front of that rule. Positions within a block are left out for speed.
 std::vector<std::size_t> insertion_positions(const DecisionList& list, bool is_in) {
   std::vector<std::size_t> positions{0};
   for (std::size_t r = 0; r < list.size(); ++r) {
@@ -41,7 +40,7 @@ std::vector<std::size_t> insertion_positions(const DecisionList& list, bool is_i
     const bool is_last_of_block = r + 1 == list.size() || list[r + 1].is_in == is_in;
     if (differs && is_last_of_block) positions.push_back(r + 1);
   }
-  // Behind the last rule all is out already.
+  // Behind the last rule, everything is out already.
   if (!is_in && positions.back() == list.size() && positions.size() > 1) positions.pop_back();
   return positions;
 }
@@ -88,9 +87,8 @@ class ListSearch {
 
   struct Focus {
     TermKinds kinds = TermKinds::all;
-    double hope = 1;  ///< below 1: what a place loses counts only in part
-    /// Where gains count, by place; everywhere if there is none. Where a rule was taken out, what replaces it gains
-    /// there, and to look nowhere else is much faster.
+    double hope = 1;  ///< below 1: weight of places' losses
+    /// Places where gains count; null for all. Looking only where a removed rule was is much faster.
     const std::vector<std::uint8_t>* on = nullptr;
   };
 
@@ -101,7 +99,7 @@ class ListSearch {
     }
   }
 
-  /// By position, no rule that is put in there gains more.
+  /// Upper bounds by position on the gain of a rule inserted there.
   [[nodiscard]] std::vector<double> most_gains(const DecisionList& list, std::span<const std::uint16_t> deciding,
                                                bool is_in, const Focus& focus) const {
     std::vector<double> gains = insertion_gains(list, deciding, space_.pulls, 0, is_in);
@@ -112,7 +110,6 @@ class ListSearch {
     return most;
   }
 
-  /// The best rule to put in.
   [[nodiscard]] Insertion best_insertion(const DecisionList& list, const Focus& focus) {
     const std::vector<std::uint16_t> deciding = deciding_rules(list, space_.size());
     std::vector<Insertion> candidates;
@@ -145,7 +142,7 @@ class ListSearch {
     return first.found.term.parts.empty() ? DecisionList{} : with({}, first);
   }
 
-  /// Puts rules in as long as that gains; when the work is over, rules of simple terms only.
+  /// Inserts rules while that gains; once the work limit is reached, only simple terms.
   [[nodiscard]] DecisionList grown(DecisionList list, std::size_t most_more,
                                    const std::vector<std::uint8_t>* on = nullptr) {
     for (std::size_t k = 0; k < most_more && list.size() < limits_.rules && !run_.stop.stop_requested(); ++k) {
@@ -158,21 +155,21 @@ class ListSearch {
     return list;
   }
 
-  /// A rule that loses, and the one that makes good for it.
+  /// A losing rule and the rules that make up for it.
   [[nodiscard]] DecisionList grown_by_two(const DecisionList& list) {
     const Insertion hopeful = best_insertion(list, {.hope = k_hope});
     if (hopeful.found.term.parts.empty()) return list;
     return grown(with(list, hopeful), 2);
   }
 
-  /// A rule to take out, or of which one part is to stand alone.
+  /// A rule to remove or to reduce to one of its parts.
   struct Reduction {
     std::size_t rule = 0;
     std::optional<std::size_t> part = {};
-    double cost = 0;  ///< of the list then
+    double cost = 0;  ///< cost of the resulting list
   };
 
-  /// Takes out rules and parts that do not pay, the least useful first.
+  /// Removes rules and parts that do not pay, the least useful first.
   [[nodiscard]] DecisionList pruned(DecisionList list) const {
     double now = cost(list);
     while (const std::optional<Reduction> best = best_reduction(list, now)) {
@@ -186,7 +183,7 @@ class ListSearch {
     return list;
   }
 
-  /// What there is to gain when a rule has more members than it has.
+  /// Gain if a rule has additional members.
   [[nodiscard]] double gain_of_more(const DecisionList& list, std::span<const std::uint16_t> deciding, std::size_t rule,
                                     const std::vector<std::uint8_t>& members) const {
     double gain = 0;
@@ -198,7 +195,7 @@ class ListSearch {
     return gain;
   }
 
-  /// The one that leaves the least cost, absent where all make the list dearer.
+  /// The reduction with the least cost; absent if all raise the cost.
   [[nodiscard]] std::optional<Reduction> best_reduction(const DecisionList& list, double now) const {
     std::optional<Reduction> best;
     double best_cost = now + k_least_gain;
@@ -221,7 +218,7 @@ class ListSearch {
     return best;
   }
 
-  /// Of terms of two parts.
+  /// None for a term of one part.
   [[nodiscard]] static std::vector<std::size_t> parts_that_can_stand_alone(const Term& term) {
     std::vector<std::size_t> parts;
     for (std::size_t p = 0; p < term.parts.size() && term.parts.size() > 1; ++p) {
@@ -242,7 +239,7 @@ class ListSearch {
     return alone;
   }
 
-  /// Pairs of rules that say the opposite of places that they share: one may stand for both.
+  /// Pairs of opposite rules with common places, which one rule might replace.
   [[nodiscard]] static std::vector<std::pair<std::size_t, std::size_t>> entangled_pairs(const DecisionList& list) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     for (std::size_t r = 0; r < list.size(); ++r) {
@@ -264,7 +261,6 @@ class ListSearch {
     return a;
   }
 
-  /// Prunes another list and takes it if it costs less.
   bool take(DecisionList&& other, DecisionList& list, double& now) {
     other = pruned(std::move(other));
     const double other_cost = cost(other);
@@ -313,7 +309,7 @@ class ListSearch {
   const ListLimits& limits_;
   double spent_ = 0;  ///< work of all pricings so far
   std::size_t improvements_ = 0;
-  bool is_large_;  ///< simple terms are tried first, and only the best start is improved
+  bool is_large_;  ///< tries simple terms first, and improves only the best start
   const RunContext& run_;
 };
 
@@ -321,7 +317,7 @@ class ListSearch {
 
 std::vector<std::uint16_t> deciding_rules(const DecisionList& list, std::size_t places) {
   std::vector<std::uint16_t> deciding(places, static_cast<std::uint16_t>(list.size()));
-  // Bytes may alias anything, and this is half of a search's time: without the promise it is not vectorised.
+  // __restrict allows vectorisation, because bytes may alias anything. This loop is half of a search's time.
   std::uint16_t* const __restrict rule_of = deciding.data();
   for (std::size_t r = list.size(); r-- > 0;) {
     const std::uint8_t* const __restrict is_member = list[r].members.data();

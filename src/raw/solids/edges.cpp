@@ -11,14 +11,14 @@ namespace {
 
 constexpr double k_parallel_sine = 0.009;  // half a degree
 constexpr std::size_t k_most_frames = 12;
-constexpr std::size_t k_most_edges = 64;  // more, and only planes make edges
+constexpr std::size_t k_most_edges = 64;  // beyond, only planes make edges
 constexpr double k_reach_quantile = 0.01;
 
 bool is_revolved_about_axis(SurfaceType type) {
   return type == SurfaceType::cylinder || type == SurfaceType::cone;
 }
 
-/// Adds values that are not nearer than the tolerance to one that is there.
+/// Adds values at least `tolerance` from all present ones.
 void add_distinct(std::vector<double>& edges, const std::vector<double>& values, double tolerance) {
   for (const double value : values) {
     const bool is_new = std::ranges::none_of(edges, [&](double edge) { return std::abs(edge - value) < tolerance; });
@@ -26,7 +26,7 @@ void add_distinct(std::vector<double>& edges, const std::vector<double>& values,
   }
 }
 
-/// With the ends of the bounds around them.
+/// Adds the bounds as first and last edge.
 Bins closed(std::vector<double> edges, double low, double high) {
   std::erase_if(edges, [&](double edge) { return edge <= low || edge >= high; });
   edges.push_back(low);
@@ -42,7 +42,7 @@ std::pair<double, double> extent(const AlignedBox& box, const Eigen::Vector3d& d
 }
 
 std::vector<double> plane_offsets(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces) {
-  std::vector<std::pair<std::size_t, double>> found;  // by points, so that of two that are one edge the larger counts
+  std::vector<std::pair<std::size_t, double>> found;  // by points, so that the larger of two coinciding planes counts
   for (const DetectedSurface& detected : surfaces) {
     const Surface& surface = detected.surface;
     if (surface.type != SurfaceType::plane || !are_parallel(surface.axis, direction)) continue;
@@ -59,8 +59,7 @@ bool are_orthogonal(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::abs(a.dot(b)) < k_parallel_sine;
 }
 
-/// Where a bent pipe goes over into a straight one along the direction: there is no edge, but the bend ends in a plane
-/// through its axis.
+/// Where a bent pipe becomes straight along the direction: no edge, but the bend ends in a plane through its axis.
 std::vector<double> bend_offsets(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces) {
   std::vector<double> offsets;
   for (const DetectedSurface& detected : surfaces) {
@@ -72,7 +71,7 @@ std::vector<double> bend_offsets(const Eigen::Vector3d& direction, std::span<con
   return offsets;
 }
 
-/// The middle and both sides of what is round across the direction.
+/// Middles and both sides of round surfaces across the direction.
 std::vector<double> round_offsets(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces) {
   std::vector<double> offsets = bend_offsets(direction, surfaces);
   for (const DetectedSurface& detected : surfaces) {
@@ -85,7 +84,7 @@ std::vector<double> round_offsets(const Eigen::Vector3d& direction, std::span<co
   return offsets;
 }
 
-/// The two ends of the points along an axis, but for a few of them.
+/// The extent of the points along an axis, without a few extreme points.
 std::vector<double> reach_of(const DetectedSurface& detected, const Points& positions) {
   std::vector<double> heights;
   heights.reserve(detected.points.size());
@@ -98,17 +97,17 @@ std::vector<double> reach_of(const DetectedSurface& detected, const Points& posi
   return {heights[few], heights[heights.size() - 1 - few]};
 }
 
-/// A direction, up to sign, and what has it.
+/// A direction, up to sign, and the surfaces that have it.
 struct Direction {
   Eigen::Vector3d axis;
   double points = 0;
   std::size_t planes = 0;
 
-  /// Two planes across it can hold a box between them; a single oblique one is for polytopes.
+  /// A box needs two planes across the direction. A single oblique plane is for polytopes.
   [[nodiscard]] bool can_hold() const { return planes >= 2; }
 };
 
-/// Directions of planes and axes, by the points that have them.
+/// Directions of planes and axes, sorted by their points.
 std::vector<Direction> distinct_directions(std::span<const DetectedSurface> surfaces) {
   std::vector<Direction> directions;
   for (const DetectedSurface& detected : surfaces) {
@@ -124,7 +123,7 @@ std::vector<Direction> distinct_directions(std::span<const DetectedSurface> surf
   return directions;
 }
 
-/// The same directions, in the order and with the signs that turn the frame least from the axes of coordinates.
+/// Permutes and flips the axes for the least rotation from the coordinate axes.
 Eigen::Matrix3d turned_least(const Eigen::Matrix3d& axes) {
   Eigen::Matrix3d best = axes;
   std::array<Eigen::Index, 3> order{0, 1, 2};

@@ -9,28 +9,26 @@
 
 namespace cloud2csg {
 
-/// Where solids may end.
 struct EdgeRules {
-  AlignedBox bounds = {};        ///< the ends: beyond the part
-  double plane_tolerance = 0;    ///< planes nearer than this are one edge
-  double derived_tolerance = 0;  ///< what curved surfaces suggest nearer to an edge than this is that edge
+  AlignedBox bounds = {};        ///< limits beyond the part
+  double plane_tolerance = 0;    ///< closer planes are one edge
+  double derived_tolerance = 0;  ///< edges that curved surfaces suggest merge with edges closer than this
 };
 
-/// Edges along a direction: planes across it and, where there are any, the middles and sides of curved surfaces, and
-/// where bends end. Two at least, ascending.
+/// Edges along a direction: planes across it and, if there are any, middles and sides of curved surfaces and ends of
+/// bends. At least two, ascending.
 [[nodiscard]] Bins edges_along(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces,
                                const EdgeRules& rules);
 
-/// Edges along the axis of a cylinder or cone, measured from its position: planes across it, where bends end, and how
-/// far its own points reach. Those of a cone begin at its apex or beyond.
+/// Edges along the axis of a cylinder or cone, relative to its position: planes across it, ends of bends, and ends of
+/// its points. A cone's edges begin at its apex or beyond.
 [[nodiscard]] Bins edges_along_axis(const DetectedSurface& surface, const Points& positions,
                                     std::span<const DetectedSurface> surfaces, const EdgeRules& rules);
 
-/// Orthogonal frames of directions that have two planes or more across them, those of the most points first; one frame
-/// at least. Columns, right-handed.
+/// Right-handed orthogonal frames (columns) of directions with at least two planes, most points first; never empty.
 [[nodiscard]] std::vector<Eigen::Matrix3d> orthogonal_frames(std::span<const DetectedSurface> surfaces);
 
-/// Whether directions are the same, up to sign, but for rounding and what regularities left.
+/// Whether directions are equal up to sign, rounding and residual irregularity.
 [[nodiscard]] bool are_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 }  // namespace cloud2csg

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_most_points = 4000;  // tell where a surface is
+constexpr std::size_t k_most_points = 4000;  // for locating a surface
 constexpr std::size_t k_most_named = 5;      // surfaces in one warning
 
 std::string place_of(const Surface& surface) {
@@ -34,7 +34,7 @@ std::string sentence(const std::string& what, const std::vector<std::string>& na
   return text;
 }
 
-/// A surface and its points, which say what it may be.
+/// A surface with its points, which decide what values it may take.
 class Candidate {
  public:
   Candidate(const DetectedSurface& detected, const Points& positions) : surface_(detected.surface) {
@@ -46,8 +46,8 @@ class Candidate {
   [[nodiscard]] double rms() const { return rms_; }
   [[nodiscard]] bool has_points() const { return !points_.empty(); }
 
-  /// Takes a surface of another direction or radius, moved to where it suits the points best, if these are no more than
-  /// `tolerance` farther from it. @returns by how much they are when it was not taken.
+  /// Tries another direction or radius, with the surface moved to fit its points. Accepts it if that adds at most
+  /// `tolerance` to their distance. @returns the added distance if refused.
   std::optional<double> try_taking(const Surface& other, double tolerance) {
     const Surface settled = moved_to_points(other);
     const double rms = rms_of(settled);
@@ -58,7 +58,7 @@ class Candidate {
     return std::nullopt;
   }
 
-  /// The same whatever the points say.
+  /// The same without a limit.
   void take(const Surface& other) {
     surface_ = moved_to_points(other);
     rms_ = rms_of(surface_);
@@ -74,7 +74,7 @@ class Candidate {
     return points_.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(points_.size()));
   }
 
-  /// By least squares of the distances; not along what the points leave open.
+  /// Least squares of distances. Directions that the points do not determine stay.
   [[nodiscard]] Surface moved_to_points(Surface surface) const {
     constexpr int k_rounds = 8;
     constexpr double k_open = 1e-6;
@@ -96,7 +96,6 @@ class Candidate {
   double rms_ = 0;
 };
 
-/// Takes what is given, surface by surface.
 class GivenValues {
  public:
   GivenValues(const PointCloud& cloud, std::span<const DetectedSurface> surfaces, const RegularityOptions& options,
@@ -156,7 +155,7 @@ class GivenValues {
   void take_radii(std::uint32_t i, Candidate& candidate) {
     const SurfaceType type = candidate.surface().type;
     if (options_.radii.empty() || type == SurfaceType::plane || type == SurfaceType::cone) return;
-    // Of a torus the tube first: where its middle is follows from it.
+    // The tube of a torus first, because the radius of its middle depends on it.
     const bool is_tube_given = type != SurfaceType::torus || take_radius(i, candidate, &Surface::minor_radius);
     result_.fixed[i].radius = take_radius(i, candidate, &Surface::radius) && is_tube_given;
   }
@@ -186,7 +185,6 @@ class GivenValues {
 
 using Eigen::Vector3d;
 
-/// Collects the surfaces of one solid.
 class SurfaceList {
  public:
   explicit SurfaceList(const Pose& pose) : pose_(pose), axis_(pose.orientation * Vector3d::UnitZ()) {}
@@ -257,7 +255,6 @@ std::vector<Surface> surfaces_of(const Primitive& solid) {
   return std::move(list.surfaces);
 }
 
-/// Deals the solid's points out to its surfaces.
 std::vector<DetectedSurface> with_points(const std::vector<Surface>& surfaces, const PointCloud& cloud,
                                          const KnownSolid& known) {
   std::vector<DetectedSurface> found;

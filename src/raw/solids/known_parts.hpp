@@ -6,24 +6,23 @@
 
 #include "cloud2csg/advanced/solids.hpp"
 
-/// What the user knows of the part: radii and directions of surfaces, and whole solids.
+/// What the user knows about the part: radii and directions of surfaces, and whole solids.
 namespace cloud2csg {
 
-/// Surfaces with the radii and directions that they are known to have.
 struct GivenSurfaces {
-  std::vector<DetectedSurface> surfaces = {};  ///< as many as there were, in the same order
-  std::vector<FixedValues> fixed = {};         ///< what of each was given, one each
+  std::vector<DetectedSurface> surfaces = {};  ///< as many as the input, in the same order
+  std::vector<FixedValues> fixed = {};         ///< which values of each surface were given
   std::vector<Snap> snaps = {};
-  std::vector<std::string> warnings = {};  ///< sentences for the user: what the points do not bear out
+  std::vector<std::string> warnings = {};  ///< for the user: given values that the points contradict
 };
 
-/// Gives surfaces the nearest of the given radii and directions that their points bear out: see RegularityOptions. A
-/// surface that is changed is moved to where it suits its points best, and its rms is measured anew. O(points)
+/// Sets surfaces to the nearest given radii and directions that their points support: see RegularityOptions. Moves each
+/// changed surface to fit its points best and updates its rms. O(points)
 [[nodiscard]] GivenSurfaces take_given_values(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                               const RegularityOptions& options, double tolerance);
 
-/// The surfaces without ends that known solids have, each with those of the solid's points that are nearest to it;
-/// those without points are left out. Free forms (displaced solids, expressions) have none. O(points x faces).
+/// The unbounded surfaces of known solids, each with the nearest of the solid's points. Drops surfaces without points.
+/// Free forms (displaced solids, expressions) have none. O(points x faces).
 [[nodiscard]] std::vector<DetectedSurface> surfaces_of_known(const PointCloud& cloud,
                                                              std::span<const KnownSolid> known);
 

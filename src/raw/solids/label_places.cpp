@@ -16,11 +16,11 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::uint64_t k_place_stage = 0x706c'6163'65;  // names its streams of random numbers
+constexpr std::uint64_t k_place_stage = 0x706c'6163'65;
 constexpr std::size_t k_least_points = 16;
 constexpr double k_clear_in = 0.7;
 constexpr double k_clear_out = 0.3;
-constexpr double k_far_margin = 0.3;         // of the diagonal, beyond the margin
+constexpr double k_far_margin = 0.3;         // in diagonals, beyond the margin
 constexpr std::size_t k_chunk_places = 256;  // places between two looks at the stop token
 
 [[noreturn]] void refuse(const char* where, std::string expected, std::string remedy = {}) {
@@ -38,7 +38,7 @@ void check(const PointCloud& cloud, const PlaceOptions& options) {
   validate(options);
 }
 
-/// One place by chance in each of the cells of a lattice.
+/// One random place in each cell of a lattice.
 Points stratified(const AlignedBox& box, std::size_t count, std::uint64_t seed) {
   const double side = std::cbrt(box.volume() / static_cast<double>(count));
   Eigen::Vector3i cells;
@@ -58,7 +58,6 @@ Points stratified(const AlignedBox& box, std::size_t count, std::uint64_t seed) 
   return places;
 }
 
-/// Labels places one by one; keeps what they all need.
 class Labelling {
  public:
   Labelling(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run)
@@ -79,7 +78,7 @@ class Labelling {
     std::vector<double> numbers(candidates.size());
     for_each_index_by_chunks(candidates.size(), k_chunk_places, run_,
                              [&](std::size_t i) { numbers[i] = winding.at(candidates[i]); });
-    // Areas are right but for a factor that all share, which the places that are clearly inside tell.
+    // All areas share an unknown factor, which places clearly inside determine.
     std::vector<double> inside;
     for (const double number : numbers) {
       if (number > 0.5) inside.push_back(number);
@@ -96,7 +95,7 @@ class Labelling {
     add_far(places, 1 / (count_in * grown_.volume() / static_cast<double>(candidates.size())));
   }
 
-  /// Some far around, so that no solid reaches out there unseen.
+  /// Adds distant places, so that no solid extends there unnoticed.
   void add_far(LabelledPlaces& places, double weight_of_volume) const {
     const AlignedBox far = grown(grown_, k_far_margin * diagonal_);
     const Points candidates = stratified(far, std::max<std::size_t>(options_.volume_places / 8, 1), options_.seed);
@@ -127,7 +126,7 @@ class Labelling {
   }
 
  private:
-  /// By the divergence theorem; negative where normals point inwards.
+  /// By the divergence theorem; negative for inward normals.
   [[nodiscard]] double enclosed_volume() const {
     double sum = 0;
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
@@ -136,7 +135,7 @@ class Labelling {
     return sum / 3;
   }
 
-  /// 1 in the solid, -1 outside, 0 unclear: of places as near to points as these are to each other by the nearest.
+  /// 1 inside, -1 outside, 0 unclear. Near points, the nearest one decides unless the winding number contradicts it.
   [[nodiscard]] std::vector<int> sides_of(const Points& places, const std::vector<double>& numbers, double unit) const {
     std::vector<int> sides(places.size());
     for_each_index_by_chunks(places.size(), k_chunk_places, run_, [&](std::size_t i) {
@@ -149,14 +148,14 @@ class Labelling {
     return sides;
   }
 
-  /// The side of the nearest point's plane, 0 where that is within the noise.
+  /// The side of the nearest point's plane; 0 within the noise.
   [[nodiscard]] int side_by_nearest(const Eigen::Vector3d& place) const {
     const std::uint32_t point = index_.nearest(place).point;
     const double height = cloud_.normals[point].dot(place - cloud_.positions[point]);
     return std::abs(height) <= 1.5 * noise_ ? 0 : height < 0 ? 1 : -1;
   }
 
-  /// How far the places beside a point are from it: less where another surface is near on either side.
+  /// Distance of the places beside a point; less if another surface is near on either side.
   [[nodiscard]] double depth_at(std::uint32_t point) const {
     const double depth = std::max({3 * noise_, 0.3 * spacing_, 0.002 * diagonal_});
     const Eigen::Vector3d position = cloud_.positions[point];

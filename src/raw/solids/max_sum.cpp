@@ -11,7 +11,7 @@ void add(std::span<double> to, std::span<const double> values) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += values[i];
 }
 
-/// The same grid with its sides in another order: side i of the result is side order[i] of the grid.
+/// The grid with permuted sides: side i of the result is side order[i] of the grid.
 SumGrid reordered(const SumGrid& grid, const std::array<std::size_t, 3>& order) {
   SumGrid result{.bins = {grid.bins[order[0]], grid.bins[order[1]], grid.bins[order[2]]},
                  .sums = std::vector<double>(grid.sums.size())};
@@ -29,7 +29,6 @@ SumGrid reordered(const SumGrid& grid, const std::array<std::size_t, 3>& order) 
   return result;
 }
 
-/// Holds what is shared by the nested loops over slabs.
 class BoxSearch {
  public:
   BoxSearch(const SumGrid& grid, double least) : grid_(grid), best_{.ranges = {}, .sum = least} {}

@@ -6,13 +6,12 @@
 #include <span>
 #include <vector>
 
-/// Parts of a grid whose sum is largest.
 namespace cloud2csg {
 
-/// The sum of the values above zero: no part of them has a larger one.
+/// The sum of the positive values: an upper bound for any subset.
 [[nodiscard]] double positive_sum(std::span<const double> values);
 
-/// Of bins: both ends belong to it.
+/// A range of bins, both ends included.
 struct BinRange {
   std::uint32_t first = 0, last = 0;
   friend bool operator==(const BinRange&, const BinRange&) = default;
@@ -22,8 +21,7 @@ struct BestInterval {
   BinRange range = {};
   double sum = 0;
 };
-/// The interval of at least one bin with the largest sum (Kadane); of equal ones the first. O(n).
-/// Precondition: there is a bin.
+/// The interval of at least one bin with the largest sum (Kadane); the first on ties. O(n). Precondition: not empty.
 [[nodiscard]] BestInterval max_sum_interval(std::span<const double> values);
 
 /// A grid of sums, the third index fastest.
@@ -35,9 +33,8 @@ struct BestBox {
   std::array<BinRange, 3> ranges = {};
   double sum = 0;
 };
-/// The box of bins with the largest sum, where that is more than `least`; else `least` and no box in particular. Pairs
-/// of slabs along the shorter sides, an interval along the longest: O(a^2 b^2 c) at worst; what cannot exceed the best
-/// so far, since even all that is positive in it does not, is skipped.
+/// The box of bins with the largest sum above `least`; without one, `least` and an arbitrary box. Combines slabs along
+/// the shorter sides with an interval along the longest: O(a^2 b^2 c) at worst. Skips what cannot exceed the best.
 [[nodiscard]] BestBox max_sum_box(const SumGrid& grid, double least);
 
 }  // namespace cloud2csg

@@ -18,21 +18,21 @@ using Eigen::Vector2d;
 using Index = std::uint32_t;
 using GridPlace = std::pair<int, int>;  ///< steps in both directions
 
-constexpr std::size_t k_fewest = 3;  ///< in a row, or on a circle
+constexpr std::size_t k_fewest = 3;  ///< in a row or on a circle
 constexpr std::size_t k_most_places = 1000;
-constexpr std::size_t k_neighbours = 6;  ///< of a place, that steps are taken to
-constexpr std::size_t k_most_steps = 8;  ///< different ones that are tried, the commonest first
+constexpr std::size_t k_neighbours = 6;  ///< neighbours to which steps are taken
+constexpr std::size_t k_most_steps = 8;  ///< distinct steps to try, the most common first
 
-/// Some of the places, and where each of them should be.
+/// Some of the places, with their exact targets.
 struct Found {
   Arrangement arrangement = Arrangement::none;
   std::vector<Index> members = {};
   std::vector<Vector2d> targets = {};
-  bool is_about_axis = false;  ///< a circle whose centre is a place itself
-  double length = 0;  ///< of the steps: of two grids with as many members, that with the shorter steps is meant
+  bool is_about_axis = false;  ///< a circle centred on one of the given centres
+  double length = 0;           ///< length of the steps; among grids with equally many members, shorter steps win
 };
 
-/// Of two with as many members, which one is meant.
+/// Preference among arrangements with equally many members.
 int rank(const Found& found) {
   if (found.arrangement == Arrangement::grid) return 1;
   return found.is_about_axis ? 2 : 0;
@@ -45,7 +45,7 @@ bool is_better(const Found& a, const Found& b) {
   return a.length < b.length * k_shorter;
 }
 
-/// Members of a grid, with their places in it.
+/// Members of a grid, with their steps from its origin.
 struct GridMembers {
   std::vector<Index> members = {};
   std::vector<GridPlace> at = {};
@@ -54,8 +54,7 @@ struct GridMembers {
     return std::ranges::all_of(at, [this](const GridPlace& place) { return place.second == at[0].second; });
   }
 
-  /// Whether the places say more than the steps, which any three places have: three in a row; or, in a grid, two beside
-  /// the longest row in either direction.
+  /// Any three places fit two steps, so a row needs three, a grid two beside its longest row in either direction.
   [[nodiscard]] bool is_meant() const {
     if (is_row()) return members.size() >= k_fewest;
     std::map<int, std::size_t> in_row, in_column;
@@ -70,14 +69,13 @@ struct GridMembers {
   }
 };
 
-/// Places of one kind in which arrangements are looked for.
 class Arranger {
  public:
   Arranger(std::span<const Vector2d> places, std::span<const double> weights, std::span<const Vector2d> centres,
            double tolerance, std::vector<Index> free)
       : places_(places), weights_(weights), centres_(centres), tolerance_(tolerance), free_(std::move(free)) {}
 
-  /// Takes the best arrangement's members out of what is free.
+  /// Removes the members of the best arrangement from the free places.
   std::optional<Found> take_best() {
     std::ranges::sort(free_, {}, [this](Index i) { return std::pair(places_[i].x(), i); });
     Found best;
@@ -91,7 +89,7 @@ class Arranger {
   }
 
  private:
-  /// The first of the ways to lay the same places that moves none of them far, if it is better.
+  /// Keeps the first way to arrange the same places that moves none far, if it beats the best.
   void keep(Found& best, std::vector<Found> ways) const {
     const auto found = std::ranges::find_if(ways, [this](const Found& way) { return is_near(way); });
     if (found == ways.end()) return;
@@ -105,7 +103,7 @@ class Arranger {
     return true;
   }
 
-  /// Where a step from another place leads to: both may be off.
+  /// The place nearest to the end of a step. Both ends may be inexact.
   [[nodiscard]] std::optional<Index> nearest(const Vector2d& wanted) const {
     const auto x_of = [this](Index i) { return places_[i].x(); };
     std::optional<Index> result;
@@ -120,7 +118,7 @@ class Arranger {
     return result;
   }
 
-  /// The differences of neighbours, those that are there most often first. None is the opposite of another.
+  /// Differences between neighbours, the most common first. None is the opposite of another.
   [[nodiscard]] std::vector<Vector2d> common_steps() const {
     std::vector<std::pair<Vector2d, std::size_t>> steps;
     for (const Index from : free_) {
@@ -143,7 +141,6 @@ class Arranger {
     return result;
   }
 
-  /// Each is the mean of those that are near it.
   void count(Vector2d step, std::vector<std::pair<Vector2d, std::size_t>>& steps) const {
     if (step.x() < -2 * tolerance_ || (step.x() <= 2 * tolerance_ && step.y() < 0)) step = -step;
     const auto same =
@@ -167,7 +164,7 @@ class Arranger {
     }
   }
 
-  /// Those whose places are reached from each other by these steps. A second step of zero: rows.
+  /// Grids of places connected by these steps. A zero second step means rows.
   void find_grids(const Vector2d& first, const Vector2d& second, Found& best) const {
     std::vector<bool> is_seen(places_.size(), false);
     for (const Index start : free_) {
@@ -178,7 +175,7 @@ class Arranger {
       if (is_row && second != Vector2d::Zero()) continue;  // found with the first step alone
       const double along = std::atan2(first.y(), first.x());
       const double turn = std::round(along / (0.5 * std::numbers::pi)) * 0.5 * std::numbers::pi;
-      std::vector<Found> ways;  // what is simplest first
+      std::vector<Found> ways;  // the simplest first
       for (const double angle : {turn, along}) {
         if (!is_row) ways.push_back(upright(grid, angle, true));
         ways.push_back(upright(grid, angle, false));
@@ -206,7 +203,7 @@ class Arranger {
     return grid;
   }
 
-  /// Least squares of origin and orthogonal steps, the first of them turned by `angle` from the first axis.
+  /// Least squares of origin and orthogonal steps, the first at `angle` to the first axis.
   [[nodiscard]] Found upright(const GridMembers& grid, double angle, bool are_equal) const {
     const Eigen::Rotation2Dd turn(angle);
     const auto n = static_cast<Eigen::Index>(grid.members.size());
@@ -215,7 +212,7 @@ class Arranger {
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n, is_row || are_equal ? 3 : 4);
     Eigen::VectorXd b(2 * n);
     const Vector2d origin = places_[grid.members[0]];
-    // The second step may be to either side.
+    // The second step may be on either side.
     const double side = second_side(grid, turn);
     for (Eigen::Index k = 0; k < n; ++k) {
       const auto [i, j] = grid.at[static_cast<std::size_t>(k)];
@@ -245,7 +242,7 @@ class Arranger {
     return sum < 0 ? -1 : 1;
   }
 
-  /// Least squares of origin and any steps.
+  /// Least squares of origin and arbitrary steps.
   [[nodiscard]] Found skew(const GridMembers& grid) const {
     const auto n = static_cast<Eigen::Index>(grid.members.size());
     const bool is_row = grid.is_row();
@@ -292,7 +289,7 @@ class Arranger {
     if (const std::optional<Vector2d> centre = centre_of_all()) keep(best, circles(free_, *centre));
   }
 
-  /// Least squares of |p|^2 = 2 c p + (r^2 - c^2), which is linear.
+  /// Linear least squares of |p|^2 = 2 c p + (r^2 - c^2).
   [[nodiscard]] std::optional<Vector2d> centre_of_all() const {
     const auto n = static_cast<Eigen::Index>(free_.size());
     Eigen::MatrixXd a(n, 3);
@@ -309,7 +306,7 @@ class Arranger {
     return origin + x.head<2>();
   }
 
-  /// All around the centre, at equal angles: symmetric to an axis of the plane, or from any angle.
+  /// Full circles at equal angles: symmetric to an axis of the plane, or from any angle.
   [[nodiscard]] std::vector<Found> circles(std::vector<Index> ring, const Vector2d& centre) const {
     if (ring.size() < k_fewest) return {};
     const auto angle_of = [&](Index i) {
@@ -348,7 +345,7 @@ class Arranger {
   std::span<const double> weights_;
   std::span<const Vector2d> centres_;
   double tolerance_;
-  std::vector<Index> free_;  ///< by the first coordinate
+  std::vector<Index> free_;  ///< sorted by the first coordinate
 };
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_deviations = 3;       // that a direction may be off
-constexpr double k_most_tolerances = 3;  // ... but no more than this many times what surer ones may
+constexpr double k_deviations = 3;       // allowed error of a direction
+constexpr double k_most_tolerances = 3;  // upper limit of that error, in tolerances of well determined directions
 
 bool has_direction(SurfaceType type) {
   return type != SurfaceType::sphere;
@@ -32,7 +32,6 @@ double weight_of(const DetectedSurface& detected) {
   return static_cast<double>(std::max<std::size_t>(detected.points.size(), 1));
 }
 
-/// Surfaces that share a direction, and what it is.
 struct DirectionCluster {
   Eigen::Vector3d direction;
   double weight;
@@ -40,8 +39,7 @@ struct DirectionCluster {
   std::vector<std::uint32_t> surfaces;
 };
 
-/// Snaps surface by surface; those that are fixed, and then those of more points, come first and are what others are
-/// snapped to.
+/// Snaps surface by surface to surfaces before it. Fixed surfaces are first, then those with more points.
 class Regulariser {
  public:
   Regulariser(std::span<const DetectedSurface> surfaces, double distance_tolerance, double angle_tolerance_deg,
@@ -73,7 +71,7 @@ class Regulariser {
  private:
   [[nodiscard]] Surface& surface(std::uint32_t i) { return result_.surfaces[i].surface; }
 
-  /// By weight, those first in which the value is fixed.
+  /// By weight, but first the surfaces whose value is fixed.
   [[nodiscard]] std::vector<std::uint32_t> order(bool FixedValues::*value) const {
     std::vector<std::uint32_t> result = by_weight_;
     std::stable_partition(result.begin(), result.end(), [&](std::uint32_t i) { return fixed_[i].*value; });
@@ -84,7 +82,7 @@ class Regulariser {
     if (change > 0) result_.snaps.push_back({.kind = kind, .surface = i, .change = change});
   }
 
-  /// Larger where its points leave more open.
+  /// Larger if the surface's points leave its direction more uncertain.
   [[nodiscard]] double sine_tolerance_of(std::uint32_t i) const {
     const double sine = std::sin(result_.surfaces[i].turn_deg * std::numbers::pi / 180);
     return std::clamp(k_deviations * sine, sine_tolerance_, k_most_tolerances * sine_tolerance_);
@@ -129,7 +127,7 @@ class Regulariser {
     }
   }
 
-  /// Orthogonal to the first two of the settled directions that it nearly is orthogonal to, if they are to each other.
+  /// Makes a direction orthogonal to the first two nearly orthogonal settled ones, if these are orthogonal.
   [[nodiscard]] Eigen::Vector3d made_orthogonal(const Eigen::Vector3d& direction,
                                                 const std::vector<Eigen::Vector3d>& settled) const {
     std::vector<Eigen::Vector3d> across;
@@ -143,7 +141,7 @@ class Regulariser {
     return result.normalized();
   }
 
-  /// Along an axis of coordinates, if it nearly is and that is no less orthogonal to the settled directions.
+  /// Aligns with a close coordinate axis, if that is no less orthogonal to the settled directions.
   [[nodiscard]] Eigen::Vector3d made_upright(const Eigen::Vector3d& direction,
                                              const std::vector<Eigen::Vector3d>& settled) const {
     for (int k = 0; k < 3; ++k) {
@@ -156,8 +154,7 @@ class Regulariser {
     return direction;
   }
 
-  /// Surfaces that are like the first of their group: one in which the value is fixed, or else that of most points.
-  /// Groups of one are left out.
+  /// Groups of at least two surfaces like the first: one with a fixed value, or else the one with most points.
   template <typename IsLike>
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> groups(bool (*is_of)(SurfaceType), bool FixedValues::*value,
                                                                const IsLike& is_like) {
@@ -175,7 +172,7 @@ class Regulariser {
     return found;
   }
 
-  /// What the group is to share: the mean by points, or what is fixed in the first.
+  /// The group's common value: the fixed value of the first surface, or else the mean weighted by points.
   template <typename Value>
   [[nodiscard]] auto common(const std::vector<std::uint32_t>& group, bool FixedValues::*fixed, const Value& value) {
     if (fixed_[group[0]].*fixed) return decltype(value(group[0]))(value(group[0]));
@@ -208,7 +205,7 @@ class Regulariser {
     }
   }
 
-  /// What lies across the axis of `a` between its position and that of `b`.
+  /// Offset between the axes of `a` and `b`, across the axis of `a`.
   [[nodiscard]] Eigen::Vector3d across(const Surface& a, const Surface& b) const {
     const Eigen::Vector3d offset = b.position - a.position;
     return offset - offset.dot(a.axis) * a.axis;
@@ -251,10 +248,10 @@ class Regulariser {
     std::vector<std::uint32_t> surfaces = {};
     bool is_fixed = false;
     double weight = 0;
-    double least_radius = std::numeric_limits<double>::infinity();  ///< of its cylinders
+    double least_radius = std::numeric_limits<double>::infinity();  ///< among its cylinders
   };
 
-  /// By direction: parallel ones together.
+  /// Bundles of parallel axes.
   [[nodiscard]] std::vector<std::vector<Axis>> axes() {
     std::vector<std::vector<Axis>> found;
     for (const std::uint32_t i : by_weight_) {
@@ -275,7 +272,7 @@ class Regulariser {
     return found;
   }
 
-  /// Along the plane of most points that the direction lies in, or else along an axis of coordinates.
+  /// Across `direction`: the normal of the parallel plane with most points, or else a coordinate axis.
   [[nodiscard]] Eigen::Vector3d upright_across(const Eigen::Vector3d& direction) {
     for (const std::uint32_t i : by_weight_) {
       if (surface(i).type == SurfaceType::plane && std::abs(surface(i).axis.dot(direction)) < 1e-9) {
@@ -288,7 +285,7 @@ class Regulariser {
     return direction.unitOrthogonal();
   }
 
-  /// Axes are alike by the least radius on them; those that may not move, or have no cylinder, are like no other.
+  /// Axes are alike if their least radii are equal. Axes that are fixed or have no cylinder are unique.
   [[nodiscard]] static std::vector<int> kinds_of(const std::vector<Axis>& bundle) {
     std::vector<int> kinds;
     for (std::size_t k = 0; k < bundle.size(); ++k) {
@@ -332,7 +329,7 @@ class Regulariser {
   std::vector<FixedValues> fixed_;
   double distance_tolerance_;
   double sine_tolerance_;
-  double upright_sine_ = 0;  ///< turned so little, no surface moves farther than the distance tolerance
+  double upright_sine_ = 0;  ///< angle at which no surface moves farther than the distance tolerance
   std::vector<std::uint32_t> by_weight_;
 };
 

@@ -12,7 +12,7 @@ constexpr std::size_t k_polytope_seeds = 4;
 constexpr std::size_t k_free_planes = 6;
 constexpr double k_gain_floor = 1e-9;  // less is rounding
 
-/// What there is to gain, by place, and the places where it is not nothing.
+/// Gains by place, and the places where they are not zero.
 struct Gains {
   std::span<const double> of_place;
   std::vector<std::uint32_t> positive = {}, negative = {};
@@ -35,7 +35,7 @@ Gains all_of(std::span<const double> gains) {
   return all;
 }
 
-/// Of those of some places that are on one side of a curved surface.
+/// The sum of gains over those places that are on one side of a curved surface.
 double sum_on_side(const RevolvedFamily& revolved, std::uint8_t side, const std::vector<std::uint32_t>& places,
                    const Gains& gains) {
   double sum = 0;
@@ -57,12 +57,11 @@ double price_of(const RevolvedFamily& revolved, const TermCosts& costs) {
   return revolved.known ? costs.known * costs.leaf : costs.leaf;
 }
 
-/// Of a part.
 double least_price(const TermSpace& space, const TermCosts& costs) {
   return space.known.empty() ? costs.leaf : std::min(costs.known, 1.0) * costs.leaf;
 }
 
-/// The bins that places which gain are in: what a box has beyond them only loses.
+/// The bins with gaining places. Beyond them, a box only loses.
 std::array<BinRange, 3> bins_that_gain(const BoxFamily& boxes, const Gains& gains) {
   std::array<BinRange, 3> ranges{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -83,7 +82,7 @@ SumGrid sums_within(const BoxFamily& boxes, const std::array<BinRange, 3>& range
   grid.sums.assign(std::size_t{grid.bins[0]} * grid.bins[1] * grid.bins[2], 0.0);
   for (const std::vector<std::uint32_t>* places : {&gains.positive, &gains.negative}) {
     for (const std::uint32_t i : *places) {
-      // Below the first bin it wraps around, and is beyond the last.
+      // Values below the first bin wrap around to beyond the last.
       const std::uint32_t x = boxes.bin_of_place[0][i] - ranges[0].first;
       const std::uint32_t y = boxes.bin_of_place[1][i] - ranges[1].first;
       const std::uint32_t z = boxes.bin_of_place[2][i] - ranges[2].first;
@@ -134,7 +133,7 @@ PricedTerm best_revolved(const TermSpace& space, std::uint32_t family, const Gai
   return {.term = {.parts = {revolved_part(space, family, best.range)}}, .net = best.sum - price};
 }
 
-/// What a curved surface's inside or outside has in common with the best box.
+/// The best intersection of a box with the inside or outside of a curved surface.
 PricedTerm best_with_box(const TermSpace& space, std::uint32_t family, bool is_inverted, const Gains& gains,
                          const TermCosts& costs, double least) {
   const RevolvedFamily& revolved = space.revolved[family];
@@ -142,7 +141,7 @@ PricedTerm best_with_box(const TermSpace& space, std::uint32_t family, bool is_i
   const double price = price_of(revolved, costs);
   PricedTerm best{.term = {}, .net = least};
   if (sum_on_side(revolved, side, gains.positive, gains) - costs.leaf - price <= least) return best;
-  // No box alone is better than `least`: leaving out what is inside must gain more than that costs.
+  // No box alone exceeds `least`, so excluding the inside must save more than its price.
   if (is_inverted && -sum_on_side(revolved, 1, gains.negative, gains) <= price) return best;
   TermPart curved = revolved_part(space, family, {.first = 0, .last = revolved.bins.count() - 1});
   curved.is_inverted = is_inverted;
@@ -157,8 +156,8 @@ PricedTerm best_with_box(const TermSpace& space, std::uint32_t family, bool is_i
   return best;
 }
 
-/// A row for each bin of a curved surface: what the places gain that are inside of it and of each of the curved
-/// surfaces; of itself, what all of the bin gain.
+/// A row a bin of a curved surface, a column a curved surface: total gain of the bin's places inside both. The
+/// surface's own column has the bin's total.
 std::vector<double> sums_with_others(const TermSpace& space, std::uint32_t family, const Gains& gains) {
   const RevolvedFamily& revolved = space.revolved[family];
   const std::size_t width = space.revolved.size();
@@ -173,7 +172,7 @@ std::vector<double> sums_with_others(const TermSpace& space, std::uint32_t famil
   return sums;
 }
 
-/// An interval of a curved surface, and the inside or outside of another.
+/// An interval of a curved surface, intersected with the inside or outside of another.
 PricedTerm best_pair(const TermSpace& space, std::uint32_t family, const Gains& gains, const TermCosts& costs,
                      double least) {
   PricedTerm best{.term = {}, .net = least};
@@ -201,8 +200,8 @@ PricedTerm best_pair(const TermSpace& space, std::uint32_t family, const Gains& 
   return best;
 }
 
-/// Cuts planes around a seed, each the one that gains most. What each plane has on one side is summed once, and kept up
-/// to date by what a cut takes away or leaves, whichever is less.
+/// Greedily cuts with planes around a seed. Keeps the sum on one side of each plane, and updates it by the places that
+/// a cut removes or leaves, whichever are fewer.
 class PolytopeCuts {
  public:
   PolytopeCuts(const TermSpace& space, std::span<const double> gains, const TermCosts& costs)
@@ -246,7 +245,7 @@ class PolytopeCuts {
     return true;
   }
 
-  /// Leaves the places on the seed's side of a plane.
+  /// Keeps the places on the seed's side of a plane.
   void take_away(std::size_t seed, std::uint32_t plane) {
     const std::vector<std::uint8_t>& under = space_.planes[plane].is_under;
     const auto is_left = [&](std::uint32_t i) { return under[i] == under[seed]; };
@@ -271,7 +270,7 @@ class PolytopeCuts {
   const TermCosts& costs_;
   double sum_;
   std::vector<std::uint32_t> all_;  // places that gain or lose
-  std::vector<double> under_;       // by plane: what they gain under it
+  std::vector<double> under_;       // by plane: the gain under it
   std::vector<std::uint32_t> alive_, taken_;
   std::vector<double> under_alive_;
 };

@@ -9,8 +9,8 @@ namespace cloud2csg {
 
 struct TermCosts {
   double leaf = 0.001;
-  double plane = 0.2;  ///< of a polytope's beyond the sixth, in leaves
-  double known = 0.5;  ///< of a solid that is known, in leaves: of two terms that are as good it is preferred
+  double plane = 0.2;  ///< a polytope's plane beyond the sixth, in leaves
+  double known = 0.5;  ///< a known solid, in leaves; it wins over an equally good term
 };
 
 enum class TermKinds : std::uint8_t {
@@ -19,21 +19,19 @@ enum class TermKinds : std::uint8_t {
 };
 
 struct PricedTerm {
-  Term term = {};  ///< without parts where none was found
-  double net = 0;  ///< what its places gain less what it costs
+  Term term = {};  ///< without parts if none was found
+  double net = 0;  ///< gain of its places minus its cost
 };
 
-/// What a term's leaves cost.
 [[nodiscard]] double cost_of(const Term& term, const TermCosts& costs);
 
-/// The term that gains most: over the boxes of all frames, the curved surfaces and their intervals, what a box or an
-/// interval has in common with the inside or outside of a curved surface or known solid, exactly; over polytopes by
-/// greedy cuts around the places that gain most. `gains` has one a place: what is gained by having it in the term. Only
-/// terms whose net is above `least`.
+/// The term with the largest net gain above `least`. Exact over boxes of all frames, curved surfaces and their
+/// intervals, and intersections of a box or interval with the inside or outside of a curved surface or known solid.
+/// Over polytopes, greedy cuts around the places with the largest gains. `gains`: by place, from having it in the term.
 [[nodiscard]] PricedTerm best_term(const TermSpace& space, std::span<const double> gains, const TermCosts& costs,
                                    double least = 0, TermKinds kinds = TermKinds::all);
 
-/// The best of one family's boxes alone, for tests.
+/// The best box of one family, for tests.
 [[nodiscard]] PricedTerm best_box(const TermSpace& space, std::uint32_t family, std::span<const double> gains,
                                   const TermCosts& costs, double least);
 

@@ -9,9 +9,9 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_derived_share = 0.006;  // of the diagonal: what round surfaces suggest may be that much off
-constexpr double k_part_margin = 0.02;     // of the diagonal: less than that of the places
-constexpr double k_margin = 1.0;           // of the diagonal: so that what nothing ends covers all that there is
+constexpr double k_derived_share = 0.006;  // in diagonals: possible error of edges from round surfaces
+constexpr double k_part_margin = 0.02;     // in diagonals: less than the places' margin
+constexpr double k_margin = 1.0;           // in diagonals: unbounded terms cover everything
 
 std::vector<PlaneFamily> distinct_planes(std::span<const DetectedSurface> surfaces, double tolerance,
                                          const Eigen::Vector3d& middle) {
@@ -89,7 +89,7 @@ void bin_places(TermSpace& space, const Points& positions) {
   for (PlaneFamily& plane : space.planes) bin_places(plane, positions);
 }
 
-/// By place a number: equal for those that no family tells apart.
+/// A number for each place, equal for places that no family distinguishes.
 std::vector<std::uint32_t> kinds_of_places(const TermSpace& space, std::size_t count) {
   std::vector<std::vector<std::uint32_t>> axial(space.revolved.size(), std::vector<std::uint32_t>(count, 0));
   for (std::size_t r = 0; r < space.revolved.size(); ++r) {
@@ -143,7 +143,7 @@ RevolvedFamily revolved_family(const DetectedSurface& detected, const Points& po
   return family;
 }
 
-/// Bins the places, of those that nothing tells apart one.
+/// Bins the places and merges those that nothing distinguishes.
 void join_places(TermSpace& space, const LabelledPlaces& places) {
   bin_places(space, places.positions);
   const std::vector<std::uint32_t> kinds = kinds_of_places(space, places.positions.size());

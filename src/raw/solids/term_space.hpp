@@ -9,10 +9,9 @@
 #include "cloud2csg/advanced/solids.hpp"
 #include "raw/solids/max_sum.hpp"
 
-/// What terms are made of: places, binned by all surfaces.
 namespace cloud2csg {
 
-/// Of sorted edges: bin i lies between edges i and i + 1. What is beyond the ends counts to the first or last bin.
+/// Bin i lies between the sorted edges i and i + 1. The first and last bin include everything beyond the ends.
 struct Bins {
   std::vector<double> edges = {};
 
@@ -20,48 +19,46 @@ struct Bins {
   [[nodiscard]] std::uint16_t bin_of(double value) const;
 };
 
-/// Three orthogonal directions and where faces of boxes may lie along them. The first and last edge are beyond the
-/// part.
+/// Three orthogonal directions, and possible faces of boxes along each. The first and last edge are beyond the part.
 struct BoxFamily {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns, right-handed
   std::array<Bins, 3> bins = {};
   std::array<std::vector<std::uint16_t>, 3> bin_of_place = {};
 };
 
-/// A curved surface, and where a cylinder or cone may be cut along its axis; the others have one bin. Or a solid that
-/// is known, of any shape, which is as it is and has one bin, too.
+/// A curved surface, or a known solid of any shape. A cylinder's or cone's edges cut its axis; others have one bin.
 struct RevolvedFamily {
   Surface surface = {};
-  std::optional<PrimitiveIndex> known = {};  ///< of the space's known solids; then the surface has no meaning
+  std::optional<PrimitiveIndex> known = {};  ///< index into `TermSpace::known`; then `surface` has no meaning
   Bins bins = {};
   std::vector<std::uint32_t> inside = {};         ///< places, ascending
-  std::vector<std::uint16_t> bin_of_inside = {};  ///< one for each of these
+  std::vector<std::uint16_t> bin_of_inside = {};  ///< one for each entry of `inside`
   std::vector<std::uint8_t> is_inside = {};       ///< by place
 };
 
-/// A plane, whichever way it was found: coplanar ones are one.
+/// A plane of either orientation. Coplanar planes are one.
 struct PlaneFamily {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double offset = 0;
   std::vector<std::uint8_t> is_under = {};  ///< by place: normal . x <= offset
 };
 
-/// Places that all surfaces tell nothing apart are one, with the sum of their weights.
+/// Places that no surface distinguishes are merged, and their weights added.
 struct TermSpace {
-  PrimitiveSet known = {};         ///< solids that are there to be used
-  std::vector<double> pulls = {};  ///< by place: what there is to gain by having it in the solid
+  PrimitiveSet known = {};         ///< solids that terms may use
+  std::vector<double> pulls = {};  ///< by place: gain from having it in the solid
   std::vector<BoxFamily> boxes = {};
   std::vector<RevolvedFamily> revolved = {};
-  std::vector<std::uint8_t> is_inside = {};  ///< a row for each place: of which curved surfaces it is inside
+  std::vector<std::uint8_t> is_inside = {};  ///< a row a place: which curved surfaces contain it
   std::vector<PlaneFamily> planes = {};
-  bool has_oblique_planes = false;  ///< some that are not those of one box family
-  AlignedBox part_bounds = {};      ///< a little beyond the part: what adds to it ends here at the latest
+  bool has_oblique_planes = false;  ///< some that belong to no box family
+  AlignedBox part_bounds = {};      ///< slightly beyond the part: limit of added solids
   AlignedBox bounds = {};           ///< far beyond the part on all sides
 
   [[nodiscard]] std::size_t size() const { return pulls.size(); }
 };
 
-/// Solids that are known, and their surfaces: at these others may end.
+/// Known solids, and their surfaces, at which other solids may end.
 struct KnownTerms {
   PrimitiveSet solids = {};
   std::vector<DetectedSurface> surfaces = {};
@@ -74,18 +71,17 @@ struct KnownTerms {
 
 enum class PartKind : std::uint8_t { box, revolved, polytope };
 
-/// One solid of a term.
 struct TermPart {
   PartKind kind = PartKind::box;
-  std::uint32_t family = 0;                ///< of the box or curved surface
-  std::array<BinRange, 3> ranges = {};     ///< of a box; the first is the range along the axis of a curved surface
-  std::vector<std::uint32_t> planes = {};  ///< of a polytope: 2 * plane, plus 1 for what is above it
-  bool is_inverted = false;                ///< what is outside of it
-  bool is_known = false;                   ///< a known solid
+  std::uint32_t family = 0;                ///< index of the box family or curved surface
+  std::array<BinRange, 3> ranges = {};     ///< for a box; the first is the range along a curved surface's axis
+  std::vector<std::uint32_t> planes = {};  ///< for a polytope: 2 * plane, plus 1 for the side above it
+  bool is_inverted = false;                ///< the outside
+  bool is_known = false;
   friend bool operator==(const TermPart&, const TermPart&) = default;
 };
 
-/// What its parts have in common: one solid, or two. The first is not inverted.
+/// The intersection of its one or two parts. The first is not inverted.
 struct Term {
   std::vector<TermPart> parts = {};
   friend bool operator==(const Term&, const Term&) = default;

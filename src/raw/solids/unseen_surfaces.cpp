@@ -21,16 +21,16 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::uint64_t k_side_stage = 0x756e'7365'656e;  // names its stream of random numbers
-constexpr double k_least_share = 0.02;                    ///< of the surface: less is a hole, no side
-constexpr double k_least_cosine = 0.5;                    ///< between the side and what is left of the sum of normals
-constexpr double k_same_cosine = 0.999;                   ///< directions nearer to each other are one
-constexpr double k_most_doubt = 0.8;  ///< layers that are neither there nor not, as a share of those that are missing
-/// Of sensors: cosine between the way to them and the side's normal. Below, they could see nothing of it.
+constexpr std::uint64_t k_side_stage = 0x756e'7365'656e;
+constexpr double k_least_share = 0.02;   ///< share of the surface; less is a hole, not a side
+constexpr double k_least_cosine = 0.5;   ///< between the side's direction and the sum of normals
+constexpr double k_same_cosine = 0.999;  ///< directions closer than this are one
+constexpr double k_most_doubt = 0.8;     ///< greatest ratio of doubtful to missing layers
+/// Least cosine between the direction to a sensor and the side's normal for seeing the side.
 constexpr double k_sensor_cosine = 0.1;
-constexpr std::size_t k_window = 2;  ///< bins on each side of one that its layers are counted in
+constexpr std::size_t k_window = 2;  ///< bins on each side in which a bin's layers are counted
 
-/// Points with areas, and what is left of the sum of their normals.
+/// Points with areas, and the area-weighted sum of their normals.
 struct Surroundings {
   const PointCloud& cloud;
   std::vector<double> areas;
@@ -57,7 +57,7 @@ bool is_seen(const Surroundings& all, const Vector3d& normal) {
   return false;
 }
 
-/// Into the solid from the sides that may be missing.
+/// Directions from possibly missing sides into the solid.
 std::vector<Vector3d> directions_up(const Surroundings& all, std::span<const DetectedSurface> surfaces) {
   std::vector<Vector3d> ups;
   const auto add = [&](const Vector3d& up) {
@@ -74,7 +74,7 @@ std::vector<Vector3d> directions_up(const Surroundings& all, std::span<const Det
   return ups;
 }
 
-/// The cloud in a frame with z up: square bins over the xy plane, and in each the layers of the surface above it.
+/// The cloud in a frame with z up. Counts, in square bins over the xy plane, the layers of the surface above.
 class LayerCount {
  public:
   LayerCount(const Surroundings& all, const Vector3d& up)
@@ -104,14 +104,14 @@ class LayerCount {
   }
 
   [[nodiscard]] double step() const { return step_; }
-  /// Of what stands on the missing side.
+  /// Above the missing side.
   [[nodiscard]] double mean_height() const { return mean_height_; }
-  /// How sure it is that a side is missing: bins where one is, less those of doubt.
+  /// Certainty of a missing side: bins with a missing layer minus doubtful bins.
   [[nodiscard]] double score() const { return missing_ - doubt_; }
   [[nodiscard]] double doubt() const { return doubt_; }
   [[nodiscard]] double missing() const { return missing_; }
 
-  /// A place in each bin where a layer is missing, at the height of the lowest points. In the world.
+  /// A place in each bin with a missing layer, at the height of the lowest points; world coordinates.
   [[nodiscard]] Points missing_places() const {
     RandomStream random(0, k_side_stage, 0);
     Points places;
@@ -139,7 +139,7 @@ class LayerCount {
   [[nodiscard]] std::size_t bins_along(double extent) const {
     return static_cast<std::size_t>(extent / step_) + 2 * k_window + 1;
   }
-  /// A few stray points may be lower.
+  /// The lowest height, except for a few stray points.
   static double low_end(std::vector<double> heights) {
     const std::size_t few = std::min(heights.size() / 2000, heights.size() - 1);
     std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(few), heights.end());
@@ -147,7 +147,7 @@ class LayerCount {
   }
   [[nodiscard]] double& sum(std::size_t x, std::size_t y) { return sums_[y * (width_ + 1) + x]; }
   [[nodiscard]] double sum(std::size_t x, std::size_t y) const { return sums_[y * (width_ + 1) + x]; }
-  /// How many more layers around a bin face up than down.
+  /// Number of layers around a bin that face up minus those that face down.
   [[nodiscard]] double layers(std::size_t x, std::size_t y) const {
     const std::size_t left = x - std::min(x, k_window), right = std::min(x + k_window + 1, width_);
     const std::size_t low = y - std::min(y, k_window), high = std::min(y + k_window + 1, height_);
@@ -159,7 +159,7 @@ class LayerCount {
   double step_;
   Vector2d origin_;
   std::size_t width_ = 0, height_ = 0;
-  std::vector<double> sums_;  ///< of all bins below and to the left of a corner
+  std::vector<double> sums_;  ///< over all bins below and to the left of a corner
   double foot_ = 0, mean_height_ = 0;
   double missing_ = 0, doubt_ = 0;
 };
@@ -167,14 +167,14 @@ class LayerCount {
 using Eigen::Vector3d;
 
 constexpr double k_cell_spacings = 2;       // edge of a cell of a wall
-constexpr std::size_t k_least_columns = 8;  // around
+constexpr std::size_t k_least_columns = 8;  // around the axis
 constexpr std::size_t k_most_cells = 1'000'000;
-constexpr double k_hidden_density = 0.3;  // of the cloud's: what would have fewer points is hidden
-constexpr double k_most_gaps = 0.2;       // of cells without points, those that sensors could see
-constexpr double k_least_hidden = 8;      // cells: fewer are no wall
+constexpr double k_hidden_density = 0.3;  // relative to the cloud's density; a lower expected density counts as hidden
+constexpr double k_most_gaps = 0.2;       // share of visible cells among those without points
+constexpr double k_least_hidden = 8;      // fewer cells are no wall
 constexpr std::size_t k_least_floor_points = 10;
 
-/// The heights that a wall is seen at, or that something across its axis ends it at.
+/// The range of heights where a wall is seen, or to faces across its axis that end it.
 struct Reach {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -185,7 +185,7 @@ struct Reach {
   }
 };
 
-/// A wall, rolled out: cells along its axis and around it.
+/// An unrolled wall, in cells along and around its axis.
 class RolledWall {
  public:
   RolledWall(const PointCloud& cloud, std::span<const DetectedSurface> surfaces, std::size_t index, double cell)
@@ -206,7 +206,7 @@ class RolledWall {
     for (const std::uint32_t i : own) mark(pose_.to_local(cloud.positions[i]));
   }
 
-  /// Middles of cells without points, and with none around them, on lines on which there are some.
+  /// Middles of cells that, with their surroundings, have no points, on lines along the axis that have some.
   [[nodiscard]] Points bare_places() const {
     Points places;
     for (std::size_t row = 0; row < rows_ && !is_seen_.empty(); ++row) {
@@ -218,7 +218,6 @@ class RolledWall {
     return places;
   }
 
-  /// Four places in the cell that a place is the middle of.
   void add_points(const Vector3d& middle, PointCloud& points) const {
     const Vector3d local = pose_.to_local(middle);
     const double row = row_of(local);
@@ -236,19 +235,18 @@ class RolledWall {
 
   [[nodiscard]] Vector3d normal_at(const Vector3d& place) const { return normal(surface_, place); }
   [[nodiscard]] double cell_area(const Vector3d& place) const {
-    // Of a sphere that of the cylinder around it (Archimedes).
+    // A sphere's cell has the area of its projection onto the enclosing cylinder (Archimedes).
     const double width = 2 * std::numbers::pi * depth_at(place) / static_cast<double>(columns_);
     return width * cell_height() / std::cos(surface_.half_angle);
   }
 
  private:
   [[nodiscard]] bool is_sphere() const { return surface_.type == SurfaceType::sphere; }
-  /// Of the circle that the wall is at a height.
   [[nodiscard]] double radius_at(double height) const {
     if (is_sphere()) return std::sqrt(std::max(0.0, surface_.radius * surface_.radius - height * height));
     return surface_.type == SurfaceType::cone ? std::max(height, 0.0) * std::tan(surface_.half_angle) : surface_.radius;
   }
-  /// From a place of the wall to the middle of the space inside.
+  /// Distance from a place of the wall to the middle of the space inside.
   [[nodiscard]] double depth_at(const Vector3d& place) const {
     return is_sphere() ? surface_.radius : radius_at(pose_.to_local(place).z());
   }
@@ -266,7 +264,7 @@ class RolledWall {
     return pose_.to_world({radius * std::cos(angle), radius * std::sin(angle), height});
   }
 
-  /// To a face across the axis that looks into the space inside of the wall.
+  /// Extends the reach to a face across the axis that faces the space inside the wall.
   void extend_to(const DetectedSurface& face) {
     if (face.surface.type != SurfaceType::plane || !are_parallel(face.surface.axis, surface_.axis)) return;
     const double height = pose_.to_local(face.surface.position).z();
@@ -302,7 +300,7 @@ class RolledWall {
   std::vector<char> is_seen_, is_line_seen_;
 };
 
-/// Of bare places, those that no sensor could see; none where they could see many.
+/// The bare places that no sensor could see; none if many were visible.
 Points hidden_places(const RolledWall& wall, const SensorViews& views, double usual, const RunContext& run) {
   const Points bare = wall.bare_places();
   std::vector<char> is_hidden(bare.size());

@@ -10,37 +10,35 @@
 
 namespace cloud2csg {
 
-/// A side that the sensor never saw, as that on which the part stood.
+/// A side that the sensor never saw, such as the one on which the part stood.
 struct UnseenSide {
   Eigen::Vector3d normal;  ///< out of the solid
-  double share;            ///< of the whole surface, with this side
-  PointCloud points;       ///< on its plane, as dense as the cloud, with that normal
+  double share;            ///< share in the whole surface, this side included
+  PointCloud points;       ///< on the side's plane, as dense as the cloud, with its normal
 };
 
-/// Looks for one. Over a closed surface the normals, weighted with area, sum up to nothing: what is left of the sum
-/// faces roughly away from the side that is missing. Of the directions of planes and axes near it (its own where there
-/// are none) that is taken along which the layers of the surface show best one that is missing: seen along it, as many
-/// areas face up as down where nothing is missing, and one more up where the side is. The side lies as low as the
-/// points reach. Absent when little is missing, when holes here and there are rather than one side, when a sensor was
-/// on that side, and when the cloud is a sheet that encloses nothing. Where the cloud has sensor positions, so have the
-/// new points: straight in front of them. O(points x surfaces + n log n) Precondition: the cloud has outward normals.
+/// Looks for a side without points. On a closed surface the area-weighted normals sum to zero, so their sum points
+/// roughly away from a missing side. Among the directions of planes and axes near the sum (or the sum itself), takes
+/// the one whose layers show a missing one best: along it, up- and down-facing areas balance, except for one more up
+/// over the side. The side is at the lowest points. Absent if little is missing, if there are scattered holes rather
+/// than a side, if a sensor was on that side, or if the cloud is a sheet that encloses nothing. If the cloud has sensor
+/// positions, each new point gets one straight in front of it. Needs outward normals. O(points x surfaces + n log n).
 /// @throws Cancelled
 [[nodiscard]] std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud,
                                                          std::span<const DetectedSurface> surfaces, const Scale& scale,
                                                          const RunContext& run = {});
 
-/// What of the walls of bores and cups no sensor could see.
 struct HiddenWall {
   std::size_t surface = 0;  ///< index into the surfaces
-  PointCloud points = {};   ///< spread over it, with normals and sensor positions
+  PointCloud points = {};   ///< spread over the hidden part of the wall, with normals and sensor positions
   double area = 0;
 };
 
-/// Of concave cylinders and cones, the places that no sensor could see, on lines along the axis on which the wall was
-/// seen, no farther out or in than where it was, or than a floor or ceiling across the axis that was seen; of concave
-/// spheres all such places. None where sensors could see much of what has no points: there the wall has a gap. Without
-/// them the space inside of a long bore, of which only the mouths are seen, would be taken for material.
-/// None where the cloud has no sensor positions. O(points x surfaces + cells x sensors)
+/// Places of concave cylinders and cones that no sensor could see, on lines along the axis where the wall was seen,
+/// within its seen extent or up to a seen floor or ceiling across the axis. All such places of concave spheres. None
+/// where sensors could see much of the bare wall, which is then a gap. Without these places, the inside of a long bore
+/// with only its mouths seen would count as material. None without sensor positions.
+/// O(points x surfaces + cells x sensors)
 [[nodiscard]] std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud,
                                                         std::span<const DetectedSurface> surfaces, const Scale& scale,
                                                         const RunContext& run = {});

@@ -16,9 +16,9 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_most_overshoot = 0.01;  // of the diagonal of the bounds, which are far out
+constexpr double k_most_overshoot = 0.01;  // in diagonals of the bounds, which are far out
 
-/// How far ends are moved into bins that make no difference, by part, side and end.
+/// By part, side and end: whether an end moves into a bin that makes no difference.
 using Overshoots = std::array<std::array<bool, 2>, 3>;
 
 std::vector<std::uint8_t> decisions_of(const DecisionList& list, std::size_t places) {
@@ -43,7 +43,7 @@ void set_term(const TermSpace& space, Rule& rule, const Term& term) {
   rule.members = members_of(space, term);
 }
 
-/// Draws the ends of all parts in, where the list decides all places as before.
+/// Moves the ends of all parts inward as long as the list decides all places as before.
 class DrawnIn {
  public:
   static DecisionList of(const TermSpace& space, DecisionList list) {
@@ -85,9 +85,8 @@ class DrawnIn {
   std::vector<std::uint8_t> wanted_;
 };
 
-/// Finds ends that may lie anywhere in the next bin: whichever of them do, and however far, all places are decided as
-/// before. For that, a place that comes into or out of one rule's term must not depend on this rule, nor come into or
-/// out of another's.
+/// Finds ends that may lie anywhere in the next bin. Any choice of such ends must leave all decisions unchanged. So a
+/// place that enters or leaves one rule's term must not depend on that rule, nor enter or leave another rule's term.
 class FreeEnds {
  public:
   /// By rule and part.
@@ -147,7 +146,7 @@ class FreeEnds {
       ++range.last;
   }
 
-  /// Those that are in the term for some lengths of its parts, and for others not.
+  /// Places whose membership in the term depends on the lengths of its parts.
   [[nodiscard]] std::vector<std::uint32_t> places_that_change(const Term& exact, const Term& longest) const {
     Term most = longest;
     Term least = exact;
@@ -163,7 +162,7 @@ class FreeEnds {
     return places;
   }
 
-  /// Of a bin without places nothing is known.
+  /// Nothing is known about a bin without places.
   [[nodiscard]] bool reaches_other_places(TermPart a, TermPart b) const {
     a.is_inverted = false;
     b.is_inverted = false;
@@ -172,15 +171,15 @@ class FreeEnds {
 
   const TermSpace& space_;
   const DecisionList& list_;
-  std::vector<Term> longest_;          ///< by rule, with all free ends a bin farther
-  std::vector<std::uint32_t> owners_;  ///< by place: the rule, from 1, whose term it comes into or out of
+  std::vector<Term> longest_;          ///< by rule, with all free ends one bin farther
+  std::vector<std::uint32_t> owners_;  ///< by place: the rule, from 1, whose term it may enter or leave
 };
 
 struct Span {
   double low, high;
 };
 
-/// Of a range of bins, with ends that may overshoot half a bin, but not too far.
+/// The extent of a range of bins. Its ends may overshoot by half a bin, up to `most`.
 Span span_of(const Bins& bins, BinRange range, const std::array<bool, 2>& overshoot, double most) {
   Span span{bins.edges[range.first], bins.edges[range.last + 1]};
   if (overshoot[0]) span.low -= std::min(0.5 * (span.low - bins.edges[range.first - 1]), most);
@@ -188,7 +187,6 @@ Span span_of(const Bins& bins, BinRange range, const std::array<bool, 2>& oversh
   return span;
 }
 
-/// What the box takes up along an axis.
 Span extent(const AlignedBox& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
   const double middle = (box.center() - origin).dot(axis);
   const double half = 0.5 * box.sizes().dot(axis.cwiseAbs());
@@ -208,7 +206,7 @@ Primitive box_solid(const BoxFamily& boxes, const std::array<Span, 3>& spans) {
           .pose = {.position = boxes.axes * middle, .orientation = Eigen::Quaterniond(boxes.axes).normalized()}};
 }
 
-/// Whether a solid stands on its head: the other way round it is turned less.
+/// Whether flipping the solid reduces its rotation.
 bool is_upside_down(const Eigen::Vector3d& axis) {
   constexpr double k_level = 1e-9;
   for (const Eigen::Index k : {2, 1, 0}) {
@@ -246,7 +244,7 @@ Plane world_plane(const TermSpace& space, std::uint32_t side) {
   return {.normal = -plane.normal, .offset = -plane.offset};
 }
 
-/// The planes that hold a corner or more, about the middle of the corners.
+/// The planes with at least three corners, relative to the middle of all corners.
 Primitive polytope_solid(const TermSpace& space, const TermPart& part, const AlignedBox& bounds) {
   Polytope all;
   for (const std::uint32_t side : part.planes) all.planes.push_back(world_plane(space, side));
@@ -264,12 +262,12 @@ Primitive polytope_solid(const TermSpace& space, const TermPart& part, const Ali
         points, [&](const Eigen::Vector3d& point) { return plane.normal.dot(point) > plane.offset - tolerance; });
     if (held >= 3) needed.planes.push_back({.normal = plane.normal, .offset = plane.offset - plane.normal.dot(middle)});
   }
-  // So far from the origin that rounding hides the corners: a solid without planes is none.
+  // Too far from the origin, rounding hides the corners. Keeps all planes, because a solid needs some.
   if (needed.planes.size() < 4) return {.id = {}, .shape = std::move(all), .pose = {}};
   return {.id = {}, .shape = std::move(needed), .pose = {.position = middle}};
 }
 
-/// Solids that add to the part end where it does at the latest; those that take from it reach beyond all that add.
+/// Solids that add to the part end with it. Solids that subtract reach beyond all those.
 Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
   const AlignedBox& bounds = adds ? space.part_bounds : space.bounds;
   const double most = k_most_overshoot * space.bounds.diagonal().norm();
@@ -290,7 +288,6 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
   return revolved_solid(surface, has_ends ? span(0, surface.position, surface.axis) : Span{0, 1});
 }
 
-/// Adds solids, each once, to those that are known.
 class SolidWriter {
  public:
   explicit SolidWriter(PrimitiveSet known) : solids(std::move(known)), known_(solids.size()) {
@@ -317,7 +314,7 @@ class SolidWriter {
   PrimitiveSet solids;
 
  private:
-  /// By type and number, and of no known solid.
+  /// By type and number, different from the ids of known solids.
   std::string new_id(const std::string& type) {
     std::string id;
     do {
@@ -327,7 +324,7 @@ class SolidWriter {
   }
 
   std::size_t known_;
-  std::set<std::string> ids_;  // of known solids
+  std::set<std::string> ids_;
   std::vector<std::tuple<TermPart, Overshoots, bool>> parts_;
   std::map<std::string, std::size_t> numbers_;
 };

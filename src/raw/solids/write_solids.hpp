@@ -9,9 +9,9 @@ struct WrittenSolids {
   CsgTree tree = {};
 };
 
-/// The terms of a list as solids, each once, after those that are known, and the list as a tree. Solids end where that
-/// matters: an end that makes no difference is drawn in to the surface that does, and then moved a little into what
-/// makes none, so that no two faces of the parts of a formula coincide where that can be helped. O(rules^2 x places).
+/// The terms of a list as solids, each once, after the known ones, and the list as a tree. An end that makes no
+/// difference moves inward to the surface that does, then slightly into the indifferent space, so that faces of a
+/// formula's parts do not coincide if avoidable. O(rules^2 x places).
 [[nodiscard]] WrittenSolids write_solids(const TermSpace& space, DecisionList list);
 
 }  // namespace cloud2csg

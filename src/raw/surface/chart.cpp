@@ -9,9 +9,9 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_least_half_angle = 1e-4;  // narrower, a cone is a cylinder and its apex has no digits left
+constexpr double k_least_half_angle = 1e-4;  // a narrower cone is a cylinder, whose apex has no significant digits
 
-/// The distance, and its slopes by the sizes.
+/// The distance and its derivatives by the sizes.
 struct SizedProfile {
   ProfileDistance profile;
   std::array<double, 2> by_size;
@@ -45,7 +45,7 @@ Chart::Chart(const Surface& start) : start_(start) {
   const Eigen::Vector3d& axis = start.axis;
   const Eigen::Vector3d first = axis.unitOrthogonal();
   directions_ = {first, axis.cross(first), axis};
-  // The middle of the points is the origin: the axis' point, or the plane's, that is nearest to it.
+  // The origin is the centroid. The position becomes the point of the axis or plane nearest to it.
   const double along = axis.dot(start.position);
   switch (start.type) {
     case SurfaceType::plane:
@@ -113,7 +113,7 @@ double Chart::distance(const Place& place, const Eigen::Vector3d& point, Row& sl
   const auto [profile, by_size] = profile_at(start_.type, place, at);
   std::size_t next = 0;
   if (tilts_ > 0) {
-    // A turn of the axis towards the point brings the point up the axis and nearer to it.
+    // Tilting the axis towards the point moves the point up the axis and nearer to it.
     const double by_turn = profile.by_height * at.radial - profile.by_radial * at.height;
     for (const Eigen::Vector3d& turn : place.axis_by_tilt) slopes[next++] = by_turn * at.outward.dot(turn);
   }

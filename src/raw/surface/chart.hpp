@@ -9,11 +9,10 @@
 
 namespace cloud2csg {
 
-/// The unknowns of the surfaces of one type around one of them: as many as such a surface has, none of them redundant.
-/// In this order: two tilts of the axis (none for a sphere), shifts of the position (of a plane along its normal, of a
-/// cylinder or cone across the axis, of the others three), sizes. A cone is held by its radius where the middle of the
-/// points is, times the cosine of its half angle, and not by its apex, which is anywhere for a narrow cone.
-/// In the frame of unit_frame(), so that the origin is the middle of the points.
+/// A minimal set of unknowns for surfaces of one type near a given surface. In this order: two tilts of the axis (none
+/// for a sphere); shifts of the position (a plane's along its normal, a cylinder's or cone's across the axis, otherwise
+/// three); sizes. A cone's size is its radius at the middle of the points times the cosine of its half angle, because
+/// the apex of a narrow cone is ill-defined. In the frame of unit_frame(), whose origin is that middle.
 class Chart {
  public:
   static constexpr std::size_t k_most_unknowns = 7;
@@ -24,24 +23,24 @@ class Chart {
   [[nodiscard]] std::size_t unknowns() const { return tilts_ + shifts_ + sizes_; }
   [[nodiscard]] std::size_t tilts() const { return tilts_; }
   [[nodiscard]] std::size_t shifts() const { return shifts_; }
-  /// The unknowns of the surface that the chart was made from.
+  /// The unknowns of the surface passed to the constructor.
   [[nodiscard]] Row start() const;
 
-  /// A surface of the chart, in the form that distances are computed from.
+  /// A surface of the chart, prepared for computing distances.
   struct Place {
     Eigen::Vector3d position, axis;
     std::array<Eigen::Vector3d, 2> axis_by_tilt;
     std::array<double, 2> sizes;
-    double sine, cosine;  ///< of a cone's half angle
+    double sine, cosine;  ///< for a cone's half angle
   };
   /// Precondition: `values` has one value for each unknown.
   [[nodiscard]] Place at(std::span<const double> values) const;
 
-  /// Distance from the surface, with the material inside; `slopes` receives its derivatives by the unknowns.
+  /// Signed distance as if the material were inside; `slopes` receives the derivatives by the unknowns.
   [[nodiscard]] double distance(const Place& place, const Eigen::Vector3d& point) const;
   double distance(const Place& place, const Eigen::Vector3d& point, Row& slopes) const;
 
-  /// Whether the place is a surface of the type: sizes above 0, angles within their range.
+  /// Whether sizes are above 0 and angles are within their range.
   [[nodiscard]] bool is_surface(const Place& place) const;
   /// Precondition: is_surface().
   [[nodiscard]] Surface surface(const Place& place) const;
@@ -49,11 +48,11 @@ class Chart {
  private:
   [[nodiscard]] std::size_t sizes_begin() const { return tilts_ + shifts_; }
 
-  Surface start_;  ///< its position is where the chart has its origin
+  Surface start_;  ///< its position is the chart's origin
   Row start_sizes_ = {};
   std::array<Eigen::Vector3d, 3> directions_;  ///< first and second across the axis, and the axis
   std::size_t tilts_ = 0;
-  std::size_t shifts_begin_ = 0;  ///< of the directions
+  std::size_t shifts_begin_ = 0;  ///< index of the first shift in `directions_`
   std::size_t shifts_ = 0;
   std::size_t sizes_ = 0;
 };

@@ -14,7 +14,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_flat = 1e-6;  // of the largest: a scatter in fewer dimensions, up to rounding
+constexpr double k_flat = 1e-6;  // relative to the largest scatter: zero up to rounding
 
 using Vectors = std::span<const Eigen::Vector3d>;
 
@@ -24,14 +24,14 @@ Eigen::Vector3d mean_of(Vectors vectors) {
   return sum / static_cast<double>(vectors.size());
 }
 
-/// Directions of least to most scatter around a place, and how much.
+/// Principal directions and variances around a place, in ascending order.
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> scatter_of(Vectors vectors, const Eigen::Vector3d& around) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& vector : vectors) sum += (vector - around) * (vector - around).transpose();
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum / static_cast<double>(vectors.size()));
 }
 
-/// Whether the normals point to the inside of the surface as it is.
+/// Whether the normals point to the inside of the surface.
 bool is_concave(const Surface& surface, Vectors points, Vectors normals) {
   double agreement = 0;
   for (std::size_t i = 0; i < points.size(); ++i) agreement += normals[i].dot(normal(surface, points[i]));
@@ -53,7 +53,7 @@ std::optional<Surface> estimate_plane(Vectors points, Vectors normals) {
                  .axis = across.dot(mean_of(normals)) < 0 ? Eigen::Vector3d(-across) : across};
 }
 
-/// |p|^2 = 2 c.p + (r^2 - |c|^2), linear in c and in what is left.
+/// |p|^2 = 2 c.p + (r^2 - |c|^2) is linear in c and the rest.
 std::optional<Surface> estimate_sphere(Vectors points, Vectors /*normals*/) {
   Eigen::MatrixX4d terms(points.size(), 4);
   Eigen::VectorXd squares(points.size());
@@ -91,7 +91,7 @@ std::optional<Circle> estimate_circle(std::span<const Eigen::Vector2d> points) {
   return Circle{.centre = centre, .radius = std::sqrt(found[2] + centre.squaredNorm())};
 }
 
-/// The axis and radius of the circle in the plane across `axis` that is nearest to points, as a torus without a tube.
+/// Axis and radius of the circle that fits the points' projections along `axis`, as a torus without a tube.
 std::optional<Surface> axis_around(const Eigen::Vector3d& axis, std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d first = axis.unitOrthogonal();
   const Eigen::Vector3d second = axis.cross(first);
@@ -115,7 +115,7 @@ std::optional<Surface> estimate_cylinder(Vectors points, Vectors normals) {
   return cylinder;
 }
 
-/// The point that is nearest to all tangent planes.
+/// The point nearest to all tangent planes.
 std::optional<Eigen::Vector3d> common_point_of_tangent_planes(Vectors points, Vectors normals) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -149,11 +149,11 @@ std::optional<Surface> estimate_cone(Vectors points, Vectors normals) {
   return Surface{.type = SurfaceType::cone, .position = *apex, .axis = axis, .half_angle = *middle};
 }
 
-/// A line that is the axis of a torus, perhaps: as a torus of no size.
+/// Candidate axes of a torus, each as a torus without size.
 using Axes = std::vector<Surface>;
 
-/// The lines that the normals' lines meet, as nearly as can be: of the linear complex in which they are, with its pitch
-/// left out. A line is its direction n and its moment p x n; it meets the line (w, m) where n.m + (p x n).w = 0.
+/// The lines that come nearest to meeting all normals' lines: axes of their linear complex, ignoring its pitch. A line
+/// with direction n has moment p x n and meets the line (w, m) where n.m + (p x n).w = 0.
 Axes common_lines_of_normals(Vectors points, Vectors normals) {
   Eigen::Matrix3d by_moment = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d by_direction = Eigen::Matrix3d::Zero();
@@ -164,7 +164,7 @@ Axes common_lines_of_normals(Vectors points, Vectors normals) {
     by_direction += moment * moment.transpose();
     mixed += normals[i] * moment.transpose();
   }
-  // For each direction of unit length there is a best moment; of these directions, those with the least left.
+  // Each unit direction has a best moment. These directions have the least residual.
   const Eigen::Matrix3d moment_of = -by_moment.inverse() * mixed;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(by_direction + mixed.transpose() * moment_of);
   Axes axes;
@@ -175,8 +175,8 @@ Axes common_lines_of_normals(Vectors points, Vectors normals) {
   return axes;
 }
 
-/// The axes of the circle on which the middles of the tube are, p - r n for some r: they lie in a plane, w.p + b.n = c
-/// with b = -r w. Bears with noise where a short piece of a tube says little of where its normals meet.
+/// The axes of the circle of the tube's middles p - r n for some r. The circle is in a plane: w.p + b.n = c, b = -r w.
+/// Robust against noise where a short piece of a tube hardly determines where its normals meet.
 Axes axes_of_tube_middles(Vectors points, Vectors normals) {
   const Eigen::Vector3d centre = mean_of(points);
   const Eigen::Vector3d mean_normal = mean_of(normals);

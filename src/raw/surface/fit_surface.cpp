@@ -17,12 +17,11 @@
 namespace cloud2csg {
 namespace {
 
-constexpr int k_most_rounds = 6;            // under Tukey's loss; the noise has settled after two or three
+constexpr int k_most_rounds = 6;            // under Tukey's loss; the noise settles after two or three
 constexpr double k_settled = 0.02;          // relative change of the noise
 constexpr double k_smallest_noise = 1e-12;  // in the unit frame
 
-/// The residuals of a surface at points, in multiples of the noise, as ceres::TinySolver wants them: it is made for
-/// few unknowns, and a problem of 4000 residuals is built in no time.
+/// Noise-scaled residuals for ceres::TinySolver, which suits few unknowns and sets up 4000 residuals in no time.
 struct RobustDistances {
   using Scalar = double;
   // NOLINTNEXTLINE(readability-identifier-naming): the solver's names
@@ -56,8 +55,7 @@ struct RobustDistances {
 
 using Unknowns = Eigen::VectorXd;
 
-/// The cost is in squares of the noise: to within a change of c the unknowns are where they should be to within sqrt(c)
-/// of what is uncertain about them.
+/// Tolerances of the cost, in squared noise. A change of c moves the unknowns by sqrt(c) of their uncertainty.
 constexpr double k_rough = 1e-2;
 constexpr double k_precise = 1e-6;
 
@@ -79,7 +77,6 @@ double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> p
   return robust_deviation(distances);
 }
 
-/// What points in the unit frame say.
 struct Solution {
   Surface surface;
   double noise;
@@ -97,7 +94,7 @@ class Fitter {
   [[nodiscard]] SurfaceUncertainty uncertainty(const Solution& solution, double rms) const;
 
  private:
-  /// Looks wide first, so that the points of a start that is a little off have a say, and then closely.
+  /// Starts with a wide loss, so that the points of an inaccurate start count, then narrows it.
   [[nodiscard]] std::optional<Solution> fit_within(const Surface& start, double noise) const {
     std::optional<Surface> surface = start;
     for (const double factor : {8.0, 2.0, 1.0}) {
@@ -109,13 +106,13 @@ class Fitter {
   }
 
   [[nodiscard]] std::optional<Solution> fit_and_measure(const Surface& start) const {
-    // Under Huber's loss every point pulls, so that a start that is far off finds its way.
+    // Under Huber's loss every point pulls, which corrects even a distant start.
     double noise = std::max(measured_noise(start, points_), floor_);
     std::optional<Surface> surface = improved(start, noise, {LossType::huber, k_huber}, k_rough);
     bool is_settled = false;
     for (int round = 0; surface && !is_settled && round < k_most_rounds; ++round) {
       const double measured = std::max(measured_noise(*surface, points_), floor_);
-      // Of the first loss' noise, being equal says nothing.
+      // Equality with the noise of the first loss means nothing.
       is_settled = round + 1 == k_most_rounds || (round > 0 && std::abs(measured - noise) < k_settled * noise);
       noise = measured;
       surface = improved(*surface, noise, {LossType::tukey, k_tukey}, is_settled ? k_precise : k_rough);
@@ -138,7 +135,7 @@ class Fitter {
   std::optional<double> given_;
 };
 
-/// The standard deviation in the worst direction of some of the unknowns; infinite where the covariance is absent.
+/// Standard deviation in the worst direction of some unknowns; infinite without a covariance.
 double worst_deviation(const std::optional<Eigen::MatrixXd>& covariance, Eigen::Index begin, Eigen::Index count) {
   if (count == 0) return 0;
   if (!covariance) return std::numeric_limits<double>::infinity();
@@ -147,7 +144,7 @@ double worst_deviation(const std::optional<Eigen::MatrixXd>& covariance, Eigen::
   return std::sqrt(std::max(parts.eigenvalues().maxCoeff(), 0.0));
 }
 
-/// Absent where some unknowns are not determined.
+/// Absent if some unknowns are undetermined.
 std::optional<Eigen::MatrixXd> inverse_of(const Eigen::MatrixXd& information) {
   constexpr double k_singular = 1e-13;
   const Eigen::LDLT<Eigen::MatrixXd> parts(information);
@@ -197,7 +194,7 @@ std::optional<SurfaceFit> fit_surface(const Surface& start, std::span<const Eige
   const std::vector<Eigen::Vector3d> some =
       some_of(points, std::max<std::size_t>(options.most_points, Chart::k_most_unknowns));
   const UnitFrame frame = unit_frame(some);
-  // Coordinates far from the origin are rounded themselves: no residual below that means anything.
+  // Coordinates far from the origin carry rounding errors, so smaller residuals have no meaning.
   const double rounding = std::numeric_limits<double>::epsilon() * frame.origin.norm() / frame.scale;
   const double floor = std::max(k_smallest_noise, 4 * rounding);
   const auto noise = options.noise ? std::optional(std::max(*options.noise / frame.scale, floor)) : std::nullopt;

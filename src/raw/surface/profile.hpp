@@ -6,18 +6,18 @@
 
 namespace cloud2csg {
 
-/// A point as a surface of revolution sees it: how far along the axis and how far from it, and in which direction.
+/// A point in the cylindrical coordinates of a surface of revolution.
 struct AxialPoint {
   double height;            ///< along the axis, from the surface's position
   double radial;            ///< distance from the axis
-  Eigen::Vector3d outward;  ///< unit length, from the axis to the point; any across the axis for a point on it
+  Eigen::Vector3d outward;  ///< unit length, from the axis to the point; arbitrary across the axis for a point on it
 };
 
 /// Precondition: `axis` of unit length.
 [[nodiscard]] AxialPoint axial_point(const Eigen::Vector3d& position, const Eigen::Vector3d& axis,
                                      const Eigen::Vector3d& point);
 
-/// Distance in the half plane of (radial, height), and its slopes there.
+/// Distance in the half plane of (radial, height) and its derivatives.
 struct ProfileDistance {
   double distance;
   double by_radial, by_height;

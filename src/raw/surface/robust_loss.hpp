@@ -4,16 +4,15 @@
 
 namespace cloud2csg {
 
-inline constexpr double k_huber = 1.345;  ///< of the noise: 95 % as good as plain squares where there are no outliers
+inline constexpr double k_huber = 1.345;  ///< in noise: 95 % of the efficiency of least squares without outliers
 inline constexpr double k_tukey = 4.685;  ///< likewise
 
 enum class LossType { huber, tukey };
 
-/// A robust loss as the square of a changed residual: cost = sum of value^2, which agrees with the residual's square
-/// near zero.
+/// A robust loss as the square of a modified residual: cost = sum of value^2. Near zero it equals the squared residual.
 struct RobustLoss {
   LossType type = LossType::tukey;
-  double reach = k_tukey;  ///< where a residual counts as an outlier
+  double reach = k_tukey;  ///< residual from which a point counts as an outlier
 
   struct Value {
     double value, slope;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double k_on_axis = 1e-13;
 
-/// Distance with the material inside, and its gradient.
+/// Signed distance as if the material were inside, and its gradient.
 struct DistanceAndNormal {
   double distance;
   Eigen::Vector3d normal;
@@ -63,7 +63,7 @@ AxialPoint axial_point(const Eigen::Vector3d& position, const Eigen::Vector3d& a
   const double height = axis.dot(offset);
   const Eigen::Vector3d across = offset - height * axis;
   const double radial = across.norm();
-  // On the axis up to rounding, what is left has any direction, and not one across the axis.
+  // Within rounding of the axis, the remainder has an arbitrary direction, not one across the axis.
   const bool is_on_axis = radial <= k_on_axis * std::abs(height);
   return {height, radial, radial > 0 && !is_on_axis ? Eigen::Vector3d(across / radial) : axis.unitOrthogonal()};
 }

@@ -8,7 +8,7 @@ namespace cloud2csg {
 UnitFrame unit_frame(std::span<const Eigen::Vector3d> points) {
   assert(!points.empty());
   const auto count = static_cast<double>(points.size());
-  // Offsets from one of the points: the sum of coordinates of 1e6 would lose digits.
+  // Relative to one point: a sum of coordinates around 1e6 would lose digits.
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) sum += point - points.front();
   const Eigen::Vector3d origin = points.front() + sum / count;

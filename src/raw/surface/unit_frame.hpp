@@ -8,14 +8,13 @@
 
 namespace cloud2csg {
 
-/// The frame in which points have their centroid at the origin and a root mean square distance of 1 from it, so that
-/// sums of products keep their digits whatever the points' place and size.
+/// A frame with centroid 0 and root mean square distance 1, where sums of products keep their digits for any points.
 struct UnitFrame {
   Eigen::Vector3d origin;
-  double scale;  ///< a length of 1 there, in the points' units; above 0
+  double scale;  ///< the frame's unit of length in the points' units; above 0
 };
 
-/// Precondition: there are points. Points all in one place get a scale of 1.
+/// Precondition: there are points. Coincident points get a scale of 1.
 [[nodiscard]] UnitFrame unit_frame(std::span<const Eigen::Vector3d> points);
 
 [[nodiscard]] std::vector<Eigen::Vector3d> to_frame(const UnitFrame& frame, std::span<const Eigen::Vector3d> points);

@@ -21,7 +21,7 @@ ColumnGrid::ColumnGrid(const AlignedBox& box, int resolution) : centre_(box.cent
       -std::sin(angle) * Eigen::Vector3d::Unit(first_axis) + std::cos(angle) * Eigen::Vector3d::Unit(second_axis);
   frame_.col(2) = Eigen::Vector3d::Unit(depth_axis);
 
-  // A box like a needle counts as somewhat wider, which bounds the lattice around it.
+  // Treats a needle-like box as somewhat wider, to bound the lattice around it.
   constexpr double k_slimmest = 1.0 / 32.0;
   const double longest = half.maxCoeff();
   const double area =
@@ -35,7 +35,7 @@ ColumnGrid::ColumnGrid(const AlignedBox& box, int resolution) : centre_(box.cent
                               std::sin(angle) * half[first_axis] + std::cos(angle) * half[second_axis]);
   width_ = static_cast<std::int64_t>(2.0 * reach.x() / spacing_) + 2;
   height_ = static_cast<std::int64_t>(2.0 * reach.y() / spacing_) + 2;
-  // Nodes that are symmetric about the centre would hit the middle planes of symmetric parts: shift them a bit.
+  // Slight shifts keep nodes off the middle planes of symmetric parts.
   constexpr double k_shift_u = 0.5 - 0.0917;
   constexpr double k_shift_v = 0.5 + 0.0459;
   corner_ = -reach - spacing_ * Eigen::Vector2d(k_shift_u, k_shift_v);

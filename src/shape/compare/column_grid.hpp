@@ -11,11 +11,9 @@
 
 namespace cloud2csg {
 
-/// Parallel lines through a box, on a square lattice across its shortest side.
-///
-/// The lattice is turned by the angle whose tangent is the golden section: few walls of real parts are then in line
-/// with it, so that the error of an area falls almost with the number of columns instead of its root. Nothing is
-/// random: equal boxes give equal grids.
+/// Parallel lines through a box, on a square lattice across its shortest side. The golden section is the tangent of the
+/// lattice's angle. Few walls of real parts align with it, so the error of an area falls almost with the number of
+/// columns instead of its root. Deterministic: equal boxes give equal grids.
 class ColumnGrid {
  public:
   /// About resolution^2 columns. Precondition: `box` is finite and not empty.
@@ -27,11 +25,11 @@ class ColumnGrid {
   [[nodiscard]] double low() const { return low_; }
   [[nodiscard]] double high() const { return high_; }
 
-  /// The point at a depth of a column, in the world.
+  /// A point on a column, in world coordinates.
   [[nodiscard]] Eigen::Vector3d point(std::size_t column, double depth) const {
     return centre_ + frame_ * Eigen::Vector3d(columns_[column].x(), columns_[column].y(), depth);
   }
-  /// Two coordinates in units of the lattice, then the depth.
+  /// Two lattice coordinates, then the depth.
   [[nodiscard]] Eigen::Vector3d to_lattice(const Eigen::Vector3d& world) const;
 
   static constexpr std::int32_t k_no_column = -1;
@@ -45,7 +43,7 @@ class ColumnGrid {
 
  private:
   Eigen::Vector3d centre_;
-  Eigen::Matrix3d frame_;  ///< columns: the two directions of the lattice and the direction of depth
+  Eigen::Matrix3d frame_;  ///< columns: the two lattice directions and the depth direction
   Eigen::Vector2d corner_;
   double spacing_ = 0.0;
   double low_ = 0.0, high_ = 0.0;
@@ -64,9 +62,9 @@ struct ColumnCuts {
   }
 };
 
-/// Where columns first .. first + count - 1 cut a solid. Between two samples of the same sign the field is searched
-/// as long as its slope allows a cut there and the gap is not far below the spacing; cuts are good to 1e-8 of
-/// the depth. Precondition: the solid lies in the grid's box.
+/// Cuts of columns first .. first + count - 1 with a solid. Searches between two samples of the same sign as long as
+/// the slope allows a cut there and the gap is not far below the spacing. Cuts are accurate to 1e-8 of the depth.
+/// Precondition: the solid lies in the grid's box.
 class ModelColumns {
  public:
   ModelColumns(const Model& model, const ColumnGrid& grid);
@@ -78,23 +76,22 @@ class ModelColumns {
   [[nodiscard]] std::vector<double> values_at(const Points& places) const;
   [[nodiscard]] bool may_have_cuts(const Piece& piece) const;
   [[nodiscard]] std::vector<Piece> first_pieces(std::size_t first, std::size_t count) const;
-  /// Splits the pieces; cuts that are narrow enough are added to `found`, what needs more is returned.
+  /// Splits the pieces. Adds narrow cuts to `found` and returns pieces that need more refinement.
   [[nodiscard]] std::vector<Piece> refine(const std::vector<Piece>& pieces, std::vector<Cut>& found) const;
 
   const CsgTree& tree_;
   const PrimitiveSet& primitives_;
   const ColumnGrid& grid_;
-  double steepest_;      ///< bound of the slope of the tree's implicit value; estimated for expressions
+  double steepest_;      ///< Lipschitz constant of the tree's implicit value; an estimate for expressions
   double smallest_gap_;  ///< shorter pieces are not searched for pairs of cuts
 };
 
-/// The same for a mesh, exactly. Overlapping shells count once where the mesh is well-formed, else insides are told by
-/// parity.
+/// The exact cuts with a mesh. Overlapping shells of a well-formed mesh count once; otherwise parity decides.
 class MeshColumns {
  public:
   MeshColumns(const TriangleMesh& mesh, const ColumnGrid& grid, const RunContext& run);
   [[nodiscard]] ColumnCuts cuts(std::size_t first, std::size_t count) const;
-  /// Columns that enter without leaving: the mesh has holes. Their last, unmatched cut is left out.
+  /// Columns that enter without leaving, because the mesh has holes. Their last, unmatched cut is dropped.
   [[nodiscard]] std::size_t open_columns() const { return open_columns_; }
 
  private:

@@ -27,7 +27,6 @@ using Eigen::Vector3d;
 constexpr std::size_t k_chunk_points = 1024;
 constexpr std::uint64_t k_mesh_stream = 0x636d706d657368;
 
-/// Calls measure(i) for every point on the threads of the run.
 template <typename Measure>
 std::vector<double> for_each_point(std::size_t count, const RunContext& run, const Measure& measure) {
   std::vector<double> distances(count);
@@ -53,8 +52,8 @@ std::vector<double> distances_to_cloud(const PointCloud& cloud, const Points& po
 
 constexpr double k_no_foot = -1.0;
 
-/// The distance to the foot of the perpendicular onto the primitive that decides, where that foot is on the surface
-/// of the whole solid; else k_no_foot. As no field falls faster than the distance, nothing is nearer then.
+/// The distance to the foot of the perpendicular on the deciding primitive, if that foot is on the solid's surface;
+/// else k_no_foot. No field falls faster than the distance, so nothing is nearer.
 std::vector<double> distances_to_feet(const Model& model, const Points& points) {
   const std::vector<double> values = implicit_value(*model.tree, model.primitives, points);
   const Points gradients = implicit_gradient(*model.tree, model.primitives, points);
@@ -86,7 +85,7 @@ std::vector<double> distances_to_model(const Model& model, const Points& points,
     for (std::size_t i = 0; i < count; ++i) part.set(i, points[first + i]);
     std::ranges::copy(distances_to_feet(model, part), distances.begin() + static_cast<std::ptrdiff_t>(first));
   });
-  // Where the field may fall faster, a nearer part of the surface may be hidden: look at the mesh for all points.
+  // Where the field may fall faster, a nearer part of the surface may be hidden, so all points use the mesh, too.
   const bool is_exact = lipschitz_bound(*model.tree, model.primitives) == 1;
   if (is_exact && std::ranges::find(distances, k_no_foot) == distances.end()) return distances;
   const TriangleMesh surface = mesh_surface(model, bounds_of(model), {}, run);
@@ -99,17 +98,17 @@ std::vector<double> distances_to_model(const Model& model, const Points& points,
   });
 }
 
-/// Points on a shape's surface: drawn uniformly by area, or the cloud as it is. The same for the same seed.
-/// @throws Error for a solid without surface; Cancelled.
+/// Points on a shape's surface: uniform by area, or the cloud itself. Deterministic for a seed. @throws Error for a
+/// solid without surface; Cancelled.
 Points surface_points(const Shape3d& shape, const CompareOptions& options, const RunContext& run) {
   if (shape.cloud) return shape.cloud->positions;
   if (shape.mesh) return sample_mesh(*shape.mesh, options);
   return sample_surface(*shape.model, {.count = options.surface_samples, .seed = options.seed}, run).positions;
 }
 
-/// The distance of each point to a shape's surface. Exact for meshes. For models exact where the foot of the
-/// perpendicular onto the nearest primitive is on the surface, else to a mesh of the model (about 1e-5 of its size
-/// too large or small where it is curved). For clouds the distance to the nearest point.
+/// The distance of each point to a shape's surface. Exact for meshes, and for models if the foot of the perpendicular
+/// onto the nearest primitive is on the surface. Otherwise the distance to a mesh of the model (off by about 1e-5 of
+/// its size where it is curved). For clouds, the distance to the nearest point.
 std::vector<double> distances_to(const Shape3d& shape, const Points& points, const RunContext& run) {
   if (shape.cloud) return distances_to_cloud(*shape.cloud, points, run);
   if (shape.model) return distances_to_model(*shape.model, points, run);
@@ -118,12 +117,12 @@ std::vector<double> distances_to(const Shape3d& shape, const Points& points, con
 }
 
 struct Volumes {
-  std::optional<double> truth, result, common;  ///< absent where a shape has no volume
+  std::optional<double> truth, result, common;  ///< absent for a shape without volume
 };
 
 constexpr std::size_t k_chunk_columns = 1024;
 
-/// Bounds of a shape that has a volume; empty when it has none.
+/// Bounds of a shape with a volume; empty for others.
 AlignedBox volume_bounds(const Shape3d& shape) {
   if (shape.mesh) return bounds_of(shape.mesh->vertices.view());
   if (!shape.model) return {};
@@ -136,13 +135,12 @@ AlignedBox volume_bounds(const Shape3d& shape) {
   return box;
 }
 
-/// Either kind of solid, cut by the columns of a grid.
 class SolidColumns {
  public:
   SolidColumns(const Shape3d& shape, const ColumnGrid& grid, const RunContext& run) {
     if (shape.model) model_.emplace(*shape.model, grid);
     if (shape.mesh) mesh_.emplace(*shape.mesh, grid, run);
-    // A column may graze an edge and count one triangle too many or too few; a hole leaves many open.
+    // A column may graze an edge and miscount a triangle; a hole leaves many columns open.
     constexpr double k_tolerated_share = 1e-3;
     has_volume_ = model_ || (mesh_ && static_cast<double>(mesh_->open_columns()) <=
                                           k_tolerated_share * static_cast<double>(grid.size()));
@@ -194,8 +192,7 @@ Lengths measure_chunk(const SolidColumns& truth, const SolidColumns& result, std
   return lengths;
 }
 
-/// Volumes by columns over the joint bounds. A shape has no volume when it is a cloud, or a mesh with holes.
-/// @throws Error for an unbounded solid; Cancelled.
+/// Volumes by columns over the joint bounds; none for clouds and open meshes. @throws Error if unbounded; Cancelled.
 Volumes measure_volumes(const Shape3d& truth, const Shape3d& result, int resolution, const RunContext& run) {
   AlignedBox box = volume_bounds(truth);
   box.extend(volume_bounds(result));
@@ -249,7 +246,7 @@ OneSided summarise(const std::vector<double>& distances) {
 }
 
 std::optional<double> ratio(std::size_t result, std::size_t truth) {
-  if (result == truth) return 1.0;  // of two single leaves too, whose depth is 0
+  if (result == truth) return 1.0;  // also for two single leaves, whose depth is 0
   if (truth == 0) return std::nullopt;
   return static_cast<double>(result) / static_cast<double>(truth);
 }

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 struct Crossing {
   std::int32_t column;
-  std::int32_t direction;  ///< 1 into the solid, by the triangle's winding, -1 out of it
+  std::int32_t direction;  ///< by the triangle's winding: 1 into the solid, -1 out of it
   double depth;
 
   friend bool operator<(const Crossing& a, const Crossing& b) {
@@ -20,8 +20,8 @@ struct Crossing {
   }
 };
 
-/// Twice the area of (a, b, node), positive when counter-clockwise. Computed from the smaller end to the larger, so
-/// that both triangles at an edge see the same number and no column slips between them.
+/// Twice the area of (a, b, node), positive when counter-clockwise. Computed from the smaller end, so both triangles at
+/// an edge get the same number and no column slips between them.
 double edge_side(const Vector3d& a, const Vector3d& b, double u, double v) {
   const bool swapped = b.x() < a.x() || (b.x() == a.x() && b.y() < a.y());
   const Vector3d& from = swapped ? b : a;
@@ -32,7 +32,6 @@ double edge_side(const Vector3d& a, const Vector3d& b, double u, double v) {
   return swapped ? -side : side;
 }
 
-/// Where the columns under a triangle pass through it.
 void add_crossings(const std::array<Vector3d, 3>& triangle, const ColumnGrid& grid, std::vector<Crossing>& crossings) {
   const auto& [a, b, c] = triangle;
   const auto [u_low, u_high] = std::minmax({a.x(), b.x(), c.x()});
@@ -53,7 +52,7 @@ void add_crossings(const std::array<Vector3d, 3>& triangle, const ColumnGrid& gr
       if ((weight_a > 0.0) != (weight_b > 0.0) || (weight_a > 0.0) != (weight_c > 0.0)) continue;
       const double sum = weight_a + weight_b + weight_c;
       const double depth = (weight_a * a.z() + weight_b * b.z() + weight_c * c.z()) / sum;
-      // Seen along the columns, an outward triangle that is clockwise faces the viewer.
+      // An outward triangle that is clockwise along the columns faces the viewer.
       crossings.push_back({.column = column, .direction = weight_a < 0.0 ? 1 : -1, .depth = depth});
     }
   }

@@ -12,7 +12,7 @@ struct ModelColumns::Piece {
   std::size_t column;
   double from, to;
   double value_from, value_to;
-  bool tried_line = false;  ///< it is what a straight line through its ends left over
+  bool tried_line = false;  ///< a remainder after linear interpolation
 
   [[nodiscard]] bool is_cut() const { return (value_from < 0.0) != (value_to < 0.0); }
   [[nodiscard]] double length() const { return to - from; }
@@ -31,10 +31,9 @@ namespace {
 
 /// Shorter pieces are not searched for two cuts that hide between equal signs.
 constexpr double k_smallest_gap_spacings = 1.0 / 8.0;
-/// Length of the last piece around a cut, by the whole depth; a straight line through its ends gives the rest.
+/// Length of the last piece around a cut, relative to the depth. Linear interpolation gives the rest.
 constexpr double k_relative_accuracy = 1e-6;
 
-/// Where a straight line through both values is zero.
 template <typename Piece>
 double depth_of_zero(const Piece& piece) {
   const double share = piece.value_from / (piece.value_from - piece.value_to);
@@ -52,7 +51,7 @@ ModelColumns::ModelColumns(const Model& model, const ColumnGrid& grid)
 
 std::vector<double> ModelColumns::values_at(const Points& places) const {
   std::vector<double> values = implicit_value(tree_, primitives_, places);
-  // Where an expression has no value, such as the root of a negative number, there is no solid.
+  // Where an expression is undefined, as the root of a negative number, there is no solid.
   for (double& value : values) {
     if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
   }
@@ -73,7 +72,7 @@ ColumnCuts ModelColumns::cuts(std::size_t first, std::size_t count) const {
 }
 
 bool ModelColumns::may_have_cuts(const Piece& piece) const {
-  // Two cuts may hide between equal signs where the slope allows the field to come down to zero and up again.
+  // Two cuts may hide between equal signs if the slope allows the field to reach zero and return.
   return piece.is_cut() || (piece.length() > smallest_gap_ &&
                             std::abs(piece.value_from) + std::abs(piece.value_to) < steepest_ * piece.length());
 }
@@ -102,8 +101,7 @@ std::vector<ModelColumns::Piece> ModelColumns::first_pieces(std::size_t first, s
 }
 
 std::vector<ModelColumns::Piece> ModelColumns::refine(const std::vector<Piece>& pieces, std::vector<Cut>& found) const {
-  // Each piece is split in three: in equal parts, or, once it is short, closely around the zero of a straight line,
-  // which mostly ends the search.
+  // Splits a piece in three: equally, or if short closely around its linear zero, which usually ends the search.
   const double close_enough = k_relative_accuracy * (grid_.high() - grid_.low());
   const auto split_of = [&](const Piece& piece) -> std::pair<double, double> {
     if (piece.tried_line || !piece.is_cut() || piece.length() > smallest_gap_) {

@@ -4,10 +4,10 @@
 #include <bit>
 #include <cstdint>
 
-/// How the surface runs through one cell of the grid, from the signs at its corners alone.
+/// How the surface runs through a grid cell, by the signs at its corners alone.
 ///
 /// Corner c is at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge 4 a + k runs along axis a; the two bits of k are its
-/// coordinates along the next axes (a + 1) % 3 and (a + 2) % 3. Face 2 a + s is across axis a, on side s.
+/// coordinates along axes (a + 1) % 3 and (a + 2) % 3. Face 2 a + s is across axis a, on side s.
 namespace cloud2csg {
 
 using CornerSigns = std::uint8_t;  ///< bit c: corner c is inside
@@ -50,16 +50,15 @@ constexpr bool is_inside(CornerSigns signs, int corner) {
   return ((signs >> corner) & 1) != 0;
 }
 
-/// Whether the inside corners of the face are just two opposite ones: the signs do not say how to join them.
+/// Whether the inside corners are just two opposite ones, so that the signs do not determine how to join them.
 constexpr bool is_ambiguous(CornerSigns signs, const Face& face) {
   const bool first = is_inside(signs, face.corners[0]);
   return is_inside(signs, face.corners[2]) == first && is_inside(signs, face.corners[1]) != first &&
          is_inside(signs, face.corners[3]) != first;
 }
 
-/// The edges that the surface crosses on one side of an ambiguous face: the two around a corner that is cut off.
-/// `joined`: the inside corners are connected across the face, so it is an outside corner that is cut off.
-/// The other side of the face has the other two edges.
+/// The edges that the surface crosses on one side of an ambiguous face: those around a cut-off corner. If `joined`, the
+/// inside corners are connected across the face and the corner is outside. The other side has the other two edges.
 constexpr EdgeMask ambiguous_segment(CornerSigns signs, const Face& face, bool joined) {
   const bool cut_off_first = is_inside(signs, face.corners[0]) != joined;
   return static_cast<EdgeMask>(cut_off_first ? (1 << face.edges[3]) | (1 << face.edges[0])
@@ -80,7 +79,7 @@ constexpr EdgeMask crossed_edges(CornerSigns signs) {
   return static_cast<EdgeMask>(mask);
 }
 
-/// The sheets of the surface in a cell: each is bounded by a loop of crossed edges, joined face by face.
+/// The sheets of the surface in a cell. A loop of crossed edges, joined face by face, bounds each sheet.
 struct Loops {
   std::array<EdgeMask, k_most_loops> edges = {};
   int count = 0;

@@ -12,17 +12,15 @@
 namespace cloud2csg {
 namespace {
 
-/// Where the surface crosses a grid edge.
 struct Crossing {
   Eigen::Vector3i corner;  ///< lower end of the edge
   int axis;
-  bool from_inside;        ///< whether the lower end is the inside one
+  bool from_inside;        ///< whether the lower end is inside
   Eigen::Vector3d point;   ///< grid coordinates
   Eigen::Vector3d normal;  ///< outward, unit length
 };
 
-/// The crossings on the edges of a block's surface cells, those on its far sides included: each edge once, and where
-/// to find it.
+/// The crossings on all edges of a block's surface cells, far sides included. Each edge occurs once.
 class BlockCrossings {
  public:
   BlockCrossings(const Block& block, const Grid& grid, std::span<const SurfaceCell> cells,
@@ -37,10 +35,10 @@ class BlockCrossings {
 
   Eigen::Vector3i first_cell_;
   std::vector<Crossing> crossings_;
-  std::vector<int> index_;  ///< by local corner and axis: position in crossings_, or -1
+  std::vector<int> index_;  ///< by local corner and axis: index into crossings_, or -1
 };
 
-// In cells: far below what a vertex's position shows, far above the rounding of a distance.
+// In cells: far below a visible error of a vertex, far above the rounding of a distance.
 constexpr double k_root_tolerance = 1e-10;
 constexpr int k_most_steps = 60;
 
@@ -48,8 +46,8 @@ Eigen::Vector3i corner_offset(int corner) {
   return {corner & 1, (corner >> 1) & 1, corner >> 2};
 }
 
-/// One root on each of many edges, all stepped together so that the solid is asked in batches. Regula falsi with the
-/// Illinois rule: one step where the value is linear along the edge, as on a plane.
+/// Finds a root on each of many edges, in joint steps that evaluate the solid in batches. Regula falsi with the
+/// Illinois rule: one step if the value is linear along the edge, as on a plane.
 class RootFinder {
  public:
   RootFinder(const Block& block, const Grid& grid, const PrimitiveSet& primitives, std::span<Crossing> crossings)
@@ -75,7 +73,7 @@ class RootFinder {
   /// The root lies between parameters 0 (lower end of the edge) and 1.
   struct Bracket {
     double low = 0, high = 1;
-    double value_low = 0, value_high = 0;  ///< of opposite signs; halved by the Illinois rule
+    double value_low = 0, value_high = 0;  ///< with opposite signs; the Illinois rule halves them
     double tried = 0;
     int last_moved = 0;
 
@@ -85,7 +83,6 @@ class RootFinder {
       return tried;
     }
 
-    /// Whether the root is found.
     bool update(double value, double tolerance) {
       if (std::abs(value) <= tolerance) return true;
       const bool is_low = (value < 0) == (value_low < 0);
@@ -127,7 +124,7 @@ class RootFinder {
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       const Eigen::Vector3d gradient = gradients[i];
       const double length = gradient.norm();
-      // Without a gradient the edge itself is the best guess: it leads from inside to outside.
+      // Without a gradient, the edge from inside to outside is the best guess.
       const Eigen::Vector3d along =
           (crossings_[i].from_inside ? 1.0 : -1.0) * Eigen::Vector3d::Unit(crossings_[i].axis);
       crossings_[i].normal = length > 0 && std::isfinite(length) ? Eigen::Vector3d(gradient / length) : along;
@@ -171,7 +168,7 @@ std::size_t BlockCrossings::position(const SurfaceCell& cell, int edge) const {
   return std::size_t{3} * static_cast<std::size_t>(corner) + static_cast<std::size_t>(edge / 4);
 }
 
-/// The four cells around an edge in the order in which they turn around its axis, and which of their edges it is.
+/// The four cells around an edge in cyclic order, and the edge's number in each.
 Quad quad_around(const Crossing& crossing, const SurfaceCells& cells) {
   constexpr std::array<std::array<int, 2>, 4> k_steps = {{{-1, -1}, {0, -1}, {0, 0}, {-1, 0}}};
   const int u = (crossing.axis + 1) % 3;
@@ -182,7 +179,7 @@ Quad quad_around(const Crossing& crossing, const SurfaceCells& cells) {
     cell[u] += k_steps[i][0];
     cell[v] += k_steps[i][1];
     const int edge = 4 * crossing.axis - k_steps[i][0] - 2 * k_steps[i][1];
-    // Seen from the outside end of the edge the cells turn counter-clockwise.
+    // Counter-clockwise seen from the outside end of the edge.
     quad.vertices[crossing.from_inside ? i : 3 - i] = cells.vertex_at(cell, edge);
   }
   return quad;
@@ -214,7 +211,7 @@ Quadric::Minimum Quadric::minimum(double cutoff) const {
 }
 
 Eigen::Vector3d Quadric::minimum_within(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const {
-  // One coordinate at a time; a weak pull towards the mean point makes the minimum unique.
+  // Coordinate descent. A weak pull towards the mean point makes the minimum unique.
   constexpr int k_rounds = 32;
   constexpr double k_pull = 1e-3;
   const Eigen::Vector3d mean = mean_point();

@@ -12,7 +12,7 @@ namespace cloud2csg {
 /// A sum of squared distances to tangent planes of the surface, in grid coordinates.
 class Quadric {
  public:
-  /// The plane through `point` with unit `normal`.
+  /// Adds the plane through `point` with unit `normal`.
   void add(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
     const double offset = normal.dot(point);
     matrix_ += normal * normal.transpose();
@@ -37,13 +37,11 @@ class Quadric {
 
   struct Minimum {
     Eigen::Vector3d point;
-    int rank;          ///< of the planes' normals: 1 on a smooth surface, 2 on a sharp edge, 3 at a corner
-    double sharpness;  ///< smallest eigenvalue as a part of the largest: how clearly it is a corner
+    int rank;          ///< rank of the normals: 1 on a smooth surface, 2 on a sharp edge, 3 at a corner
+    double sharpness;  ///< ratio of the least eigenvalue to the largest: clarity of a corner
   };
-  /// The minimum nearest to the mean point: directions in which the normals hardly vary are left alone.
-  /// `cutoff`: eigenvalues below this part of the largest count as none.
+  /// The minimum nearest to the mean point. Eigenvalues below `cutoff` times the largest count as zero.
   [[nodiscard]] Minimum minimum(double cutoff) const;
-  /// The minimum within a box.
   [[nodiscard]] Eigen::Vector3d minimum_within(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const;
 
  private:
@@ -54,14 +52,14 @@ class Quadric {
   double count_ = 0;
 };
 
-/// One quadrilateral for each crossed grid edge, around that edge.
+/// A quadrilateral around a crossed grid edge.
 struct Quad {
   std::array<std::uint32_t, 4> vertices;  ///< counter-clockwise seen from outside
 };
 
 /// The mesh before its vertices are placed.
 struct Contour {
-  std::vector<Quadric> quadrics;         ///< by vertex: the tangent planes on the edges of its sheet
+  std::vector<Quadric> quadrics;         ///< by vertex: tangent planes on the edges of its sheet
   std::vector<std::vector<Quad>> quads;  ///< by block
 };
 
@@ -69,21 +67,21 @@ struct Contour {
 [[nodiscard]] Contour trace_contour(const SparseField& field, const SurfaceCells& cells, const PrimitiveSet& primitives,
                                     const RunContext& run);
 
-/// What is known of a vertex's position, from the first to be given up to the last.
+/// Quality of a vertex's position. Lower kinds are given up first.
 enum class VertexKind : std::uint8_t {
   outlying_edge,  ///< on a sharp edge, outside the vertex's own cell
   in_cell,        ///< in its cell, on the surface
   corner,         ///< on a corner of the solid
-  mean,           ///< the mean of the sheet's crossings: off the surface where that is curved, but never tangled
+  mean,           ///< mean of the sheet's crossings: never tangled, but off a curved surface
 };
 
 struct Placement {
-  std::vector<Eigen::Vector3d> positions;  ///< by vertex, in grid coordinates; no two the same
-  std::vector<Eigen::Vector3d> in_cell;    ///< by vertex: a position within its cell, as good as that allows
+  std::vector<Eigen::Vector3d> positions;  ///< by vertex, in grid coordinates; all distinct
+  std::vector<Eigen::Vector3d> in_cell;    ///< by vertex: the best position within its cell
   std::vector<VertexKind> kinds;           ///< by vertex
 };
 
-/// Puts the vertices on the surface, and on its edges and corners where the sheet has one. @throws Cancelled
+/// Places the vertices on the surface, and on sharp edges and corners of their sheets. @throws Cancelled
 [[nodiscard]] Placement place_vertices(const SparseField& field, const SurfaceCells& cells,
                                        const PrimitiveSet& primitives, const Contour& contour, const RunContext& run);
 

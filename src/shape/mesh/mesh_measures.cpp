@@ -28,7 +28,7 @@ bool is_watertight(const TriangleMesh& mesh) {
 
 double volume_of(const TriangleMesh& mesh) {
   if (mesh.vertices.empty()) return 0;
-  // Tetrahedra from a point at the mesh, not from the origin: less cancellation for a mesh far away.
+  // Tetrahedra from a vertex of the mesh: less cancellation far from the origin.
   const Eigen::Vector3d apex = mesh.vertices[0];
   double six_volumes = 0;
   for (const auto& triangle : mesh.triangles) {

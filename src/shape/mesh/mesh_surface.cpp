@@ -14,8 +14,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Cuts the quads of one block into triangles, each along the diagonal that follows the surface: where a sharp edge
-/// runs through a quad, that is the one on the edge. `positions`: of all vertices, in grid coordinates.
+/// Cuts quads along the diagonal that follows the surface, as a sharp edge. `positions`: vertices in grid coordinates.
 class QuadCutter {
  public:
   QuadCutter(const Grid& grid, const CsgTree& tree, const PrimitiveSet& primitives,
@@ -24,12 +23,12 @@ class QuadCutter {
 
   struct Result {
     std::vector<Triangle> triangles;
-    std::vector<Triangle> folded;  ///< those of them that look the wrong way
+    std::vector<Triangle> folded;  ///< those that face the wrong way
   };
   [[nodiscard]] Result cut(std::span<const Quad> quads) const;
 
  private:
-  /// The two triangles on the diagonal from corner 0 (or 1) of a quad.
+  /// The two triangles at the diagonal from corner 0 (or 1) of a quad.
   struct Cut {
     std::array<Triangle, 2> triangles;
     std::array<Eigen::Vector3d, 2> normals;  ///< unit length; zero for a triangle without area
@@ -48,11 +47,11 @@ class QuadCutter {
   std::span<const Eigen::Vector3d> positions_;
 };
 
-// Cosine of the angle between triangles up to which a quad counts as flat, so that either diagonal will do.
+// Least cosine between the triangles of a flat quad, for which either diagonal will do.
 constexpr double k_flat = 0.99;
-// Twice the area, in cells, below which a triangle is as good as none.
+// Twice the area, in cells, below which a triangle counts as degenerate.
 constexpr double k_no_area = 1e-6;
-// Alignment of a triangle without area: worse than any cosine.
+// Alignment of a degenerate triangle: below any cosine.
 constexpr double k_without_area = -2.0;
 // Difference of alignment below which the shorter diagonal decides.
 constexpr double k_same = 1e-6;
@@ -64,7 +63,7 @@ QuadCutter::Result QuadCutter::cut(std::span<const Quad> quads) const {
     result.triangles.insert(result.triangles.end(), cut.triangles.begin(), cut.triangles.end());
   };
   std::vector<Cut> doubtful;        // two a quad
-  std::vector<bool> prefers_first;  // of doubtful quads: by length
+  std::vector<bool> prefers_first;  // by length, for doubtful quads
   for (const Quad& quad : quads) {
     const std::array<Cut, 2> cuts{cut_from(quad, 0), cut_from(quad, 1)};
     const bool first_is_shorter = squared_diagonal(quad, 0) <= squared_diagonal(quad, 1);
@@ -119,7 +118,7 @@ double QuadCutter::squared_diagonal(const Quad& quad, std::size_t start) const {
   return (positions_[quad.vertices[start + 2]] - positions_[quad.vertices[start]]).squaredNorm();
 }
 
-/// For each triangle of each cut how well it agrees with the surface there: the cosine between the normals.
+/// For each triangle of each cut, the cosine between its normal and the surface's.
 std::vector<double> QuadCutter::alignments(std::span<const Cut> cuts) const {
   Points centroids;
   for (const Cut& cut : cuts) {
@@ -142,7 +141,7 @@ struct Untangled {
   std::vector<Triangle> triangles;
 };
 
-/// Gives up the least of what the triangle's vertices have, if it is less than `limit`; false when nothing is.
+/// Demotes the triangle's vertices of the weakest kind below `limit`; false if there are none.
 bool relax(const Triangle& triangle, const Contour& contour, VertexKind limit, Placement& placement,
            std::vector<bool>& moved) {
   VertexKind weakest = limit;
@@ -164,10 +163,9 @@ bool touches(std::span<const Quad> quads, const std::vector<bool>& moved) {
   });
 }
 
-/// Cuts all quads into triangles. Where vertices on sharp edges got ahead of each other and a triangle looks the wrong
-/// way, they go back a step, from the edge into their cells and from there to the middle of their crossings, until
-/// none does or nothing is left to give. Vertices at corners of the solid give way last, or not at all if
-/// `corners_first`. @throws Cancelled
+/// Cuts all quads into triangles. Where vertices on sharp edges overtake each other and fold a triangle, they retreat:
+/// from the edge into their cells, then to the mean of their crossings, until no triangle is folded or none can
+/// retreat. Vertices at corners of the solid retreat last, or never if `corners_first`. @throws Cancelled
 Untangled cut_untangled(const SparseField& field, const PrimitiveSet& primitives, const Contour& contour,
                         Placement placement, bool corners_first, const RunContext& run) {
   constexpr int k_most_rounds = 8;

@@ -9,7 +9,6 @@
 namespace cloud2csg {
 namespace {
 
-/// A lattice on all six faces.
 Points points_on_faces(const AlignedBox& box) {
   constexpr int k_steps = 128;
   Points points;
@@ -33,14 +32,14 @@ Points points_on_faces(const AlignedBox& box) {
 }  // namespace
 
 AlignedBox model_extent(const Model& model) {
-  constexpr double k_room = 0.25;  // on each side, as a part of the largest size
+  constexpr double k_room = 0.25;  // on each side, relative to the largest size
   AlignedBox extent;
   for (const PrimitiveIndex index : primitives_of(tree_of(model))) {
     const AlignedBox box = bounds(model.primitives[index]);
     if (is_finite(box)) {
       extent.extend(box);
     } else {
-      extent.extend(model.primitives[index].pose.position);  // a half-space: at least show where its face is
+      extent.extend(model.primitives[index].pose.position);  // a half-space: at least shows its face
     }
   }
   if (extent.isEmpty()) extent = AlignedBox(Eigen::Vector3d::Zero().eval());

@@ -6,12 +6,12 @@
 
 namespace cloud2csg {
 
-/// A finite box around all that is finite in a model, with room to spare: what stands for "all of space" where a format
-/// knows only bounded solids, and where unbounded solids are cut.
+/// A finite box around all finite parts of a model, with room to spare. It replaces "all of space" in formats of
+/// bounded solids, and cuts unbounded solids.
 [[nodiscard]] AlignedBox model_extent(const Model& model);
 
-/// The extent when the solid goes on beyond it. Looks at a lattice on the box's faces: a beam thinner than about a
-/// hundredth of the box can be missed. O(size).
+/// The extent, if the solid continues beyond it. Samples a lattice on the box's faces, so it can miss a beam thinner
+/// than about a hundredth of the box. O(size).
 [[nodiscard]] std::optional<AlignedBox> cut_at(const Model& model, const AlignedBox& extent);
 
 }  // namespace cloud2csg

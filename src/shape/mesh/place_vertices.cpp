@@ -9,15 +9,15 @@
 namespace cloud2csg {
 namespace {
 
-// Normals within a few degrees count as one: below that a sheet has no edge worth keeping.
+// Normals within a few degrees count as one: a flatter edge is not worth keeping.
 constexpr double k_sheet_cutoff = 2e-3;
-// Planes gathered from neighbouring sheets also vary by the surface's curvature, so a corner must be clearer.
+// Planes of neighbouring sheets also vary by curvature, so a corner must be clearer.
 constexpr double k_corner_cutoff = 2e-2;
-// How far an edge or corner may miss its planes and the surface, in cells.
+// In cells: how far an edge or corner may miss its planes and the surface.
 constexpr double k_feature_tolerance = 2e-2;
-// Vertices stay this far inside their cells, so that those of different cells never coincide.
+// Distance from the cell's border, so that vertices of different cells never coincide.
 constexpr double k_cell_margin = 1e-3;
-// A vertex this near to the surface, in cells, is on it.
+// In cells: a vertex this close is on the surface.
 constexpr double k_surface_tolerance = 1e-6;
 
 /// A better position for a vertex, outside its cell or found from its neighbours.
@@ -85,8 +85,7 @@ class VertexPlacer {
            (position.array() <= highest_within(cell).array()).all();
   }
 
-  /// Tips of corners and edges slip between the grid's corners into cells that do not show them by their signs, but
-  /// never further than one cell.
+  /// Tips of corners and edges may slip into a cell whose signs do not show them, but never further than one cell.
   static bool is_near(const Eigen::Vector3d& position, const Eigen::Vector3i& cell) {
     return (cell_of(position) - cell).cwiseAbs().maxCoeff() <= 1;
   }
@@ -121,7 +120,7 @@ class VertexPlacer {
     return rings;
   }
 
-  /// A corner whose faces do not all reach the edges of one cell is found from the faces of the cells around.
+  /// Finds a corner from the surrounding cells if not all of its faces cross the edges of one cell.
   void propose_corners(std::size_t slot, const std::vector<Quadric>& rings) {
     for_each_vertex(slot, [&](std::uint32_t vertex, const Eigen::Vector3i& cell) {
       if (ranks_[vertex] > 2 || rings[vertex].empty()) return;
@@ -144,7 +143,7 @@ class VertexPlacer {
     proposals.resize(kept);
   }
 
-  /// Newton's steps onto the surface, within the vertices' cells.
+  /// Newton steps onto the surface, within the vertices' cells.
   void project(std::size_t slot) {
     constexpr int k_newton_steps = 8;
     std::vector<Placed> open;
@@ -157,7 +156,7 @@ class VertexPlacer {
     Eigen::Vector3i cell;
   };
 
-  /// Those that are not yet on the surface.
+  /// Returns the vertices that are not yet on the surface.
   std::vector<Placed> step_to_surface(std::size_t slot, const std::vector<Placed>& vertices) {
     const CsgTree& tree = field_.blocks()[slot].tree;
     const double spacing = field_.grid().spacing;
@@ -177,7 +176,7 @@ class VertexPlacer {
     return open;
   }
 
-  /// Nearest first: a corner that several cells found goes to the one that needs to move least.
+  /// Nearest first: if several cells find a corner, it goes to the vertex that moves least.
   void take_proposals() {
     std::vector<Proposal> all;
     for (const std::vector<Proposal>& proposals : proposals_) {
@@ -196,7 +195,7 @@ class VertexPlacer {
     }
   }
 
-  /// Whether a vertex of that cell, or one that has moved into it, is there already.
+  /// Whether a vertex of that cell, or one moved into it, is already at the place.
   [[nodiscard]] bool is_taken(const Proposal& proposal, std::span<const std::uint32_t> moved) const {
     const auto at_same_place = [&](std::uint32_t vertex) {
       return vertex != proposal.vertex && (placement_.positions[vertex] - proposal.position).norm() < k_cell_margin;

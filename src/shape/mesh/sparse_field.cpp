@@ -28,13 +28,13 @@ struct Interval {
 };
 
 struct PrunedTree {
-  std::vector<CsgNode> nodes;  ///< postfix: the tree without the branches that cannot decide the value
+  std::vector<CsgNode> nodes;  ///< postfix, without branches that cannot decide the value
   Interval value;
 };
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
-/// A subtree that has been pruned already: from `begin` to the next operand's begin or the end of the output.
+/// A pruned subtree, from `begin` to the next operand's begin or the end of the output.
 struct Operand {
   std::size_t begin;
   Interval value;
@@ -126,26 +126,26 @@ class Pruner {
   std::vector<CsgNode> output_ = {};
 };
 
-/// Within `radius` of a point where the primitive's implicit value is `value`.
+/// Bounds of the implicit value within `radius` of a point where it is `value`.
 Interval value_near(const Primitive& primitive, double value, double radius) {
   if (std::isnan(value)) return {.low = -k_infinity, .high = k_infinity};
   double change = lipschitz_bound(primitive) * radius;
-  // The displacement itself never changes by more than 2, however high its frequency.
+  // A displacement never changes by more than 2, whatever its frequency.
   if (primitive.displacement && !std::holds_alternative<Expression>(primitive.shape)) {
     change = std::min(change, radius + 2.0);
   }
   return {.low = value - change, .high = value + change};
 }
 
-/// The tree within a region where each primitive's value lies in its interval, by primitive index: exactly the same
-/// values there, from fewer nodes. In a small region most of a large tree vanishes.
+/// Restricts the tree to a region with known bounds on each primitive's value (by primitive index). Values there stay
+/// exactly equal. In a small region most of a large tree vanishes.
 PrunedTree prune(std::span<const CsgNode> tree, std::span<const Interval> primitive_values) {
   return Pruner(primitive_values).prune(tree);
 }
 
 /// Cells between the solid's bounds and the border of the grid.
 constexpr int k_margin = 2;
-// Against rounding in centres and distances, relative to the size of the grid.
+// Relative to the size of the grid: covers rounding in centres and distances.
 constexpr double k_safety = 1e-9;
 
 Grid grid_around(const AlignedBox& bounds, int resolution) {
@@ -161,7 +161,6 @@ Grid grid_around(const AlignedBox& bounds, int resolution) {
   return grid;
 }
 
-/// Signs at the corners that a block owns.
 std::bitset<k_block_corners> corner_signs(const Block& block, const Grid& grid, const PrimitiveSet& primitives) {
   Points corners;
   corners.reserve(k_block_corners);
@@ -178,7 +177,7 @@ std::bitset<k_block_corners> corner_signs(const Block& block, const Grid& grid, 
   return inside;
 }
 
-/// A box of blocks and the tree that holds within.
+/// A box of blocks with its pruned tree.
 struct Region {
   Eigen::Vector3i low;   ///< first block
   Eigen::Vector3i high;  ///< one past the last block
@@ -186,7 +185,7 @@ struct Region {
 
   [[nodiscard]] bool is_block() const { return (high - low).maxCoeff() == 1; }
   [[nodiscard]] Eigen::Vector3d centre() const { return 0.5 * k_block_cells * (low + high).cast<double>(); }
-  /// From the centre to the corners, in cells.
+  /// Distance from the centre to the corners, in cells.
   [[nodiscard]] double radius() const { return 0.5 * k_block_cells * (high - low).cast<double>().norm(); }
 };
 
@@ -218,7 +217,7 @@ BoundedSolid bound_solid(const Model& model, const AlignedBox& bounds) {
                  .remedy = "intersect the solid with a box, or give bounds at which to cut it"});
   }
   if (!bounds.contains(own_bounds)) {
-    // Where the solid ends within `bounds`, the cutter's face stays clear of the solid's.
+    // If the solid ends within `bounds`, keeps the cutter's face clear of the solid's.
     const AlignedBox cut = bounds.intersection(grown(solid.bounds, 0.1 * solid.bounds.sizes().maxCoeff()));
     solid.tree = intersect(solid.tree, CsgTree::leaf(static_cast<PrimitiveIndex>(solid.primitives.size())));
     solid.primitives.push_back({.id = {}, .shape = Box{.size = cut.sizes()}, .pose = {.position = cut.center()}});
@@ -226,7 +225,7 @@ BoundedSolid bound_solid(const Model& model, const AlignedBox& bounds) {
   return solid;
 }
 
-/// Halves the grid again and again; parts that are all inside or all outside are done, single blocks are kept.
+/// Recursive bisection of the grid. Parts wholly inside or outside are final; single blocks are kept.
 class SparseField::Subdivision {
  public:
   Subdivision(SparseField& field, const BoundedSolid& solid)
@@ -245,7 +244,7 @@ class SparseField::Subdivision {
   }
 
  private:
-  /// Siblings have the same tree, so one batch a primitive evaluates all their centres.
+  /// Siblings share a tree, so one batch a primitive evaluates all their centres.
   void classify(std::vector<Region> regions) {
     Points centres;
     for (const Region& region : regions) centres.push_back(field_.grid_.to_world(region.centre()));

@@ -11,15 +11,15 @@
 
 namespace cloud2csg {
 
-/// A solid made fit for a grid: finite, and every value either a known Lipschitz function or known to be outside.
+/// A finite solid for a grid. Each value is a known Lipschitz function or known to be outside.
 struct BoundedSolid {
   CsgTree tree = {};
   PrimitiveSet primitives = {};
   AlignedBox bounds;  ///< finite, encloses the solid; empty for an empty solid
 };
 
-/// The solid cut at `bounds`. Expressions are cut at their own bounds, beyond which their formula means nothing.
-/// @throws Error when neither the solid nor `bounds` is finite.
+/// Cuts the solid at `bounds`, and expressions at their own bounds, beyond which their formula has no meaning. @throws
+/// Error when neither the solid nor `bounds` is finite.
 [[nodiscard]] BoundedSolid bound_solid(const Model& model, const AlignedBox& bounds);
 
 /// Cells along each edge of a block.
@@ -27,14 +27,14 @@ constexpr int k_block_cells = 8;
 /// Corners along each edge of a block.
 constexpr int k_layer = k_block_cells + 1;
 constexpr int k_block_corners = k_block_cells * k_block_cells * k_block_cells;
-/// A block's tree is right this many cells beyond the block as well.
+/// A block's tree is valid this many cells beyond the block.
 constexpr int k_block_reach = 2;
 
 /// A regular grid. "Grid coordinates" count cells from its origin, so cell (i, j, k) is the unit cube at (i, j, k).
 struct Grid {
   Eigen::Vector3d origin;
   double spacing;
-  Eigen::Vector3i blocks;  ///< how many along each axis
+  Eigen::Vector3i blocks;  ///< number along each axis
 
   [[nodiscard]] Eigen::Vector3d to_world(const Eigen::Vector3d& p) const { return origin + spacing * p; }
 };
@@ -50,20 +50,18 @@ struct Block {
   }
 };
 
-/// The signs of a solid on a grid; only blocks that the surface may cross are stored, O(resolution^2).
+/// The signs of a solid on a grid. Stores only blocks that the surface may cross, O(resolution^2).
 class SparseField {
  public:
-  /// Margins around the solid's bounds keep all outermost corners outside. The grid is shifted against the bounds by
-  /// irrational parts of a cell, so that faces of models never lie in grid planes.
+  /// Margins keep outermost corners outside. Irrational shifts of the grid keep faces of models off grid planes.
   SparseField(const BoundedSolid& solid, int resolution, const RunContext& run);
 
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
-  /// Position in blocks() of the block that owns a cell; negative when that block is all inside or all outside.
+  /// Position in blocks() of the block that owns a cell; negative for a block wholly inside or outside.
   [[nodiscard]] int slot_of(const Eigen::Vector3i& cell) const {
     return slots_[slot_position((cell.array() / k_block_cells).matrix())];
   }
-  /// Whether a grid corner is inside the solid.
   [[nodiscard]] bool inside(const Eigen::Vector3i& corner) const;
 
  private:
@@ -79,7 +77,7 @@ class SparseField {
 
   Grid grid_;
   std::vector<Block> blocks_;
-  std::vector<int> slots_;  ///< for every block of the grid, whether stored or not
+  std::vector<int> slots_;  ///< for every block of the grid, stored or not
 };
 
 }  // namespace cloud2csg

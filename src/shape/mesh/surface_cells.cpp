@@ -14,7 +14,7 @@ int layer_index(int x, int y, int z) {
   return x + k_layer * (y + k_layer * z);
 }
 
-/// Signs at all corners of a block's cells: its own and the first layer of its neighbours.
+/// Signs at all corners of a block's cells, including the first layer of its neighbours.
 LayerSigns closed_signs(const SparseField& field, const Block& block) {
   LayerSigns inside;
   for (int z = 0; z < k_layer; ++z) {
@@ -74,7 +74,7 @@ void SurfaceCells::collect_cells() {
   block_begin_.push_back(cells_.size());
 }
 
-/// Asks the solid at the centres of ambiguous faces, then mends where that pinches the surface.
+/// Joins ambiguous faces by the solid's sign at their centres, then repairs pinched surfaces.
 void SurfaceCells::join_faces(const BoundedSolid& solid) {
   struct AmbiguousFace {
     SurfaceCell* below;

@@ -8,7 +8,6 @@
 
 namespace cloud2csg {
 
-/// A cell that the surface crosses.
 struct SurfaceCell {
   Eigen::Vector3i cell;
   CornerSigns signs;
@@ -17,24 +16,23 @@ struct SurfaceCell {
   std::uint32_t first_vertex = 0;  ///< one vertex for each loop, in their order
 };
 
-/// All cells that the surface crosses, and one vertex for each sheet in each of them, so numbered that the mesh which
-/// joins them across the crossed grid edges is a closed 2-manifold: two triangles at every edge, one fan at every
-/// vertex.
+/// All surface cells, with one vertex for each sheet in each cell. Joined across the crossed grid edges, the vertices
+/// form a closed 2-manifold: two triangles at every edge, one fan at every vertex.
 ///
-/// Two cells share at most one face, so an edge of the mesh could have more than two triangles only where both
-/// curves through an ambiguous face belong to one sheet in either cell. Joining that face's corners the other way
-/// splits both sheets. Splitting never brings two curves into one sheet, so one pass over the faces mends all.
+/// Two cells share at most one face. So a mesh edge could have more than two triangles only if both curves through an
+/// ambiguous face belong to one sheet in either cell. Joining that face's corners the other way splits both sheets.
+/// Splitting never merges curves into one sheet, so one pass over the faces repairs all.
 class SurfaceCells {
  public:
   SurfaceCells(const SparseField& field, const BoundedSolid& solid);
 
   [[nodiscard]] const std::vector<SurfaceCell>& cells() const { return cells_; }
-  /// The cells that block number `slot` owns.
+  /// The cells that the block at `slot` owns.
   [[nodiscard]] std::span<const SurfaceCell> cells_of_block(std::size_t slot) const {
     return std::span(cells_).subspan(block_begin_[slot], block_begin_[slot + 1] - block_begin_[slot]);
   }
   [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
-  /// Null where the surface does not cross the cell.
+  /// Null if the surface does not cross the cell.
   [[nodiscard]] const SurfaceCell* find(const Eigen::Vector3i& cell) const;
   /// The vertex of the sheet that crosses an edge of a cell. Precondition: the edge is crossed.
   [[nodiscard]] std::uint32_t vertex_at(const Eigen::Vector3i& cell, int edge) const;

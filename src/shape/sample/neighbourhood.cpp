@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Of an expression, the formula may be negative outside of the bounds that it is given.
+/// The formula of an expression may be negative outside its bounds.
 bool has_known_reach(const Primitive& primitive, const AlignedBox& box) {
   return !std::holds_alternative<Expression>(primitive.shape) && is_finite(box);
 }

@@ -7,22 +7,22 @@
 
 namespace cloud2csg {
 
-/// What of a model matters in and near one primitive: enough to tell whether a point there is in the solid.
+/// The part of a model that decides whether points in and near one primitive are in the solid.
 struct Neighbourhood {
   std::vector<PrimitiveIndex> members;  ///< the primitive and those whose bounds meet its own, ascending
   PrimitiveSet primitives;              ///< copies of the members
   CsgTree tree;                         ///< the model's, restricted to the members and numbered as `primitives`
 };
 
-/// By primitive, the primitives whose bounds, grown by `margin` on every side, meet its own, itself included,
-/// ascending. Those of unknown reach, unbounded ones and expressions, meet all. Only primitives out of `used`
-/// (ascending) count; for others the list is empty. O(n log n + pairs)
+/// For each primitive, those (itself included, ascending) whose bounds, grown by `margin` on every side, meet its own.
+/// Unbounded primitives and expressions, whose reach is unknown, meet all. Ignores primitives that are not in `used`
+/// (ascending) and gives them empty lists. O(n log n + pairs)
 [[nodiscard]] std::vector<std::vector<PrimitiveIndex>> meeting_bounds(const PrimitiveSet& primitives,
                                                                       std::span<const PrimitiveIndex> used,
                                                                       double margin);
 
-/// The neighbourhoods of the primitives of `used`, in their order. Where a point is within `margin` of the bounds of
-/// the primitive, the tree of its neighbourhood contains it if and only if the whole tree does.
+/// The neighbourhoods of the primitives in `used`, in their order. Within `margin` of the primitive's bounds, its
+/// neighbourhood's tree contains the same points as the whole tree.
 [[nodiscard]] std::vector<Neighbourhood> neighbourhoods(const Model& model, std::span<const PrimitiveIndex> used,
                                                         double margin);
 

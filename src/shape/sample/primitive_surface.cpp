@@ -12,7 +12,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Cells along the longest side: enough for the shape, and for the waves of a displacement.
+/// Cells along the longest side, for the shape and for the waves of a displacement.
 int mesh_resolution(const Primitive& primitive, const AlignedBox& bounds) {
   constexpr double k_plain = 160;
   constexpr double k_cells_per_wave = 20;
@@ -27,7 +27,7 @@ int mesh_resolution(const Primitive& primitive, const AlignedBox& bounds) {
 
 PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region, const RunContext& run) {
   if (is_plain(primitive)) return make_plain_surface(primitive, region);
-  // Room around the region, so that the cap of a solid that is cut off there lies outside.
+  // Room around the region keeps the cap of a cut solid outside.
   constexpr double k_room = 0.05;
   const double room = k_room * region.diagonal().norm();
   const AlignedBox limits = grown(bounds(primitive), room).intersection(grown(region, room));
@@ -40,7 +40,7 @@ PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& regi
     const TriangleSampler::Draw drawn = sampler->draw(random);
     return SurfacePoint{.position = drawn.position, .normal = sampler->normal(drawn.triangle)};
   };
-  // Farther off there is no surface: the mesh is wrong there, or it is the cap where the mesh was cut off.
+  // Beyond the reach there is no surface: the mesh is wrong, or it is the cap of the cut.
   return {.area = sampler->area(), .draw = draw, .reach = 2.0 * limits.sizes().maxCoeff() / resolution};
 }
 

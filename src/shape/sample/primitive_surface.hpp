@@ -5,10 +5,9 @@
 
 namespace cloud2csg {
 
-/// Closed forms for every plain shape; a half-space gives the part of its plane around `region` (finite). Expressions
-/// and displaced solids are meshed finely and drawn by the mesh's area: uniform as far as the mesh has the area of the
-/// surface. That takes a tenth of a second each; where thousands are sampled that need not be quite uniform, see
-/// sample_surfaces() of the cells. @throws Cancelled
+/// Closed forms for all plain shapes; a half-space gives the part of its plane around `region` (finite). Expressions
+/// and displaced solids get a fine mesh, sampled uniformly by area, which takes a tenth of a second each. For thousands
+/// that need not be quite uniform, see sample_surfaces() in cells. @throws Cancelled
 [[nodiscard]] PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region,
                                             const RunContext& run);
 

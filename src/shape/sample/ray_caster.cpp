@@ -18,7 +18,7 @@ using Eigen::Vector3d;
   throw Error({.expected = "ray casting cannot be set up: " + what});
 }
 
-/// Throws what went wrong in the calls before.
+/// Throws the error of the preceding calls.
 void check(RTCDevice device) {
   const RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -110,13 +110,12 @@ std::optional<RayHit> RayCaster::first_hit(const Ray& ray) const {
   return hit_on(query.hit.primID, ray);
 }
 
-/// What a search knows so far.
 struct RayCaster::NearestTriangle {
   const RayCaster& caster;
   const Vector3d& point;
   double square = std::numeric_limits<double>::infinity();
 
-  /// Looks at a triangle whose box is near enough. Returns whether the search has become narrower.
+  /// Tests a triangle whose box is near enough. Returns whether the search became narrower.
   static bool look_at(RTCPointQueryFunctionArguments* arguments) {
     auto& nearest = *static_cast<NearestTriangle*>(arguments->userPtr);
     const TriangleMesh& mesh = *nearest.caster.mesh_;
@@ -124,7 +123,7 @@ struct RayCaster::NearestTriangle {
     const double square = squared_distance(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], nearest.point);
     if (!(square < nearest.square)) return false;
     nearest.square = square;
-    // Wider than the distance by more than single precision is off, for vertices within 1 and for the point.
+    // Adds the error of single precision for the point and for vertices within radius 1.
     constexpr float k_rounding = 1e-6F;
     RTCPointQuery& query = *arguments->query;
     const float farthest = 1 + std::max({std::abs(query.x), std::abs(query.y), std::abs(query.z)});
@@ -135,7 +134,7 @@ struct RayCaster::NearestTriangle {
 };
 
 double RayCaster::distance(const Vector3d& point) const {
-  // From farther off all triangles are equally far in single precision: each is looked at.
+  // From farther off, all triangles are equally distant in single precision, and each would be tested.
   constexpr double k_farthest = 1e15;
   const Vector3d place = ((point - middle_) / radius_).cwiseMax(-k_farthest).cwiseMin(k_farthest);
   RTCPointQuery query{.x = static_cast<float>(place.x()),
@@ -150,8 +149,7 @@ double RayCaster::distance(const Vector3d& point) const {
   return std::sqrt(nearest.square);
 }
 
-/// Where a ray meets the plane of a triangle that it is known to hit, brought back onto the triangle where rounding
-/// puts it beside (Moeller and Trumbore 1997).
+/// Where a ray meets the plane of a triangle that it hits, clamped to the triangle (Moeller and Trumbore 1997).
 std::optional<RayHit> RayCaster::hit_on(std::size_t triangle, const Ray& ray) const {
   const auto& [a, b, c] = mesh_->triangles[triangle];
   const Vector3d corner = mesh_->vertices[a];

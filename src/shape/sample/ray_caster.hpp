@@ -15,12 +15,11 @@ struct Ray {
 
 struct RayHit {
   double range;            ///< from the ray's origin
-  Eigen::Vector3d normal;  ///< of the surface, unit length, against the ray
+  Eigen::Vector3d normal;  ///< surface normal, unit length, against the ray
 };
 
-/// The first triangle along rays, and the nearest to points, by Embree. It works in single precision; where exactly the
-/// triangle is hit, and how far it is, is computed again in double: right to the last bits whatever Embree's
-/// instruction set. The mesh must outlive it.
+/// The first triangle along a ray and the nearest to a point, by Embree in single precision. Hit and distance are
+/// recomputed in double, right to the last bits on any instruction set. The mesh must outlive the caster.
 class RayCaster {
  public:
   /// O(n log n). @throws Error when Embree cannot be set up.
@@ -31,9 +30,9 @@ class RayCaster {
   RayCaster(RayCaster&&) = delete;
   RayCaster& operator=(RayCaster&&) = delete;
 
-  /// Absent where the ray hits nothing. May be called from several threads at once. O(log n)
+  /// Absent if the ray hits nothing. Thread-safe. O(log n)
   [[nodiscard]] std::optional<RayHit> first_hit(const Ray& ray) const;
-  /// To the nearest point of any triangle; infinite for a mesh without triangles. As first_hit() in threads and time.
+  /// To the nearest point of any triangle; infinite for an empty mesh. Thread-safe. O(log n)
   [[nodiscard]] double distance(const Eigen::Vector3d& point) const;
 
  private:
@@ -43,7 +42,7 @@ class RayCaster {
   [[nodiscard]] std::optional<RayHit> hit_on(std::size_t triangle, const Ray& ray) const;
 
   const TriangleMesh* mesh_;
-  /// Embree sees the mesh with its middle at the origin and its radius 1, where single precision is finest.
+  /// Embree sees the mesh centred and with radius 1, where single precision is finest.
   Eigen::Vector3d middle_;
   double radius_;
   std::unique_ptr<EmbreeScene> scene_;

@@ -17,15 +17,14 @@ using Eigen::Vector3d;
 
 constexpr std::uint64_t k_noise_stream = 0x73796e7468'03;
 
-/// Batches between two looks at whether there are enough points: at first one, then twice as many each time up to
-/// this, as long as nothing is known about how many are needed.
+/// Limit of batches a round while the required number is unknown. The first round has one; later rounds double.
 constexpr std::size_t k_most_blind_batches = 16;
-/// ...and afterwards; bounds the memory.
+/// The same afterwards; bounds the memory.
 constexpr std::size_t k_most_round_batches = 256;
-/// Batches that measure the area for a wanted density; as many without a hit mean that there is no surface.
+/// Batches that measure the area for a density. If none of them hits, there is no surface.
 constexpr std::size_t k_measuring_batches = 64;
 
-/// How many batches to make next. Which batches these are at the end does not depend on it.
+/// The size of the next round. The final result does not depend on it.
 std::size_t next_round(std::size_t batches_done, std::size_t points, std::size_t wanted) {
   if (points == 0 || wanted == 0) return std::min(batches_done + 1, k_most_blind_batches);
   const double batches_a_point = static_cast<double>(batches_done) / static_cast<double>(points);
@@ -33,7 +32,7 @@ std::size_t next_round(std::size_t batches_done, std::size_t points, std::size_t
   return batches < static_cast<double>(k_most_round_batches) ? static_cast<std::size_t>(batches) : k_most_round_batches;
 }
 
-/// As many points as the options want: all of the first batches and a random part of the last.
+/// Draws as many points as requested: all of the first batches and a random part of the last.
 PointCloud draw_points(const SurfaceSampler& sampler, const SampleOptions& options, const RunContext& run) {
   PointCloud cloud;
   std::size_t wanted = options.density > 0.0 ? 0 : options.count;
@@ -60,7 +59,7 @@ PointCloud draw_points(const SurfaceSampler& sampler, const SampleOptions& optio
   return cloud;
 }
 
-/// The normal turned by an angle around a random axis across it.
+/// Rotates a normal by an angle about a random orthogonal axis.
 Vector3d tilt(const Vector3d& normal, double angle, RandomStream& random) {
   const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
   const Vector3d first = normal.unitOrthogonal();

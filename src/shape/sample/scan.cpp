@@ -23,8 +23,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Brings hits on a mesh to where the rays meet the surface that the mesh stands for; absent hits stay absent, and
-/// those with no surface near them become so.
+/// Moves hits along their rays from mesh to exact surface. Hits without a surface nearby become absent.
 using SettleHits = std::function<void(std::span<const Ray> rays, std::span<std::optional<RayHit>> hits)>;
 
 using Eigen::Vector3d;
@@ -40,15 +39,14 @@ struct Solid {
   [[nodiscard]] Points gradients(PointsView points) const { return implicit_gradient(*tree, *primitives, points); }
 };
 
-/// Relative to the way from the sensor: a few units in the last place of the coordinates.
+/// Relative to the distance from the sensor: a few units in the last place of the coordinates.
 constexpr double k_converged = 1e-13;
 
 Vector3d place_at(const Ray& ray, double range) {
   return ray.origin + range * ray.direction;
 }
 
-/// Newton steps along the rays from the mesh. Returns which hits are left: those that do not arrive, or arrive where
-/// the ray leaves the solid.
+/// Newton steps along the rays. Returns the hits that do not converge, or only where the ray leaves the solid.
 std::vector<std::size_t> step_to_surface(const Solid& solid, std::span<const Ray> rays,
                                          std::span<std::optional<RayHit>> hits) {
   constexpr int k_most_steps = 12;
@@ -87,8 +85,7 @@ std::vector<std::size_t> step_to_surface(const Solid& solid, std::span<const Ray
   return left;
 }
 
-/// The first place within reach of the hit where the ray enters the solid, by cutting the part of the ray again and
-/// again; absent where it does not enter.
+/// The first place within reach where the ray enters the solid, by repeated subdivision; absent if it does not.
 std::optional<RayHit> search_surface(const Solid& solid, const Ray& ray, double hit_range) {
   constexpr std::size_t k_parts = 32;
   double low = hit_range - solid.reach;
@@ -113,8 +110,7 @@ std::optional<RayHit> search_surface(const Solid& solid, const Ray& ray, double 
   return RayHit{.range = low, .normal = normal};
 }
 
-/// For a mesh that is no further than `reach` from the solid, and whose middle and diagonal say how precise to be. The
-/// solid must outlive the function.
+/// For a mesh within `reach` of the solid. The solid must outlive the function.
 SettleHits settle_on_solid(const Model& model, double reach) {
   const Solid solid{.tree = &tree_of(model), .primitives = &model.primitives, .reach = reach};
   return [solid](std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) {
@@ -127,7 +123,6 @@ SettleHits settle_on_solid(const Model& model, double reach) {
 using Eigen::Vector3d;
 
 constexpr std::uint64_t k_thinning_stream = 0x7363616e'04;
-/// Rays that one thread traces at a time.
 constexpr std::size_t k_block_rays = 4096;
 
 [[noreturn]] void refuse_invisible() {
@@ -141,7 +136,7 @@ class Scanner {
     views_ = place_views(target_, options_);
   }
 
-  /// All returns at this step between rays, in radians.
+  /// All returns with this step between rays, in radians.
   [[nodiscard]] PointCloud scan(double step, const RunContext& run) const {
     const Raster raster = make_raster(options_, step);
     const std::size_t blocks = (raster.size() + k_block_rays - 1) / k_block_rays;
@@ -162,7 +157,7 @@ class Scanner {
     return {.middle = box.center(), .radius = 0.5 * box.diagonal().norm()};
   }
 
-  /// What a block of a view's rays returns.
+  /// The returns of a block of a view's rays.
   [[nodiscard]] PointCloud trace(std::size_t view, const Raster& raster, std::size_t first) const {
     const std::size_t count = std::min(k_block_rays, raster.size() - first);
     std::vector<Ray> rays(count);
@@ -179,7 +174,7 @@ class Scanner {
     return cloud;
   }
 
-  /// Adds what is measured of a hit, if anything returns, at the place where the registration puts it.
+  /// Adds the measurement of a hit, if any returns, at its registered place.
   void add_return(PointCloud& cloud, std::size_t view, const Ray& ray, const RayHit& hit, double step,
                   const RayChances& chances) const {
     if (chances.loss < loss_probability(options_, ray, hit)) return;
@@ -199,7 +194,7 @@ class Scanner {
   std::vector<View> views_;
 };
 
-/// As many of the points as wanted, in their order, each as likely to stay as any other (Knuth's algorithm S).
+/// A random subset of the requested size, in order (Knuth's algorithm S).
 PointCloud thin_out(const PointCloud& cloud, const ScanOptions& options) {
   RandomStream random(options.seed, k_thinning_stream);
   std::vector<std::uint32_t> kept;
@@ -210,7 +205,7 @@ PointCloud thin_out(const PointCloud& cloud, const ScanOptions& options) {
   return select_points(cloud, kept);
 }
 
-/// The step between rays at which about this many return, told by a coarse scan.
+/// The step between rays at which about `wanted` return, estimated by a coarse scan.
 double step_for(double wanted, const Scanner& scanner, const ScanOptions& options, const RunContext& run) {
   constexpr double k_coarse_rays = 50'000;
   constexpr int k_most_scans = 3;
@@ -219,12 +214,12 @@ double step_for(double wanted, const Scanner& scanner, const ScanOptions& option
   for (int scans = 0; scans < k_most_scans; ++scans) {
     const std::size_t returns = scanner.scan(step, run).size();
     if (returns > 0) return step * std::sqrt(static_cast<double>(returns) / wanted);
-    step *= 0.5;  // what there is to see may be small
+    step *= 0.5;  // the visible part may be small
   }
   refuse_invisible();
 }
 
-/// A scan that gives a few points more than wanted, less these.
+/// A scan with a small surplus of points, thinned to the requested number.
 PointCloud scan_count(const Scanner& scanner, const ScanOptions& options, const RunContext& run) {
   constexpr double k_surplus = 1.03;
   constexpr double k_finer = 0.97;

@@ -22,7 +22,7 @@ Vector3d normal_vector(RandomStream& random) {
   return {random.normal(), random.normal(), random.normal()};  // braces: in this order
 }
 
-/// Any orientation is as likely as any other.
+/// A uniformly distributed orientation.
 Quaterniond random_turn(RandomStream& random) {
   const Vector3d imaginary = normal_vector(random);
   const Quaterniond orientation(random.normal(), imaginary.x(), imaginary.y(), imaginary.z());
@@ -38,7 +38,7 @@ Vector3d spiral_direction(std::size_t i, std::size_t n) {
   return {across * std::cos(longitude), across * std::sin(longitude), height};
 }
 
-/// The way from the part to each sensor.
+/// The direction from the part to each sensor.
 std::vector<Vector3d> view_directions(const ScanOptions& options) {
   RandomStream random(options.seed, k_turn_stream);
   const Quaterniond turn =
@@ -51,12 +51,12 @@ std::vector<Vector3d> view_directions(const ScanOptions& options) {
   return directions;
 }
 
-/// A small turn around the middle of the part, then a shift.
+/// A small rotation about the middle of the part, then a shift.
 Pose misplacement(const ScanTarget& target, const ScanOptions& options, RandomStream& random) {
   const double angle = options.rotation_deg * std::numbers::pi / 180.0 * random.normal();
   const Vector3d axis = normal_vector(random).stableNormalized();
   const Vector3d shift = options.translation * target.diagonal() * normal_vector(random);
-  if (angle == 0.0 && shift.isZero(0.0)) return {};  // not even rounding
+  if (angle == 0.0 && shift.isZero(0.0)) return {};  // avoids even rounding
   const Quaterniond turn(Eigen::AngleAxisd(angle, axis));
   return {.position = target.middle + shift - turn * target.middle, .orientation = turn};
 }
@@ -64,10 +64,9 @@ Pose misplacement(const ScanTarget& target, const ScanOptions& options, RandomSt
 using Eigen::Vector3d;
 
 constexpr std::uint64_t k_ray_stream = 0x7363616e'03;
-/// Ranges of one beam that differ by more than this many distances between neighbouring rays are of two surfaces, or of
-/// one that is seen at less than 6 degrees.
+/// A larger difference in a beam's ranges, in steps between rays, means two surfaces, or one at less than 6 degrees.
 constexpr double k_edge_steps = 10.0;
-/// Twenty times the noise is the most: a formula with 1 / cosine knows no bounds.
+/// Limits 1 / cosine, and thus the noise to twenty times.
 constexpr double k_least_cosine = 0.05;
 
 double incidence_cosine(const Ray& ray, const RayHit& hit) {

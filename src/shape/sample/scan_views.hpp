@@ -6,10 +6,10 @@
 #include "cloud2csg/sample.hpp"
 #include "shape/sample/ray_caster.hpp"
 
-/// Where the virtual scanner stands, the rays of a view, and the errors of what they return.
+/// Positions of the virtual scanner, the rays of a view, and the errors of their returns.
 namespace cloud2csg {
 
-/// The bounding sphere of the part: what sensors look at, and the measure of their errors.
+/// The part's bounding sphere: the target of sensors and the unit of errors.
 struct ScanTarget {
   Eigen::Vector3d middle;
   double radius;
@@ -18,13 +18,12 @@ struct ScanTarget {
 };
 
 struct View {
-  Pose sensor;                     ///< in truth; the sensor looks along its own z axis
-  Pose misplacement;               ///< from the truth to where the registration puts what this view sees
-  double column_shift, row_shift;  ///< of the raster, in steps from 0 to 1
+  Pose sensor;                     ///< true pose; the sensor looks along its own z axis
+  Pose misplacement;               ///< from the true place of this view's points to the registered one
+  double column_shift, row_shift;  ///< raster offset, in steps from 0 to 1
 };
 
-/// One view each in the directions of a Fibonacci spiral, which covers the sphere evenly for any number of them, or the
-/// half of it above the table.
+/// Views from a Fibonacci spiral, which evenly covers the sphere, or the half above the table, for any number.
 [[nodiscard]] std::vector<View> place_views(const ScanTarget& target, const ScanOptions& options);
 
 /// The rays of a view: a square raster of equal angles, row by row, within the field of view.
@@ -40,28 +39,28 @@ struct Raster {
 
 [[nodiscard]] Ray ray_of(const View& view, const Raster& raster, std::size_t index);
 
-/// What chance decides about one ray. All of it is drawn for every ray, so that one defect does not change the others.
+/// Random choices for one ray. All are drawn for every ray, so that one defect does not change the others.
 struct RayChances {
   RayChances(std::uint64_t seed, std::size_t view, std::size_t ray);
 
   double loss, outlier, mixing;  ///< each uniform in [0, 1): the defect occurs below its probability
-  double outlier_place;          ///< uniform: where on the ray
-  double mixing_weight;          ///< uniform: how far from the one surface to the other
-  double beam_direction;         ///< uniform: which side of the ray the rest of the beam is on
+  double outlier_place;          ///< uniform: position on the ray
+  double mixing_weight;          ///< uniform: position between the two surfaces
+  double beam_direction;         ///< uniform: on which side of the ray the rest of the beam is
   double noise;                  ///< standard normal
 };
 
 /// Probability that a hit returns nothing; 0 up to the grazing angle.
 [[nodiscard]] double loss_probability(const ScanOptions& options, const Ray& ray, const RayHit& hit);
 
-/// Sigma of the range of a hit, in units of the world.
+/// Standard deviation of a hit's range, in world units.
 [[nodiscard]] double noise_sigma(const ScanOptions& options, const ScanTarget& target, const Ray& ray,
                                  const RayHit& hit);
 
-/// A ray on the border of the beam around another one, whose radius is a quarter of the step.
+/// A ray on the border of the beam around `ray`. The beam's radius is a quarter of the step.
 [[nodiscard]] Ray beam_side(const Ray& ray, double step, const RayChances& chances);
 
-/// The range that is measured for a hit, with noise, as an outlier, or between it and what the side of the beam hits.
+/// The measured range of a hit: with noise, as an outlier, or mixed with the hit at the side of the beam.
 [[nodiscard]] double measured_range(const ScanOptions& options, const ScanTarget& target, const Ray& ray,
                                     const RayHit& hit, const std::optional<RayHit>& side, double step,
                                     const RayChances& chances);

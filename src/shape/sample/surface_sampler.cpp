@@ -18,11 +18,11 @@ using Eigen::Vector3d;
 
 enum class Stream : std::uint64_t { candidates = 0x73796e7468'01, order = 0x73796e7468'02 };
 
-/// Candidates that are judged at once: enough that the overhead does not count, few enough to share among threads.
+/// Candidates a job: enough to hide the overhead, few enough to share among threads.
 constexpr std::size_t k_job_candidates = 8192;
-/// Far above the rounding of coordinates, far below any detail; of the solid's diagonal.
+/// Relative to the solid's diagonal: far above the rounding of coordinates, far below any detail.
 constexpr double k_relative_epsilon = 1e-6;
-/// Of a displacement or an expression: the exact test for duplicates divides by the slope.
+/// Slope limit of a displacement or expression, because the exact test for duplicates divides by the slope.
 constexpr double k_steepest = 100.0;
 
 void add(PointCloud& cloud, const Vector3d& position, const Vector3d& normal) {
@@ -30,7 +30,7 @@ void add(PointCloud& cloud, const Vector3d& position, const Vector3d& normal) {
   cloud.normals.push_back(normal);
 }
 
-/// Shuffles, for the points of a batch come primitive by primitive and a part of it must be like the whole.
+/// Shuffles, because the points of a batch come sorted by primitive and a part must represent the whole.
 void shuffle(PointCloud& cloud, RandomStream random) {
   for (std::size_t i = cloud.size(); i > 1; --i) {
     const std::size_t j = random.below(i);
@@ -114,7 +114,7 @@ SurfaceSampler::Candidates SurfaceSampler::draw(std::size_t batch) const {
   return sorted_by_surface(points, surface);
 }
 
-/// Those of a surface stay in their order; those that do not settle on it are left out.
+/// Sorts stably by surface. Drops points that do not settle on their surface.
 SurfaceSampler::Candidates SurfaceSampler::sorted_by_surface(const std::vector<SurfacePoint>& points,
                                                              const std::vector<std::uint32_t>& surface) const {
   std::vector<std::size_t> begin(surfaces_.size() + 1, 0);
@@ -179,14 +179,14 @@ std::vector<SurfaceSampler::Verdict> SurfaceSampler::judge(const PointCloud& can
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_inside = values[count + i] < 0.0;
     if ((values[i] < 0.0) == is_inside) continue;
-    // The solid is outside of a primitive that is cut away.
+    // The solid is outside a primitive that is cut away.
     verdicts[i] = is_inside ? Verdict::outward : Verdict::inward;
   }
   drop_duplicates(candidates, surface, verdicts);
   return verdicts;
 }
 
-/// Where surfaces of several primitives coincide, only the points of the one with the smallest index stay.
+/// Where surfaces of several primitives coincide, keeps only the points of the smallest index.
 void SurfaceSampler::drop_duplicates(const PointCloud& candidates, std::uint32_t surface,
                                      std::span<Verdict> verdicts) const {
   Points places;
@@ -210,7 +210,7 @@ void SurfaceSampler::drop_duplicates(const PointCloud& candidates, std::uint32_t
     for (std::size_t j = 0; j < suspects.size(); ++j) {
       const std::size_t k = suspects[j];
       const double slope = gradients[j].norm();
-      constexpr double k_parallel = 1e-4;  // of the sine between the normals
+      constexpr double k_parallel = 1e-4;  // least sine between different normals
       if (slope > 0.0 && std::abs(distances[k]) <= epsilon_ * slope &&
           gradients[j].cross(candidates.normals[place_of[k]]).norm() <= k_parallel * slope) {
         verdicts[place_of[k]] = Verdict::hidden;

@@ -13,7 +13,7 @@ namespace cloud2csg {
 /// Throws the Error of a solid without any surface.
 [[noreturn]] void refuse_without_surface();
 
-/// @throws Error when the solid is empty or has no bounds.
+/// @throws Error for an empty or unbounded solid.
 [[nodiscard]] AlignedBox finite_bounds(const Model& model);
 
 /// Draws candidates from the primitives' own surfaces and keeps those on the surface of the whole solid.
@@ -21,31 +21,30 @@ class SurfaceSampler {
  public:
   static constexpr std::size_t k_batch_candidates = 4096;
 
-  /// @throws Error when the solid is empty or unbounded; Cancelled. The primitives must outlive the sampler.
+  /// @throws Error for an empty or unbounded solid; Cancelled. The primitives must outlive the sampler.
   SurfaceSampler(const Model& model, std::uint64_t seed, const RunContext& run);
 
-  /// Of all primitives' own surfaces, hidden or not.
+  /// The area of all primitives' own surfaces, hidden or not.
   [[nodiscard]] double area() const { return area_; }
 
-  /// The visible ones of the candidates of batches first .. first + count - 1, by batch. Those of a batch are always
-  /// the same; many at once are made faster, since the candidates of a primitive are judged together. @throws Cancelled
+  /// The visible candidates of batches first .. first + count - 1, by batch. A batch is always the same. Many at once
+  /// are faster, because each primitive's candidates are judged together. @throws Cancelled
   [[nodiscard]] std::vector<PointCloud> batches(std::size_t first, std::size_t count, const RunContext& run) const;
 
  private:
-  /// Of one batch, in the order of their surfaces.
   struct Candidates {
     PointCloud points;
     std::vector<std::uint32_t> surface;  ///< index into surfaces_
   };
   enum class Verdict : std::uint8_t { hidden, outward, inward };
-  /// Some of a batch's candidates, all of one surface.
+  /// Candidates of a batch that share a surface.
   struct Range {
     std::size_t batch, begin, end;
   };
   /// Ranges of one surface that are judged at once.
   struct Job {
     std::uint32_t surface = 0;
-    std::size_t first = 0, last = 0;  ///< of the ranges
+    std::size_t first = 0, last = 0;  ///< range indices
   };
   struct Plan {
     std::vector<Range> ranges;
@@ -63,7 +62,7 @@ class SurfaceSampler {
 
   const PrimitiveSet& primitives_;
   std::vector<PrimitiveIndex> used_;
-  std::vector<PrimitiveSurface> surfaces_;  ///< of used_
+  std::vector<PrimitiveSurface> surfaces_;  ///< by index into used_
   std::vector<Neighbourhood> neighbourhoods_;
   std::vector<double> cumulative_area_;
   double area_ = 0.0;

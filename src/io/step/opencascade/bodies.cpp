@@ -63,7 +63,7 @@ bool is_valid(const TopoDS_Shape& shape) {
 }
 
 bool is_closed(const Body& body, double tolerance) {
-  // The kernel measures from the middle of all corners: a block beside the body moves that.
+  // The kernel measures volume from the middle of all corners, which a block beside the body moves.
   const gp_Pnt corner = body.box.CornerMax();
   const double size = corner.Distance(body.box.CornerMin());
   const gp_Pnt from = corner.Translated(gp_Vec(size, size, size));
@@ -87,7 +87,7 @@ Healed healed(const TopoDS_Shape& shape) {
 
 namespace {
 
-/// The edges between parts of spheres that have different poles.
+/// The edges between spherical faces with different poles.
 TopTools_MapOfShape edges_of_split_spheres(const TopoDS_Shape& shape) {
   TopTools_IndexedDataMapOfShapeListOfShape faces_of_edges;
   TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of_edges);

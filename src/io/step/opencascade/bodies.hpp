@@ -6,19 +6,17 @@
 
 #include "io/step/kernel.hpp"
 
-/// Solids of OpenCASCADE, and what is known of them.
 namespace cloud2csg::brep {
 
-/// One solid with its bounds, which have a little room.
+/// One solid with its slightly enlarged bounds.
 struct Body {
   TopoDS_Shape shape;
   Bnd_Box box;
 };
-/// Solids without common inside.
+/// Solids with disjoint interiors.
 using Bodies = std::vector<Body>;
 
 [[nodiscard]] Body body_of(const TopoDS_Shape& solid);
-/// The solids of a shape.
 [[nodiscard]] Bodies bodies_of(const TopoDS_Shape& shape);
 /// The solid itself, or a compound of several.
 [[nodiscard]] TopoDS_Shape shape_of(const Bodies& bodies);
@@ -30,18 +28,16 @@ using Bodies = std::vector<Body>;
 
 struct Healed {
   TopoDS_Shape shape;
-  std::size_t faces;  ///< that were invalid
+  std::size_t faces;  ///< invalid faces before healing
 };
-/// A shape with faults mended where that is possible.
-/// @throws Standard_Failure
+/// Repairs faults of a shape where possible. @throws Standard_Failure
 [[nodiscard]] Healed healed(const TopoDS_Shape& shape);
 
-/// Faces that lie on one surface joined, but for those of spheres that were split on purpose; the shape itself where
-/// the kernel cannot do it, or spoils the solid by it.
+/// Joins faces on one surface, except on spheres split on purpose. The shape itself if that fails or spoils the solid.
 [[nodiscard]] TopoDS_Shape with_joined_faces(const TopoDS_Shape& shape);
 
-/// Whether the volume is the same when it is measured from elsewhere, but for `tolerance` of it: that of a surface with
-/// gaps is not. The kernel's check of a solid finds no gaps that are within what it takes for its tolerance.
+/// Whether the volume stays the same, within the relative `tolerance`, when measured from another point; gaps in the
+/// surface change it. The kernel's own check ignores gaps within its tolerance.
 [[nodiscard]] bool is_closed(const Body& body, double tolerance);
 
 }  // namespace cloud2csg::brep

@@ -11,7 +11,6 @@
 namespace cloud2csg::brep {
 namespace {
 
-/// Tells the kernel when to stop.
 class StopIndicator : public Message_ProgressIndicator {
  public:
   explicit StopIndicator(std::stop_token stop) : stop_(std::move(stop)) {}
@@ -53,7 +52,6 @@ bool meet(const Body& a, const Body& b) {
   return !a.box.IsOut(b.box);
 }
 
-/// Groups of things, told pair by pair which belong together.
 class Groups {
  public:
   explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
@@ -75,7 +73,7 @@ class Groups {
 
 struct Member {
   const Body* body;
-  std::size_t operand;  ///< which it is of
+  std::size_t operand;  ///< operand that the body belongs to
 };
 
 std::vector<Member> members_of(const std::vector<Bodies>& operands) {
@@ -86,7 +84,7 @@ std::vector<Member> members_of(const std::vector<Bodies>& operands) {
   return members;
 }
 
-/// Bodies that meet others of other operands, directly or not, in the order of their first.
+/// Groups of bodies that meet bodies of other operands, directly or not, ordered by their first body.
 std::vector<std::vector<Member>> meeting_groups(const std::vector<Member>& members) {
   Groups groups(members.size());
   for (std::size_t a = 0; a < members.size(); ++a) {
@@ -110,7 +108,7 @@ void append(Bodies& all, Bodies more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// One operation of bodies and tools that meet each other, or several with a tool each.
+/// Applies one operation to bodies and tools that meet, or one operation for each tool.
 Bodies apply(BOPAlgo_Operation kind, Bodies objects, const Bodies& tools, const BooleanSettings& settings,
              const RunContext& run) {
   if (!settings.one_by_one) return run_boolean(kind, list_of(objects), list_of(tools), settings, run);
@@ -155,7 +153,7 @@ Bodies intersect(const std::vector<Bodies>& operands, const BooleanSettings& set
 
 Bodies subtract(const Bodies& from, const std::vector<Bodies>& removed, const BooleanSettings& settings,
                 const RunContext& run) {
-  // All that is removed counts as one operand: only where it meets what it is taken from, there is something to do.
+  // Treats all removed bodies as one operand, because work arises only where they meet `from`.
   Bodies tools;
   for (const Bodies& bodies : removed) tools.insert(tools.end(), bodies.begin(), bodies.end());
   Bodies result;

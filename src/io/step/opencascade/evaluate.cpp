@@ -17,15 +17,14 @@
 namespace cloud2csg::brep {
 namespace {
 
-/// What one node came to.
 struct NodeResult {
   Bodies bodies = {};
   std::size_t healed_faces = 0;
   std::string failure = {};  ///< why the bodies are facets
-  double deviation = 0;      ///< the volume by which facets among them may be wrong
+  double deviation = 0;      ///< possible volume error of facets among the bodies
 };
 
-/// How operations are tried, until one is good. Distances are parts of the model's size.
+/// Trials of an operation, until one succeeds. Distances are relative to the model's size.
 constexpr std::array<BooleanSettings, 5> k_trials{{{.fuzzy = 0, .one_by_one = false},
                                                    {.fuzzy = 1e-7, .one_by_one = false},
                                                    {.fuzzy = 1e-6, .one_by_one = true},
@@ -79,11 +78,11 @@ class Evaluator {
     return result;
   }
 
-  /// Returns whether one of the trials was good; else `result` says why the first was not.
+  /// Returns whether a trial succeeded; otherwise `result.failure` has the reason of the first failure.
   bool try_operations(std::size_t node, NodeResult& result) const {
     const PlanNode& plan = job_.plan.nodes[node];
     const double deviation = deviation_of_operands(plan);
-    // Of no or one operand there is nothing to check.
+    // A node with fewer than two operands needs no check.
     const auto expected = plan.kept.size() + plan.removed.size() > 1 ? host_.volume_of(node) : std::nullopt;
     for (BooleanSettings settings : k_trials) {
       settings.fuzzy *= job_.size;
@@ -164,7 +163,7 @@ class Evaluator {
     throw BooleanFailure("its result is invalid, or another solid, when it is read from the file");
   }
 
-  /// What stands for a node whose operation failed; the failure grows by what is wrong with this, too.
+  /// Replaces a node whose operation failed by facets. Appends to the failure if these fail, too.
   void set_facets(std::size_t node, NodeResult& result) const {
     try {
       result.bodies = make_bodies(host_.facets_of(node));

@@ -12,12 +12,11 @@ struct Evaluation {
   std::vector<KernelFailure> failures = {};  ///< by node
 };
 
-/// Whether the solid of a node is the same when it is read from a file. Called from several threads at a time.
+/// Whether a node's solid survives writing and reading a file. Called concurrently from several threads.
 using FileTest = std::function<bool(std::size_t node, const Bodies& bodies)>;
 
-/// The solid of a plan's root, in the kernel's frame. Nodes that do not depend on each other are made in parallel.
-/// What a test, if there is one, does not let pass counts as failed, as an invalid result does.
-/// @throws Cancelled, and what the host throws
+/// The solid of a plan's root, in the kernel's frame. Evaluates independent nodes in parallel. A result that is invalid
+/// or fails `file_test` (if given) counts as failed. @throws Cancelled, and what the host throws
 [[nodiscard]] Evaluation evaluate(const KernelJob& job, const KernelHost& host, SphereForm spheres,
                                   const FileTest& file_test = {});
 

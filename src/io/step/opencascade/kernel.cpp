@@ -38,7 +38,7 @@
 namespace cloud2csg::brep {
 namespace {
 
-/// A few points of a face, away from its edges; none when it is too thin to have any.
+/// A few interior points of a face; none if the face is too thin.
 std::vector<Eigen::Vector3d> points_on_face(const TopoDS_Face& face) {
   constexpr std::size_t k_enough = 3;
   constexpr int k_finest = 64;
@@ -50,12 +50,12 @@ std::vector<Eigen::Vector3d> points_on_face(const TopoDS_Face& face) {
   BRepTopAdaptor_FClass2d classifier(face, Precision::PConfusion());
   const BRepAdaptor_Surface surface(face);
   std::vector<Eigen::Vector3d> points;
-  // Lattices of the parameters, finer until enough of their middles are in the face.
+  // Refines a parameter grid until enough of its points are in the face.
   for (int steps = 3; steps <= k_finest && points.size() < k_enough; steps = 2 * steps + 1) {
     points.clear();
     for (int i = 0; i < steps && points.size() < k_enough; ++i) {
       for (int j = 0; j < steps && points.size() < k_enough; ++j) {
-        // Off the middle of the intervals, where symmetric parts have their corners.
+        // Avoids the middle of intervals, where symmetric parts have corners.
         const double u = u_low + (u_high - u_low) * (i + 0.47) / steps;
         const double v = v_low + (v_high - v_low) * (j + 0.53) / steps;
         if (classifier.Perform(gp_Pnt2d(u, v)) != TopAbs_IN) continue;
@@ -67,10 +67,10 @@ std::vector<Eigen::Vector3d> points_on_face(const TopoDS_Face& face) {
   return points;
 }
 
-// However small it is, a circle has 18 facets.
+// Gives even the smallest circle 18 facets.
 constexpr double k_widest_turn = 0.35;
 
-/// Corners by their place: the kernel gives those of an edge the same coordinates in both faces.
+/// Corners by position: the kernel gives both faces of an edge equal coordinates.
 class Corners {
  public:
   explicit Corners(TriangleMesh& mesh) : mesh_(mesh) {}
@@ -101,15 +101,14 @@ void add_face(const TopoDS_Face& face, Corners& corners, TriangleMesh& mesh) {
     if (face.Orientation() == TopAbs_REVERSED) std::swap(nodes[1], nodes[2]);
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t k = 0; k < 3; ++k) triangle[k] = corner_of[static_cast<std::size_t>(nodes[k] - 1)];
-    // At the poles of a sphere and the tip of a cone, where an edge is a point.
+    // Degenerate at the poles of a sphere and the tip of a cone.
     if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
     mesh.triangles.push_back(triangle);
   }
 }
 
-/// The bodies' surfaces as triangles, no farther from these than `deviation`: an edge has the same corners in both of
-/// its faces, so that each body is closed. Bodies have no corners in common.
-/// @throws Standard_Failure, std::runtime_error where a face has no triangles
+/// Triangulates the bodies' surfaces within `deviation`. Both faces of an edge share its corners, so each body is
+/// closed. Different bodies share no corners. @throws Standard_Failure, std::runtime_error for a face without triangles
 TriangleMesh tessellate(const Bodies& bodies, double deviation) {
   TriangleMesh mesh;
   for (const Body& body : bodies) {
@@ -122,7 +121,7 @@ TriangleMesh tessellate(const Bodies& bodies, double deviation) {
   return mesh;
 }
 
-/// The kernel prints what it thinks of; the library never does.
+/// The kernel prints messages; the library must not.
 void silence() {
   static std::once_flag once;
   std::call_once(once, [] { Message::DefaultMessenger()->ChangePrinters().Clear(); });
@@ -147,15 +146,15 @@ bool reaches_beyond(const Bodies& bodies, const AlignedBox& extent) {
       AlignedBox(Eigen::Vector3d(least.X(), least.Y(), least.Z()), Eigen::Vector3d(most.X(), most.Y(), most.Z())));
 }
 
-/// The root's bodies within the extent; all that is not in them when the tree is a complement.
+/// The root's bodies within the extent, or the rest of the extent for a complement.
 Bodies within_extent(const Bodies& bodies, const KernelJob& job, const RunContext& run) {
   const Bodies space{make_block(job.extent)};
   if (job.plan.is_complement) return subtract(space, {bodies}, {}, run);
-  // What reaches beyond is an end of a half-space, which has none.
+  // Only half-spaces, which are unbounded, reach beyond the extent.
   return reaches_beyond(bodies, job.extent) ? intersect({bodies, space}, {}, run) : bodies;
 }
 
-/// The faces of `shape`, which are those of `solid` in the model's frame, with the names of their primitives.
+/// The faces of `shape` with the names of their primitives. `shape` is `solid` in the model's frame.
 std::vector<NamedShape> named_faces(const TopoDS_Shape& solid, const TopoDS_Shape& shape, const KernelJob& job,
                                     const KernelHost& host) {
   std::vector<NamedShape> faces;
@@ -197,8 +196,7 @@ std::vector<NamedShape> components_of(const KernelJob& job, const KernelHost& ho
   return components;
 }
 
-/// How files are made: in which form of spheres, what volumes may differ by before and after, as a part of them, and
-/// whether nodes are tested each.
+/// Settings for a file: form of spheres, relative volume change allowed in the file, whether to test each node.
 struct Trial {
   SphereForm spheres;
   double same_volume;
@@ -209,7 +207,7 @@ bool holds(const StepReading& reading, double volume, const Trial& trial) {
   return reading.is_valid && std::abs(reading.volume - volume) <= trial.same_volume * volume;
 }
 
-/// Whether a file of these bodies alone holds them.
+/// Whether a file of only these bodies preserves them.
 bool survives_file(const Bodies& bodies, const KernelJob& job, std::size_t node, const Trial& trial) {
   struct Removed {
     std::filesystem::path path;
@@ -220,13 +218,13 @@ bool survives_file(const Bodies& bodies, const KernelJob& job, std::size_t node,
   };
   const Removed file{job.file.string() + "-" + std::to_string(node)};
   const TopoDS_Shape shape = to_model(shape_of(bodies), job.frame);
-  // Before it is written, which changes curves on faces where they do not agree with those in space.
+  // Measured before writing, which changes face curves that disagree with their space curves.
   const double volume = volume_of(shape);
   write_step_file(file.path, {.part = {.shape = shape, .name = job.part_name}, .faces = {}, .program = job.program});
   return holds(read_step_file(file.path), volume, trial);
 }
 
-/// Writes the file as it is to be, and reads it again. Returns whether it holds the solid, and the components if any.
+/// Writes the file and reads it again. Returns whether it preserves the solid and any components.
 bool write_step(const Bodies& bodies, const KernelJob& job, const KernelHost& host, const Trial& trial,
                 KernelResult& result) {
   const double volume = std::pow(job.frame.scale, 3) * volume_of(bodies);
@@ -263,8 +261,7 @@ void make_mesh(const Bodies& bodies, const KernelJob& job, KernelResult& result)
   result.mesh = tessellate(bodies, job.mesh_deviation);
 }
 
-/// Returns whether all is well, or could not be better with spheres in another form, faces that are not joined, or
-/// nodes that are tested each.
+/// Returns false only if another form of spheres, unjoined faces or testing each node might help.
 bool run_job(const KernelJob& job, const KernelHost& host, const Trial& trial, KernelResult& result) {
   FileTest test;
   if (trial.is_node_tested) {
@@ -291,7 +288,7 @@ bool run_job(const KernelJob& job, const KernelHost& host, const Trial& trial, K
 
 void make_solid(const KernelJob& job, const KernelHost& host, KernelResult& result) {
   constexpr double k_rounding = 1e-5;
-  // To find the node whose exact solid no file holds; by what nobody measures, since facets are worse.
+  // The last trial finds the node that no file preserves. Facets would be worse than its tolerance.
   const double unnoticed = std::max(k_rounding, 0.1 * job.volume_tolerance);
   for (const Trial& trial : {Trial{SphereForm::whole, k_rounding, false}, Trial{SphereForm::split, k_rounding, false},
                              Trial{SphereForm::split, unnoticed, true}}) {

@@ -55,18 +55,16 @@ gp_Dir direction_of(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Part of a great circle.
 TopoDS_Edge arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const TopoDS_Vertex& start,
                 const TopoDS_Vertex& end) {
   const gp_Ax2 axes(gp_Pnt(0, 0, 0), direction_of(from.cross(to)), direction_of(from));
   return BRepBuilderAPI_MakeEdge(new Geom_Circle(axes, from.norm()), start, end).Edge();
 }
 
-/// A sphere at the origin whose surface is four curved triangles. Each has its poles and its seam elsewhere, so that
-/// whatever is cut out of it has plain edges only: readers of STEP get spheres wrong that are cut around both poles.
-/// @throws Standard_Failure
+/// A sphere at the origin, made of four curved triangles. Each has its poles and seam outside itself, so cuts leave
+/// plain edges only. STEP readers misread spheres that are cut around both poles. @throws Standard_Failure
 TopoDS_Shape split_sphere(double radius) {
-  // A tetrahedron that is turned such that nothing of it is along an axis.
+  // A tetrahedron rotated off all axes.
   const Eigen::Quaterniond turn = Eigen::Quaterniond(0.83, 0.31, -0.23, 0.41).normalized();
   constexpr std::array<std::array<int, 3>, 4> k_corners{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
   constexpr std::array<CornerIndices, 4> k_faces{{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
@@ -96,7 +94,7 @@ TopoDS_Shape split_sphere(double radius) {
   TopoDS_Solid solid;
   builder.MakeSolid(solid);
   builder.Add(solid, shell);
-  // Adds where the edges are in the parameters of the faces.
+  // Adds the edges' curves in the faces' parameters.
   const Handle(ShapeFix_Shape) fix = new ShapeFix_Shape(solid);
   fix->Perform();
   return fix->Shape();
@@ -119,7 +117,7 @@ Eigen::Vector3d area_of(const Facets& facets, const Face& face) {
   return area;
 }
 
-/// Faces that hang together by edges, numbered from 0.
+/// Faces that are connected by edges, by piece.
 std::vector<std::vector<std::size_t>> pieces_of(const Facets& facets) {
   DisjointSets sets(facets.faces.size());
   std::map<EdgeKey, std::size_t> first_face;
@@ -138,7 +136,6 @@ std::vector<std::vector<std::size_t>> pieces_of(const Facets& facets) {
   return pieces;
 }
 
-/// Makes faces that share their edges.
 class ShellBuilder {
  public:
   explicit ShellBuilder(const Facets& facets) : facets_(facets), vertices_(facets.corners.size()) {}
@@ -187,7 +184,7 @@ class ShellBuilder {
   std::map<EdgeKey, TopoDS_Edge> edges_ = {};
 };
 
-/// A closed piece of the surface: volume is negative for a hollow.
+/// A closed piece of the surface; its volume is negative for a hollow.
 struct Piece {
   TopoDS_Shell shell;
   AlignedBox box;
@@ -204,7 +201,7 @@ Piece make_piece(const Facets& facets, const std::vector<std::size_t>& faces, Sh
   return piece;
 }
 
-/// The smallest solid around a hollow, by boxes; none for one that stands alone.
+/// The smallest solid around a hollow, by bounding boxes; null if there is none.
 TopoDS_Solid* solid_around(const Piece& hollow, const std::vector<Piece>& outer, std::vector<TopoDS_Solid>& solids) {
   std::size_t best = outer.size();
   for (std::size_t i = 0; i < outer.size(); ++i) {
@@ -214,10 +211,8 @@ TopoDS_Solid* solid_around(const Piece& hollow, const std::vector<Piece>& outer,
   return best == outer.size() ? nullptr : &solids[best];
 }
 
-/// Solids of flat faces. Pieces of the surface that do not hang together by edges become solids each; those that are
-/// turned inside out are hollows of the smallest solid around them. Faces too thin to have a plane are left out.
-/// O(faces + hollows x solids)
-/// @throws Standard_Failure
+/// Solids of flat faces. Each piece connected by edges becomes a solid. Pieces turned inside out become hollows of the
+/// smallest solid around them. Drops faces too thin for a plane. O(faces + hollows x solids) @throws Standard_Failure
 std::vector<TopoDS_Shape> solids_of_facets(const Facets& facets) {
   ShellBuilder shells(facets);
   std::vector<Piece> outer;
@@ -256,7 +251,7 @@ TopoDS_Shape centred(const Cylinder& cylinder) {
 }
 
 TopoDS_Shape centred(const Cone& cone) {
-  // The kernel refuses cones whose sides are parallel.
+  // The kernel refuses cones with parallel sides.
   if (std::abs(cone.radius_bottom - cone.radius_top) <= Precision::Confusion()) {
     return centred(Cylinder{.radius = 0.5 * (cone.radius_bottom + cone.radius_top), .height = cone.height});
   }
@@ -264,7 +259,7 @@ TopoDS_Shape centred(const Cone& cone) {
 }
 
 TopoDS_Shape centred(const Torus& torus) {
-  // The kernel refuses tori without a hole: a pinhole stays.
+  // The kernel refuses tori without a hole, so a pinhole remains.
   constexpr double k_pinhole = 1e-5;
   const double minor = std::min(torus.minor_radius, (1 - k_pinhole) * torus.major_radius);
   return BRepPrimAPI_MakeTorus(torus.major_radius, minor).Solid();
@@ -275,7 +270,7 @@ TopoDS_Shape placed(const TopoDS_Shape& shape, const Pose& pose) {
   const Eigen::Quaterniond& q = pose.orientation;
   motion.SetTransformation(gp_Quaternion(q.x(), q.y(), q.z(), q.w()),
                            gp_Vec(pose.position.x(), pose.position.y(), pose.position.z()));
-  // Into the geometry itself: some operations of the kernel lose precision with nested locations.
+  // Applies the motion to the geometry, because some kernel operations lose precision with nested locations.
   return BRepBuilderAPI_Transform(shape, motion, true).Shape();
 }
 

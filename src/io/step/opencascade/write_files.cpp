@@ -31,7 +31,7 @@
 namespace cloud2csg::brep {
 namespace {
 
-/// The kernel keeps the settings of files once a process.
+/// The kernel keeps one set of file settings a process.
 std::mutex& file_settings() {
   static std::mutex mutex;
   return mutex;

@@ -6,26 +6,24 @@
 
 namespace cloud2csg::brep {
 
-/// A shape with its name.
 struct NamedShape {
   TopoDS_Shape shape;
   std::string name;
 };
 
-/// One part whose faces have names, or an assembly of it and of a group of components.
+/// One part with named faces, or an assembly of the part and a group of components.
 struct StepContent {
   NamedShape part;
-  std::vector<NamedShape> faces;  ///< of the part
+  std::vector<NamedShape> faces;  ///< the part's faces
   std::vector<NamedShape> components = {};
   std::string assembly_name = {};
-  std::string program = {};  ///< that writes the file
+  std::string program = {};  ///< program that writes the file
 };
 
-/// Names must be ASCII, without quotes, backslashes and control characters.
-/// @throws Standard_Failure, std::runtime_error
+/// Names must be ASCII without quotes, backslashes and control characters. @throws Standard_Failure, std::runtime_error
 void write_step_file(const std::filesystem::path& file, const StepContent& content);
 
-/// What a STEP file holds, as the kernel's own reader understands it.
+/// The content of a STEP file according to the kernel's own reader.
 struct StepReading {
   bool is_valid = false;
   double volume = 0;
