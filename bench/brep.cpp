@@ -11,8 +11,7 @@
 #include "cloud2csg/model.hpp"
 #include "core/base/run.hpp"
 
-/// STEP files of models with a tree (by default those that are shipped, and one of 100 primitives of each family):
-/// seconds, validity, and volume against the tree's.
+/// STEP files of given models (default: the shipped ones and one per family): time, validity, volume error.
 namespace cloud2csg {
 namespace {
 

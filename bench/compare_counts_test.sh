@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# compare_counts_test.sh COMPARE_COUNTS.sh: what passes and what does not.
+# compare_counts_test.sh COMPARE_COUNTS.sh: tests which counts pass.
 set -euo pipefail
 compare=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# expect STATUS MEASURED... : the exit status for these counts against a,1000 and b,2000.
+# expect STATUS MEASURED...: checks the exit status for these counts against a,1000 and b,2000.
 printf 'section,instructions\na,1000\nb,2000\n' >"$folder/recorded.csv"
 expect() {
   local status=$1 got=0
@@ -25,6 +25,6 @@ got=0
 "$compare" "$folder/recorded.csv" "$folder/nowhere.csv" 2>/dev/null || got=$?
 [ "$got" = 2 ]
 
-# What it prints names the offender.
+# The output names the offender.
 expect 1 a,1000 b,2400
 grep -qF '+20.0 % | more than allowed' "$folder/output" || { cat "$folder/output" >&2; exit 1; }

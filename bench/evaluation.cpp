@@ -1,4 +1,4 @@
-// How much faster the rank classes are than walking the tree at each point: E(t) of the true tree over 150 k points.
+// Speed-up of the rank classes over walking the tree at each point: E(t) of the true tree over 150 k points.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,4 @@
-// Seconds of each stage of the extraction, from a cloud and primitives in memory to the simplified tree, on one core;
-// the growth with the number of points; and what the process took in memory.
+// Seconds of the extraction's stages on one core, growth with the number of points, and memory of the process.
 
 #include <fmt/format.h>
 
@@ -12,7 +11,7 @@
 namespace cloud2csg::bench {
 namespace {
 
-/// The largest resident size of this process so far, in MB.
+/// Peak resident size of this process, in MB.
 double peak_memory_mb() {
   std::ifstream status("/proc/self/status");
   std::string line;
@@ -22,7 +21,6 @@ double peak_memory_mb() {
   return std::nan("");
 }
 
-/// The run of median duration among several.
 ExtractStatistics median_run(const PointCloud& cloud, const Model& model, const ExtractOptions& options,
                              std::size_t runs) {
   std::vector<ExtractStatistics> all;

@@ -1,6 +1,5 @@
-// The steps of the extraction, one after the other on one thread, for counting the instructions that each takes:
-// scripts/instructions.sh runs this under callgrind. Always in the instructions of AVX2, so that the counts are those
-// of any x86 machine of the last ten years.
+// Runs the steps of the extraction in sequence on one thread, to count their instructions: scripts/instructions.sh runs
+// this under callgrind. Always uses AVX2, so that the counts hold for any x86 machine of the last ten years.
 
 #include <fmt/format.h>
 #include <hwy/highway.h>
@@ -26,8 +25,7 @@ void use_avx2() {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-/// Counts what `work` does as a section of that name. What work returns is printed: a count that differs because the
-/// result does is then seen.
+/// Counts the instructions of `work` as a section. Prints its result, since another result explains another count.
 template <class Work>
 void count(const char* name, const Work& work) {
   CALLGRIND_START_INSTRUMENTATION;

@@ -127,7 +127,7 @@ def main():
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
     meshes = sorted(path for path in arguments.folder.iterdir() if path.suffix in ENDINGS)
-    # A script beside a mesh of its name is what the mesh was made of.
+    # A script with the name of a mesh is the source of that mesh.
     made = {path.stem for path in meshes if path.suffix != ".scad"}
     meshes = [path for path in meshes if path.suffix != ".scad" or path.stem not in made]
     if arguments.models:

@@ -11,20 +11,19 @@
 
 namespace cloud2csg::bench {
 
-/// The shipped model of that name: "m0", "m1", "m2", "m3".
+/// The shipped model "m0", "m1", "m2" or "m3".
 inline Model shipped_model(const std::string& name) {
   return read_model(std::string(CLOUD2CSG_DATA_DIR "/models/") + name + ".json");
 }
 
-/// A cloud as the paper makes them: noise of sigma 0.01 on a model of about unit size.
+/// A cloud like the paper's: noise of sigma 0.01 on a model of about unit size.
 inline PointCloud paper_cloud(const Model& model, std::size_t points, std::uint64_t seed) {
   RunContext all_cores;
   all_cores.threads = 0;
   return sample_surface(model, {.count = points, .noise = 0.01, .seed = seed}, all_cores);
 }
 
-/// Seconds of several runs of the same thing. The machine is shared: the median is quoted, the least says what the
-/// machine can do.
+/// Seconds of several equal runs. On a shared machine the median is quoted; the least shows the machine's limit.
 struct Timing {
   double least = 0, median = 0, most = 0;
 };

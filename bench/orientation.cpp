@@ -1,5 +1,5 @@
-// Which share of a cloud's normals is oriented rightly, from positions alone. The shipped models, thin shapes, random
-// models of all families, and the models and meshes given as arguments.
+// Share of a cloud's normals with correct orientation from positions alone: shipped models, thin shapes, random models
+// from all families, and the models and meshes given as arguments.
 //   bench_orientation [--points N] [--noise SHARE] [--given] [--pictures FOLDER] [FILE...]
 // --given: only the files. --pictures: coloured .ply, red where the side is wrong.
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Seconds for the overlap graph and its maximal cliques against the number of primitives, on one core.
+// Seconds for the overlap graph and its maximal cliques by number of primitives, on one core.
 
 #include <fmt/format.h>
 

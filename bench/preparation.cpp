@@ -1,5 +1,4 @@
-// How well raw clouds are prepared: scale against the known noise, cleaning against known outliers, normals against the
-// true ones. The shipped models, and the meshes given as arguments.
+// Errors of prepared clouds (noise, outliers, normals) for the shipped models and the meshes given as arguments.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,14 +27,12 @@ using Eigen::Vector3d;
 constexpr std::size_t k_points = 30'000;
 const c2c::RunContext k_run{.threads = 2};
 
-/// An exact cloud with true normals.
 c2c::PointCloud truth(const std::filesystem::path& file, std::size_t points) {
   if (file.extension() != ".json") return c2c::read_cloud_or_mesh(file, {.mesh_points = points}).cloud;
   const c2c::Model model = c2c::read_model(file);
   return c2c::sample_surface(model, {.count = points});
 }
 
-/// What a virtual scanner sees, with true normals.
 c2c::PointCloud scan(const std::filesystem::path& file, std::size_t points) {
   const c2c::ScanOptions options{.count = points, .with_normals = true};
   if (file.extension() != ".json") return c2c::scan_mesh(c2c::read_mesh(file), options, k_run);
@@ -68,7 +65,7 @@ double seconds_of(const auto& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Of all threads, so that other programs on the machine do not count.
+/// CPU time of all threads: other programs do not count.
 double cpu_seconds_of(const auto& work) {
   const std::clock_t start = std::clock();
   work();
@@ -76,8 +73,8 @@ double cpu_seconds_of(const auto& work) {
 }
 
 struct NormalErrors {
-  double right = 0.0;       ///< share on the same side as the true ones
-  double median_deg = 0.0;  ///< of the angle between the lines
+  double right = 0.0;       ///< share on the same side as the true normals
+  double median_deg = 0.0;  ///< median angle between the unoriented normals
 };
 
 NormalErrors compare_normals(const c2c::Points& normals, const c2c::Points& exact) {
@@ -114,13 +111,13 @@ void print_normals(const std::vector<std::filesystem::path>& files, double noise
   }
 }
 
-/// With the sensor positions that scanners know.
+/// Scans with the sensor positions.
 void print_scans(const std::vector<std::filesystem::path>& files) {
   fmt::print("\nScans: {} points with sensor positions and all defects of a scanner\n\n", k_points);
   fmt::print("| model | oriented rightly | median angle | doubtful | left out | s |\n|---|---|---|---|---|---|\n");
   for (const std::filesystem::path& file : files) {
     const c2c::PointCloud cloud = scan(file, k_points);
-    // Cleaning does not look at normals, so the same points stay without them.
+    // Cleaning ignores normals, so the same points remain without them.
     const c2c::PointCloud known = c2c::clean_cloud(cloud, c2c::estimate_scale(cloud, k_run), {}, k_run).cloud;
     c2c::PointCloud plain = known;
     plain.normals = {};
@@ -133,7 +130,7 @@ void print_scans(const std::vector<std::filesystem::path>& files) {
   }
 }
 
-/// Whether a place is farther than this from all of the points, which lie densely on a surface.
+/// Whether each place is farther than `distance` from all points, which sample a surface densely.
 std::vector<char> far_from(const c2c::Points& surface, const c2c::Points& places, double distance) {
   const std::size_t count = surface.size();
   std::vector<char> is_far(places.size(), 1);
@@ -158,7 +155,7 @@ std::vector<char> far_from(const c2c::Points& surface, const c2c::Points& places
   return is_far;
 }
 
-/// Uniform in a box 10 % larger.
+/// Uniform in a box enlarged by 10 %.
 c2c::Points outliers_around(const c2c::AlignedBox& box, std::size_t count) {
   c2c::RandomStream random(3);
   c2c::Points outliers;
@@ -185,7 +182,7 @@ void print_cleaning(const std::vector<std::filesystem::path>& files, double nois
     const c2c::CleanCloud alone = c2c::clean_cloud(cloud, c2c::estimate_scale(cloud, k_run), {}, k_run);
     const c2c::Points outliers = outliers_around(box, k_points);
     const std::vector<char> is_far = far_from(dense.positions, outliers, 5.0 * sigma);
-    // The normals tell which points are which.
+    // The normals mark the kinds of points.
     cloud.normals = c2c::Points(k_points);
     for (std::size_t i = 0; i < outliers.size(); ++i) {
       cloud.positions.push_back(outliers[i]);

@@ -1,4 +1,4 @@
-// How right and how compact extracted trees are: on the shipped models, on random ones, and with defects in the input.
+// Correctness and size of extracted trees: shipped models, random models, and defective inputs.
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ int run(int argc, char** argv) {
   for (const Setting& setting : all_settings()) {
     if (std::ranges::count(arguments.settings, setting.name) > 0) options.run.settings.push_back(setting);
   }
-  // Tables appear one by one, also in a file.
+  // Line-buffered, so that tables appear one by one, also in a file.
   (void)std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   print_part(arguments.part, options);
   return 0;

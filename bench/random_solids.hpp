@@ -9,8 +9,7 @@
 
 namespace cloud2csg::bench {
 
-/// Boxes, cylinders and spheres turned and placed at random in a cube that grows with their number, so that the degree
-/// of the overlap graph stays the same.
+/// Random boxes, cylinders and spheres in a cube that grows with their number: constant degree of the overlap graph.
 inline PrimitiveSet random_solids(std::size_t count, double solids_a_unit) {
   RandomStream random(count);
   const double half_side = 0.5 * std::cbrt(static_cast<double>(count) / solids_a_unit);

@@ -1,5 +1,4 @@
-// How often the right solid is found, and how large its tree is: 20 seeds a model (a cloud and a search of its own
-// each), for the default and for each thing that the default adds to the paper.
+// Rate of correct solids and tree sizes over 20 clouds and searches per model: the default and each of its additions.
 
 #include <fmt/format.h>
 

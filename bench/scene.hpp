@@ -9,7 +9,7 @@
 
 namespace cloud2csg::bench {
 
-/// A shipped model, its cloud as in the paper, and what the extraction makes of both before it searches: one core.
+/// A shipped model, its cloud as in the paper, and the extraction's data before the search; one core.
 struct Scene {
   Scene(const std::string& model_name, std::size_t points);
 
@@ -18,18 +18,16 @@ struct Scene {
   PointCloud cloud;
   PointPassOptions options;
   std::vector<Clique> cliques;
-  /// One for each clique, then one for each connected component.
+  /// One per clique, then one per connected component.
   std::vector<RankClassesRequest> requests;
 };
 
-/// For each clique, what is left of the true tree without the other primitives: much like what a search finds, without
-/// depending on one.
+/// For each clique, the true tree restricted to it: similar to a search result, without a search.
 [[nodiscard]] std::vector<CsgTree> clique_trees(const Scene& scene);
 
-/// The table of the clique with the most primitives.
 [[nodiscard]] RankClasses largest_clique_table(const Scene& scene);
 
-/// Formulas over some primitives as the genetic algorithm makes them, of so many nodes in all or a few more.
+/// Formulas like those of the genetic algorithm, with at least `nodes` nodes in all.
 [[nodiscard]] std::vector<CsgTree> random_trees(std::size_t primitives, int height, std::size_t nodes);
 
 [[nodiscard]] std::size_t total_size(std::span<const CsgTree> trees);

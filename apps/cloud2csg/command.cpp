@@ -11,7 +11,7 @@
 namespace cloud2csg::app {
 namespace {
 
-/// The program and the commands that were named on the command line, each within the one before it.
+/// The path from the program to the named command.
 std::vector<const CLI::App*> chosen(const CLI::App& program) {
   std::vector<const CLI::App*> path{&program};
   while (!path.back()->get_subcommands().empty()) path.push_back(path.back()->get_subcommands().front());
@@ -40,10 +40,9 @@ std::string unknown_argument(const CLI::App& app, std::string word) {
   return fmt::format("{} '{}'{}", kind, word, suggestion(word, names));
 }
 
-/// How many letters must be inserted, deleted, replaced or swapped with their neighbour to turn one word into the
-/// other.
+/// Number of inserted, deleted, replaced or swapped letters between two words.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Optimal string alignment: of the first i letters of a and the first j of b.
+  // Optimal string alignment of the first i letters of a and the first j of b.
   std::vector<std::vector<std::size_t>> steps(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -149,7 +148,7 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> path = chosen(program);
   const CLI::App& app = *path.back();
-  // A misspelt option is the cause when a required one is missing too.
+  // A misspelt option is also the cause of a missing required one.
   const std::vector<std::string> unknown = app.remaining();
   const std::string what = unknown.empty() ? reworded(error) : unknown_argument(app, unknown.front());
   std::string name = program.get_name();

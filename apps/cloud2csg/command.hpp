@@ -16,14 +16,13 @@
 
 namespace cloud2csg::app {
 
-/// A subcommand: its options, bound to values of its own, and what it does with them.
-/// @throws (by run) Error, Cancelled
+/// A subcommand: its options, bound to their values, and its action. @throws (by run) Error, Cancelled
 struct Command {
   CLI::App* options;
   std::function<void(std::stop_token)> run;
 };
 
-// Each adds its subcommand to the program; one file a subcommand.
+// Each adds its subcommand to the program; one file per subcommand.
 [[nodiscard]] Command add_extract(CLI::App& program);
 [[nodiscard]] Command add_sample(CLI::App& program);
 [[nodiscard]] Command add_scan(CLI::App& program);
@@ -37,41 +36,38 @@ struct Command {
 [[nodiscard]] Command add_completion(CLI::App& program);
 [[nodiscard]] Command add_manual(CLI::App& program);
 
-/// What the last of these words of a command line, which may be empty, can become: a line each, with a tab and what it
-/// means behind it. Instead of files stands one line: `:files:BEFORE:ENDINGS`, where BEFORE is what the word has before
-/// the name of the file ("--output="), and no ENDINGS (".ply .pcd") stand for any. The scripts of `completion` ask for
-/// it by `cloud2csg complete WORD...`.
+/// Completions of the last word, maybe empty, of a command line: one per line, with a tab and its meaning. The line
+/// `:files:BEFORE:ENDINGS` stands for files. BEFORE is the word's part before the file name ("--output="); without
+/// ENDINGS (".ply .pcd") all files match. The scripts of `completion` call `cloud2csg complete WORD...`.
 [[nodiscard]] std::string completions(CLI::App& program, std::span<const std::string> words);
 
-/// RunOptions, and with them --config and --print-config.
 void add_run_options(CLI::App& options, RunOptions& values);
 
 /// Adds --config FILE and --print-config to a command.
 ///
-/// The file is TOML: options by their long names without dashes (`leaf-cost = 0.001`, flags `quiet = true`,
-/// `seeds = false` for --no-seeds), lists for what may be repeated. They stand in the table of their command
-/// (`[extract]`, `[bench.paper]`), or before all tables, for every command that has them. What the command line says
-/// wins, also over what it excludes. A name that no command has is refused with its line and the nearest right one.
+/// The file is TOML. Keys are long options without dashes (`leaf-cost = 0.001`, flags `quiet = true`, `seeds = false`
+/// for --no-seeds); repeatable options take lists. They stand in their command's table (`[extract]`, `[bench.paper]`),
+/// or before all tables for every command that has them. The command line wins, also over options that it excludes.
+/// Unknown names are refused with their line and the nearest known name.
 ///
-/// The reader of CLI11 is not used: it takes any text for TOML, ends values at a # within quotes, and names no lines.
+/// CLI11's reader is unsuitable: it takes any text for TOML, ends values at a # within quotes, and names no lines.
 void add_config_options(CLI::App& command);
 
-/// Ends the parsing of a command line by which the configuration is to be printed: what() is its text.
+/// Ends the parsing when the configuration is to be printed; what() is its text.
 class PrintedConfig : public CLI::Success {
  public:
   explicit PrintedConfig(std::string text) : CLI::Success("PrintedConfig", std::move(text), CLI::ExitCodes::Success) {}
 };
 
-/// `-o FILE`, as often as wanted, at least once.
+/// `-o FILE`, repeatable, required.
 CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, const std::string& endings);
 
-/// A required file to read, as an option or by its place.
+/// A required input file, as an option or a positional argument.
 CLI::Option* add_file(CLI::App& options, const std::string& name, std::string& file, const std::string& help);
 
-/// What a cloud is to be made of.
 void add_shape(CLI::App& options, std::string& file);
 
-/// What `work` returns. An Error that names no file, of a stage that knows none, gets the name of what was worked on.
+/// The result of `work`. Adds `files` to an Error that names no file.
 template <typename Work>
 auto naming(const std::string& files, const Work& work) {
   try {
@@ -84,28 +80,27 @@ auto naming(const std::string& files, const Work& work) {
   }
 }
 
-/// What is wrong with the command line, and found only when the command runs.
+/// An error in the command line that shows only when the command runs.
 class WrongUsage : public Error {
  public:
   using Error::Error;
 };
 
-/// Which command takes a file of this kind, where another one was given it.
+/// The command that takes a file of this kind, to suggest it in place of another.
 [[nodiscard]] const char* taker_of(FileKind kind);
 
-/// Whether a command was named that is only the first word of others, and nothing behind it.
+/// Whether the last named command needs a subcommand and has none.
 [[nodiscard]] bool lacks_command(const CLI::App& program);
 
-/// One line that says what is wrong with the command line, with the nearest right name for a wrong one.
+/// One line about the error in the command line, with the nearest known name for an unknown one.
 [[nodiscard]] std::string usage_message(const CLI::App& program, const CLI::ParseError& error);
 
-/// CLI11's message in clearer words, where it has none.
+/// CLI11's message in clearer words, where possible.
 [[nodiscard]] std::string reworded(const CLI::ParseError& error);
 
-/// "; did you mean 'extract'?", or nothing when no candidate is near enough to `word` to be meant.
+/// "; did you mean 'extract'?", or nothing when no candidate is near enough.
 [[nodiscard]] std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
-/// The example that ends a subcommand's help.
 [[nodiscard]] std::string example(const std::string& lines);
 
 }  // namespace cloud2csg::app

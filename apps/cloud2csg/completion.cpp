@@ -76,7 +76,7 @@ end
 complete -c cloud2csg -f -a '(__cloud2csg_complete)'
 )";
 
-/// The endings of the files that an option takes: those that its help speaks of, else that of its value, "MODEL.json".
+/// The endings of an option's files: those in its help, else that of its value name, "MODEL.json".
 std::vector<std::string> endings_of(const CLI::Option& option) {
   static const std::regex k_ending(R"((^|[^.\w])(\.[A-Za-z][A-Za-z0-9]+)\b)");
   const std::string& help = option.get_description();
@@ -93,24 +93,24 @@ std::vector<std::string> endings_of(const CLI::Option& option) {
   return endings;
 }
 
-/// Where the cursor is.
+/// The position of the cursor in the command line.
 struct Place {
   CLI::App* command;
-  CLI::Option* awaited = nullptr;  ///< the option whose value comes next
-  bool has_value = false;          ///< it has one already, and may have more
+  CLI::Option* awaited = nullptr;  ///< option that expects a value next
+  bool has_value = false;          ///< it has a value and may take more
   std::set<const CLI::Option*> given = {};
-  std::size_t arguments = 0;  ///< how many stand before it
+  std::size_t arguments = 0;  ///< number of arguments before the cursor
 
-  /// Whether a word is a value of the option: a second one does not begin with a dash.
+  /// Whether the word is a value of the awaited option. A second value never begins with a dash.
   [[nodiscard]] bool awaits(const std::string& word) const {
     return awaited != nullptr && !(has_value && word.starts_with('-'));
   }
 };
 
-/// An option, and what is its value in the same word: "--output=part", "-opart".
+/// An option with a value in the same word: "--output=part", "-opart".
 struct OptionWord {
-  CLI::Option* option;  ///< null for no option
-  std::size_t value;    ///< where it begins; npos for none
+  CLI::Option* option;  ///< null without an option
+  std::size_t value;    ///< start of the value; npos without one
 };
 
 OptionWord option_in(CLI::App& command, const std::string& word) {
@@ -124,7 +124,7 @@ OptionWord option_in(CLI::App& command, const std::string& word) {
 
 void pass(Place& place, const std::string& word) {
   if (place.awaits(word)) {
-    if (word == "=") return;  // bash has three words for --option=value
+    if (word == "=") return;  // bash splits --option=value into three words
     place.has_value = true;
     if (!place.awaited->get_allow_extra_args()) place.awaited = nullptr;
     return;

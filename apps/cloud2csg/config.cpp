@@ -17,11 +17,11 @@
 namespace cloud2csg::app {
 namespace {
 
-/// A value, or the values of a list, as the command line would have them; empty when there is something else in it.
+/// A value, or the values of a list, as texts for the command line; empty for other contents.
 std::vector<std::string> texts_of(const toml::node& value) {
   if (const auto* text = value.as_string()) return {text->get()};
   if (const auto* whole = value.as_integer()) return {std::to_string(whole->get())};
-  // The shortest that is read as the same number.
+  // The shortest text that reads back as the same number.
   if (const auto* number = value.as_floating_point()) return {fmt::format("{}", number->get())};
   std::vector<std::string> texts;
   if (const toml::array* const list = value.as_array()) {
@@ -33,14 +33,13 @@ std::vector<std::string> texts_of(const toml::node& value) {
   return texts;
 }
 
-/// As a number, where it is read as the same text, else in quotes.
+/// A number if it reads back as the same text, else a quoted string.
 std::string toml_of(const std::string& text) {
   try {
     const toml::table table = toml::parse("x = " + text);
     const toml::node& value = *table.get("x");
     if (table.size() == 1 && value.is_number() && texts_of(value).front() == text) return text;
   } catch (const toml::parse_error&) {
-    // It is no number.
   }
   const toml::value<std::string> value(text);
   std::ostringstream quoted;
@@ -49,7 +48,7 @@ std::string toml_of(const std::string& text) {
   return quoted.str();
 }
 
-/// What texts_of() reads as these texts.
+/// The inverse of texts_of().
 std::string toml_of(const std::vector<std::string>& texts) {
   std::vector<std::string> items;
   items.reserve(texts.size());
@@ -61,23 +60,23 @@ std::string toml_of(const std::vector<std::string>& texts) {
   throw CLI::ConfigError(message, CLI::ExitCodes::ConfigError);
 }
 
-/// The option of this long name that a file may give.
+/// The configurable option with this long name.
 CLI::Option* option_named(CLI::App& command, const std::string& key) {
   CLI::Option* const option = command.get_option_no_throw("--" + key);
   return option != nullptr && option->get_configurable() ? option : nullptr;
 }
 
-/// The option by which a flag is turned off, and back on.
+/// The option that undoes a flag.
 CLI::Option* opposite_of(CLI::App& command, const std::string& key) {
   return option_named(command, key.starts_with("no-") ? key.substr(3) : "no-" + key);
 }
 
-/// Also those that are hidden.
+/// All subcommands, hidden ones included.
 std::vector<CLI::App*> commands_in(CLI::App& outer) {
   return outer.get_subcommands([](CLI::App* /*any*/) { return true; });
 }
 
-/// The options that may stand in the table of a command; with `with_inner` those of the commands inside as well.
+/// The options allowed in a command's table, with `with_inner` also those of nested commands.
 std::vector<std::string> option_names(CLI::App& command, bool with_inner) {
   std::vector<std::string> names;
   for (const CLI::Option* const option : command.get_options()) {
@@ -90,7 +89,7 @@ std::vector<std::string> option_names(CLI::App& command, bool with_inner) {
   return names;
 }
 
-/// Goes through a file, and gives the options of one command what it says.
+/// Reads a file and applies its options to one command.
 class ConfigReader {
  public:
   ConfigReader(CLI::App& command, std::string file) : command_(command), file_(std::move(file)) {
@@ -125,8 +124,7 @@ class ConfigReader {
     refuse_at(place, fmt::format("unknown {} '{}'{}", what, name, suggestion(name, known)));
   }
 
-  /// Tables of other commands are checked for names that these do not have. Before all tables stand options of any
-  /// command.
+  /// Checks names in the tables of other commands, too. Before all tables, options of any command may stand.
   void read_table(CLI::App& command, const toml::table& table) {
     const bool is_top = command.get_parent() == nullptr;
     const std::vector<std::string> options = option_names(command, is_top);
@@ -152,7 +150,7 @@ class ConfigReader {
            std::ranges::any_of(excluded, [this](CLI::Option* other) { return on_command_line_.contains(other); });
   }
 
-  /// Nothing where the command has no such option, or the command line wins.
+  /// Does nothing where the command has no such option or the command line wins.
   void set(const std::string& name, const toml::node& value) {
     CLI::Option* option = option_named(command_, name);
     if (option == nullptr) return;
@@ -180,7 +178,7 @@ class ConfigReader {
   std::set<CLI::Option*> on_command_line_;
 };
 
-/// A default as CLI11 has it: "5", or "[5,6]" of a list.
+/// Parses a default of CLI11: "5", or "[5,6]" for a list.
 std::vector<std::string> default_values(const std::string& text) {
   if (text.size() < 2 || text.front() != '[') return {text};
   return CLI::detail::split(text.substr(1, text.size() - 2), ',');
@@ -193,16 +191,16 @@ std::string flag_line(const CLI::Option& flag, const CLI::Option* opposite, cons
   return fmt::format("# {} = {}\n", key, !is_off);
 }
 
-/// "key = value", or as a comment where nothing is given and the help says what happens then.
+/// "key = value"; a comment where no value is given and the help describes the default.
 std::string value_line(const CLI::Option& option, const std::string& key) {
   if (option.count() > 0) return fmt::format("{} = {}\n", key, toml_of(option.results()));
   if (option.get_default_str().empty()) return fmt::format("# {} = {}\n", key, option.get_type_name());
-  // Of two options that exclude each other, a file may set one.
+  // A file may set only one of two exclusive options.
   const char* const mark = option.get_excludes().empty() ? "" : "# ";
   return fmt::format("{}{} = {}\n", mark, key, toml_of(default_values(option.get_default_str())));
 }
 
-/// The command's options in force as a file for --config: those without a value are comments.
+/// The options in force as a file for --config; options without a value are comments.
 std::string config_text(CLI::App& command) {
   const std::string path = path_text(command, ".");
   std::string text = fmt::format("# For --config. What begins with # is as the text over it says.\n\n[{}]\n",
@@ -212,7 +210,7 @@ std::string config_text(CLI::App& command) {
     if (option->get_lnames().empty() || !option->get_configurable()) continue;
     const std::string& key = option->get_lnames().front();
     const CLI::Option* const opposite = opposite_of(command, key);
-    if (key.starts_with("no-") && opposite != nullptr) continue;  // told by that one
+    if (key.starts_with("no-") && opposite != nullptr) continue;  // the other option's line covers it
     if (option->get_group() != group) text += fmt::format("\n## {}\n", option->get_group());
     group = option->get_group();
     text += "# " + replaced(option->get_description(), "\n", "\n# ") + "\n";

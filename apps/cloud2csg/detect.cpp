@@ -23,7 +23,7 @@ constexpr const char* k_endings = ".json .ply .png";
 
 struct DetectCommand {
   std::string cloud;
-  std::string primitives;  // that are known; empty: none
+  std::string primitives;  // known primitives; empty: none
   bool detect_rest = false;
   std::vector<std::string> outputs;
   ReconstructOptions options;
@@ -55,7 +55,7 @@ std::string sizes_text(const Surface& s) {
   return {};
 }
 
-/// A surface a line: what it is, how many points lie on it and how near.
+/// One line per surface with its type, number of points and fit.
 std::string surface_table(const std::vector<DetectedSurface>& surfaces) {
   std::string table;
   for (const DetectedSurface& found : surfaces) {
@@ -66,7 +66,7 @@ std::string surface_table(const std::vector<DetectedSurface>& surfaces) {
   return table;
 }
 
-/// By point, the colour of the primitive that it lies on.
+/// By point: the colour of its primitive.
 std::vector<Colour> colours_of(const Extraction& found) {
   std::vector<Colour> colours(found.cloud.size(), k_no_primitive_colour);
   for (std::size_t k = 0; k < found.points.size(); ++k) {

@@ -41,7 +41,6 @@ std::string cells_line(const CellStatistics& cells) {
                      cells.open_cells, 100 * cells.contradicted_share());
 }
 
-/// How the tree was found.
 std::string way_line(const ExtractStatistics& s) {
   if (s.cells) return cells_line(*s.cells);
   if (s.finding && s.finding->is_tree_of_choice) return "way          the tree that the solids were chosen with";
@@ -60,7 +59,6 @@ std::string refine_line(const RefineStatistics& s) {
                      s.rms_before, s.rms_after, shift, turn, s.regularities.size());
 }
 
-/// How the primitives were found.
 std::vector<std::string> finding_lines(const FindingStatistics& s, const StageSeconds& seconds) {
   const auto count = [&s](SurfaceType type) { return std::ranges::count(s.surfaces, type); };
   const LargestChange largest = largest_change(s.snaps);
@@ -97,7 +95,7 @@ std::string stage_times(const StageSeconds& seconds) {
   return text;
 }
 
-/// What an extraction found, in a few lines: points, primitives, partitions, tree, fit, time by stage, files.
+/// A summary in a few lines: points, primitives, partitions, tree, fit, time by stage, files.
 std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const std::string> files) {
   std::vector<std::string> lines;
   if (s.finding) lines = finding_lines(*s.finding, s.seconds);
@@ -134,7 +132,7 @@ struct ExtractCommand {
   ExportOptions exporting;
   PictureOptions drawing;
   RunOptions running;
-  std::vector<ReportParameter> parameters;  // options, for reports
+  std::vector<ReportParameter> parameters;
 
   void prepare();
   void settle(const CLI::App& app);
@@ -142,7 +140,7 @@ struct ExtractCommand {
   /// `given` is empty when all primitives are to be found.
   [[nodiscard]] Extraction extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
   [[nodiscard]] Extraction extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
-  /// What is going to be written, after a look at whether it can be.
+  /// The outputs, after checking that they can be written.
   [[nodiscard]] std::vector<std::string> check_files() const;
   [[nodiscard]] PointCloud unexplained_part(const Extraction& result, int threads) const;
   [[nodiscard]] AddedModels write(const Extraction& result, const RunContext& run, OutputSet& written) const;
@@ -169,7 +167,6 @@ void check_normals(const PointCloud& cloud, const std::string& file) {
                  "to find them anew"});
 }
 
-/// The points that the tree contradicts.
 PointCloud ExtractCommand::unexplained_part(const Extraction& result, int threads) const {
   const std::vector<std::uint32_t> indices =
       unexplained_points(result.model, result.cloud, result.statistics.fit.tolerances, {.threads = threads});
@@ -191,7 +188,7 @@ AddedModels ExtractCommand::write(const Extraction& result, const RunContext& ru
   model.description = comment;
   ExportOptions commented = exporting;
   commented.openscad.comment = commented.script.comment = comment;
-  // Not to be stopped: what has been found is written also after an interrupt.
+  // No stop here: an interrupt still writes the result so far.
   return naming(primitives.empty() ? cloud : primitives,
                 [&] { return add_models(written, outputs, model, commented, without_stop(run)); });
 }

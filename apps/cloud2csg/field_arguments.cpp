@@ -11,11 +11,11 @@
 namespace cloud2csg::app {
 namespace {
 
-// Names of validators, by which they are known again.
+// Names that identify validators.
 constexpr const char* k_choices = "one of ";
 constexpr const char* k_file = "file";
 
-/// CLI11 does not tell how many an option has, and throws after the last.
+/// CLI11 does not report the number of validators and throws after the last.
 std::vector<std::string> validator_names(CLI::Option& option) {
   std::vector<std::string> names;
   try {
@@ -29,7 +29,7 @@ std::string refusal(const std::string& expected, const std::string& found) {
   return fmt::format("expected {}, found '{}'", expected, found);
 }
 
-/// `is_right` judges a text, and may bring it into the form that CLI11 reads.
+/// `is_right` checks a text and may rewrite it for CLI11.
 template <typename IsRight>
 CLI::Validator validator(std::string expected, IsRight is_right) {
   return {[expected = std::move(expected), is_right = std::move(is_right)](std::string& text) {
@@ -38,7 +38,6 @@ CLI::Validator validator(std::string expected, IsRight is_right) {
           ""};
 }
 
-/// Of a text of several sentences; without its full stop.
 std::string first_sentence(std::string_view text) {
   for (std::size_t i = 1; i < text.size(); ++i) {
     const bool is_end = i + 1 == text.size() || text[i + 1] == ' ';
@@ -182,7 +181,7 @@ const FieldArguments::Name* FieldArguments::name_of(const std::string& field, co
 }
 
 std::string FieldArguments::long_option(const OptionField& field) {
-  // A switch that is on unless it is turned off has the option that does so only.
+  // A switch that is on by default has only the option that turns it off.
   if (field.option.empty() && !field.opposite.empty()) return {};
   const std::string name = option_name(field);
   return name.empty() ? name : "--" + name;

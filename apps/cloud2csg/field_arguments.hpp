@@ -16,32 +16,29 @@
 #include "cloud2csg/advanced/option_table.hpp"
 #include "command.hpp"
 
-/// Options structs as options of a command, made from their tables.
+/// Converts options structs to options of a command by their tables.
 namespace cloud2csg::app {
 
-// What the text of an option's value must be. Each refuses anything else in one line that says what was expected and
-// what was found; those of CLI11 are terse, take not-a-number for a number and 010 for 8.
+// Validators with one-line errors that name the expected and the found value. CLI11's accept NaN and read 010 as 8.
 
-/// A number in a range, in decimal digits; brings it into the form that CLI11, which takes leading zeros for the mark
-/// of octal numbers, reads as the same.
+/// A decimal number in a range. Strips leading zeros, which CLI11 takes for octal.
 template <typename Number>
 [[nodiscard]] CLI::Validator number_in(const OptionRange& range);
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> names);
 /// A list of directions: see parse_directions().
 [[nodiscard]] CLI::Validator directions();
-/// Any text but an empty one.
+/// Any non-empty text.
 [[nodiscard]] CLI::Validator file_name();
 
-/// All values that an option takes, when one_of() checks it.
+/// The allowed values of an option checked by one_of().
 [[nodiscard]] std::vector<std::string> choices_of(CLI::Option& option);
-/// Whether its value is checked by file_name().
+/// Whether file_name() checks the option's value.
 [[nodiscard]] bool names_a_file(CLI::Option& option);
 
-/// The directions of a list with commas: x, y, z, or three numbers each that are not all 0, as in "x,y,1,1,0". Absent
-/// for any other text.
+/// Directions separated by commas: x, y, z, or three numbers that are not all 0 ("x,y,1,1,0"). Absent for other text.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector3d>> parse_directions(const std::string& text);
 
-/// The number, when that is all there is in a text and it fits.
+/// The number, if it is the whole text and in the type's range.
 template <typename Number>
 [[nodiscard]] std::optional<Number> parsed(const std::string& text) {
   Number value{};
@@ -51,9 +48,9 @@ template <typename Number>
   return value;
 }
 
-// How values of options structs are read: a trait a type, since each is checked, read and named by its own rules.
+// A trait per type that checks, reads and names its values.
 
-/// Of types that the command line does not know.
+/// Types without a specialisation have no option.
 template <typename Value>
 struct ValueReader {};
 template <typename Value>
@@ -92,7 +89,7 @@ struct ValueReader<std::optional<Value>> : ValueReader<Value> {
   }
 };
 
-/// Lists of lengths stand in one word, with commas; of others each is a word.
+/// Lists of lengths are one word with commas; other lists have one word per value.
 template <typename Value>
 struct ValueReader<std::vector<Value>> : ValueReader<Value> {
   static void check(CLI::Option& option, const OptionRange& range) {
@@ -107,7 +104,7 @@ struct ValueReader<std::vector<Value>> : ValueReader<Value> {
   }
 };
 
-/// Of which several may stand in a word: see parse_directions().
+/// One word may hold several directions: see parse_directions().
 template <>
 struct ValueReader<std::vector<Eigen::Vector3d>> {
   static constexpr std::string_view k_type = "A,A...";
@@ -118,18 +115,18 @@ struct ValueReader<std::vector<Eigen::Vector3d>> {
 /// Which fields of a struct a command has, and where.
 template <typename Options>
 struct FieldPlace {
-  std::string group;                        ///< of the help
-  std::string path = {};                    ///< where the struct stands in others, for messages: "extraction."
-  std::optional<Options> paper = {};        ///< values of the preset `paper`, where the command has presets
-  std::vector<std::string_view> only = {};  ///< these fields; empty: all
+  std::string group;
+  std::string path = {};                    ///< path of a nested struct for messages: "extraction."
+  std::optional<Options> paper = {};        ///< values of the preset `paper`, if the command has presets
+  std::vector<std::string_view> only = {};  ///< only these fields; empty: all
 };
 
 class FieldArguments {
  public:
   explicit FieldArguments(CLI::App& app) : app_(app) {}
 
-  /// Adds the options of a struct's fields; their defaults are the values that it has. Fields whose options have one
-  /// name share it. What is given goes into `options` by take(), so it must live as long as this.
+  /// Adds options for the fields of a struct, with its values as defaults. Fields with the same option name share one
+  /// option. take() writes into `options`, which must outlive this object.
   template <HasOptionTable Options>
   void add(Options& options, const FieldPlace<std::type_identity_t<Options>>& place) {
     note_names<Options>(place.path);
@@ -137,22 +134,20 @@ class FieldArguments {
     takes_.emplace_back([&options, path = place.path] { validate(options, path); });
   }
 
-  /// Gives the structs what the command line gave. @throws CLI::ValidationError naming the option for values that are
-  /// each right, but not together.
+  /// Writes the options into the structs. @throws CLI::ValidationError naming the option when values conflict.
   void take() const;
 
-  /// An error of the library in the words of the command line: options for the names of fields.
+  /// The error with options in place of field names.
   [[nodiscard]] Error respelled(const Error& error) const;
 
  private:
   struct Name {
-    std::string path, option;  ///< "search.elites", "--elites"; none where the command line has none
+    std::string path, option;  ///< "search.elites", "--elites"; empty without an option
   };
-  /// What is shown of a value.
   struct ValueHelp {
     std::string type;                ///< "N"
-    std::string default_value = {};  ///< empty: told in the note
-    std::string note = {};           ///< what to add to the help: " (default: none)"
+    std::string default_value = {};  ///< empty: described in the note
+    std::string note = {};           ///< suffix of the help: " (default: none)"
   };
 
   template <typename Options>
@@ -186,7 +181,7 @@ class FieldArguments {
     });
   }
 
-  /// An option that was not given has what is in force as its default once it is taken: for reports.
+  /// When taken, an option that was not given gets the value in force as its default, for reports.
   template <typename Value>
   void add_value(const OptionField& field, Value& value, const ValueHelp& help, const std::string& group,
                  const std::string& path) {
@@ -211,7 +206,7 @@ class FieldArguments {
     }
     const std::string of_paper = value_text(paper);
     if (!help.default_value.empty() && help.default_value == of_paper) {
-      // As CLI11 has it.
+      // In CLI11's form.
       if constexpr (requires { now.size(); }) help.default_value = "[" + value_text(now, ",") + "]";
       return help;
     }
@@ -227,7 +222,7 @@ class FieldArguments {
   void add_flags(const OptionField& field, bool& now, bool paper, const std::string& group, const std::string& path);
   CLI::Option* add_option(const OptionField& field, const ValueHelp& help, const std::string& group,
                           const std::string& path);
-  /// With options for the `fields` that a text speaks of; of those at the path first.
+  /// The text with options in place of `fields`; prefers fields at the path.
   [[nodiscard]] std::string respelled(const std::string& text, const std::string& path) const;
   [[nodiscard]] const Name* name_of(const std::string& field, const std::string& path) const;
 
@@ -236,8 +231,8 @@ class FieldArguments {
   std::vector<Name> names_;
 };
 
-/// A subcommand that `work` does, an object of a command's file. `add_options` adds its own options and those of its
-/// structs; work.prepare() comes before these get what was given, work.settle() afterwards, where there are any.
+/// A subcommand whose action and options are those of a `Work`. `add_options` adds its options. work.prepare() runs
+/// before values are set and work.settle() after, where they exist.
 template <typename Work>
 [[nodiscard]] Command make_command(CLI::App& app, void (*add_options)(CLI::App&, Work&, FieldArguments&)) {
   auto work = std::make_shared<Work>();

@@ -100,7 +100,7 @@ std::string plain(const std::string& name, const Json& value) {
   return value.dump();
 }
 
-/// A line a field, what is inside of a field indented under it.
+/// One line per field, nested fields indented.
 std::string to_table(const Json& fields, const std::string& indent) {
   std::string table;
   std::size_t width = 14 - indent.size();

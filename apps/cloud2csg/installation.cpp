@@ -21,16 +21,16 @@ namespace cloud2csg::app {
 namespace {
 
 constexpr std::string_view k_fine = "ok";
-constexpr std::string_view k_absent = "absent";  // left out, and most works without
-constexpr std::string_view k_broken = "BROKEN";  // should be there
+constexpr std::string_view k_absent = "absent";  // left out; most features work without it
+constexpr std::string_view k_broken = "BROKEN";  // should be present
 
-/// What is told of a part.
+/// The state of a part of the installation.
 struct Finding {
   std::string_view state;
   std::string part, text, remedy = {};
 };
 
-/// The widest of those that were compiled and that the processor has: the lowest bit, as Highway orders them.
+/// The widest compiled instruction set that the processor supports: Highway's lowest bit.
 std::string instruction_set() {
   const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
   return usable == 0 ? "none" : hwy::TargetName(usable & -usable);
@@ -52,7 +52,6 @@ Finding reports() {
           "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"};
 }
 
-/// A program of others that ours works with.
 Finding helper(const std::string& part, const std::string& name, const std::string& without,
                const std::string& package) {
   const char* const search_path = std::getenv("PATH");
@@ -68,7 +67,7 @@ Finding models() {
           "install cloud2csg anew"};
 }
 
-/// Looks at all parts; takes as long as OpenCASCADE takes to load.
+/// Examines all parts; takes as long as loading OpenCASCADE.
 std::vector<Finding> examine_installation() {
   const Environment here = current_environment();
   return {{k_fine, "cloud2csg", fmt::format("{}, built by {}", here.version, here.compiler)},

@@ -28,18 +28,18 @@ constexpr int k_wrong_usage = 2;
 
 int complain(int status, std::string_view message) {
   const std::string line = "cloud2csg: " + visible_text(message) + "\n";
-  std::fputs(line.c_str(), stderr);  // throws nothing when nobody reads it
+  std::fputs(line.c_str(), stderr);  // does not throw when nobody reads it
   return status;
 }
 
-/// Ends like other tools whose reader has had enough: by the signal, without a word.
+/// Ends silently by SIGPIPE when the reader has gone, like other tools.
 void end_if_unread(int error_number) {
   if (error_number != EPIPE) return;
   std::signal(SIGPIPE, SIG_DFL);
   std::raise(SIGPIPE);
 }
 
-/// The exit status when everything on standard output has been written.
+/// Exit status after flushing standard output.
 int flushed() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return k_done;
   end_if_unread(errno);
@@ -71,7 +71,7 @@ int run_command(const Command& command) {
   return flushed();
 }
 
-/// The words of the command line; "help extract" is "extract --help".
+/// The words of the command line; "help extract" becomes "extract --help".
 std::vector<std::string> words_of(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.empty() || words.front() != "help") return words;
@@ -80,14 +80,13 @@ std::vector<std::string> words_of(int argc, char** argv) {
   return words;
 }
 
-/// The text of --help or --version.
 int print_asked(const CLI::App& program, const CLI::ParseError& asked) {
   std::ostringstream text;
   program.exit(asked, text, text);
   return print(text.str());
 }
 
-/// What there is to choose from, when no command was chosen.
+/// Prints the commands when none was chosen.
 int explain(const CLI::App& program) {
   std::fputs(program.help().c_str(), stderr);
   return k_wrong_usage;
@@ -101,10 +100,10 @@ int run(int argc, char** argv) {
                                       add_view(program),    add_info(program),       add_bench(program),
                                       add_doctor(program),  add_completion(program), add_manual(program)};
   std::vector<std::string> words = words_of(argc, argv);
-  // As shells ask: the words may be anything, so they are not parsed.
+  // Not parsed, since a shell may pass any words.
   if (!words.empty() && words.front() == "complete") return print(completions(program, std::span(words).subspan(1)));
   try {
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    std::reverse(words.begin(), words.end());  // CLI11 expects reverse order
     program.parse(std::move(words));
   } catch (const PrintedConfig& asked) {
     return print(asked.what());
@@ -124,9 +123,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace cloud2csg;
-  // A limit on the size of files is then an error of writing like a full disk.
+  // A file size limit then causes a write error, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  std::signal(SIGPIPE, SIG_IGN);  // and a reader that went away likewise
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe likewise
   try {
     return app::run(argc, argv);
   } catch (const Cancelled&) {

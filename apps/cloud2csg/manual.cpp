@@ -14,7 +14,7 @@
 namespace cloud2csg::app {
 namespace {
 
-/// Text as roff takes it: no letters that mean something to it, no line that starts with a request.
+/// Escapes text for roff: special letters and lines that start with a request.
 std::string plain(const std::string& text) {
   std::string roff = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   roff = replaced(roff, "\n.", "\n\\&.");
@@ -119,7 +119,7 @@ Wrong usage.
 Interrupted twice.
 )";
 
-/// Its page, in roff.
+/// The command's manual page in roff.
 std::string manual_page(CLI::App& command, CLI::App& program) {
   const std::string name = path_text(command, "-");
   const std::string footer = command.get_footer();
@@ -146,7 +146,7 @@ std::string manual_page(CLI::App& command, CLI::App& program) {
 
 Command add_manual(CLI::App& program) {
   CLI::App* app = program.add_subcommand("manual", "Writes the pages of the manual, for the build");
-  app->group("");  // nothing for users: they have the pages
+  app->group("");  // hidden: users have the built pages
   app->footer(example("  cloud2csg manual share/man/man1"));
   auto folder = std::make_shared<std::string>();
   app->add_option("folder", *folder, "Folder that is there")->check(file_name())->required()->type_name("DIR");

@@ -20,7 +20,7 @@
 namespace cloud2csg::app {
 namespace {
 
-/// What can be downloaded from a page as well as it can be had in a file of its own.
+/// Formats that a page can offer as downloads.
 bool is_text_model(const std::filesystem::path& file) {
   const FileFormat* const format = format_by_ending(file);
   return format->kind == FileKind::model || format->kind == FileKind::script || format->id == FileFormat::Id::step;
@@ -30,7 +30,7 @@ std::string corner(const Eigen::Vector3d& point) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", point.x(), point.y(), point.z());
 }
 
-/// What a user should know of a solid that was written, and the file does not say.
+/// Adds what a user should know about a written solid and cannot see in the file.
 void add_brep_warnings(std::vector<std::string>& warnings, const std::string& file, const BrepReport& report,
                        const PrimitiveSet& primitives, const BrepOptions& options) {
   for (const FailedNode& failed : report.failed) {
@@ -48,13 +48,12 @@ void add_brep_warnings(std::vector<std::string>& warnings, const std::string& fi
   }
 }
 
-/// A file that a user names is to have a part of this name, not of the temporary one that is written.
+/// Names the part after the user's file instead of the temporary one.
 ExportOptions named_for(const std::string& file, ExportOptions options) {
   if (options.brep.name.empty()) options.brep.name = std::filesystem::path(file).stem().string();
   return options;
 }
 
-/// Empty when it has none.
 std::string value_of(const CLI::Option& option) {
   if (option.count() == 0) return option.get_default_str();
   if (option.get_expected_max() == 0) return "yes";

@@ -13,28 +13,26 @@
 
 namespace cloud2csg::app {
 
-/// What write_point_cloud() takes; what export_model(), write_report() and write_picture() take.
+/// Endings for write_point_cloud(); endings for export_model(), write_report() and write_picture().
 [[nodiscard]] std::string cloud_endings();
 [[nodiscard]] std::string model_endings();
 
-/// Finds before the work starts what would stop the result from being written when it ends.
-/// @throws WrongUsage for an ending that is not among `endings`, which blanks separate; Error for a folder that is
-/// missing or cannot be written to, a file of another format that is there.
+/// Checks before the work whether the result can be written. @throws WrongUsage for an ending that is not in `endings`
+/// (separated by blanks); Error for a missing or read-only folder, or an existing file of another format.
 void check_output(const std::filesystem::path& file, const std::string& endings, bool is_statistics = false);
 
-/// Whether a model must have a tree to be written to a file of this ending.
+/// Whether a file of this ending needs a model with a tree.
 [[nodiscard]] bool needs_tree(const std::filesystem::path& file);
 
 struct AddedModels {
   std::vector<std::string> warnings;  ///< what the formats cannot hold
-  std::vector<ReportDownload> texts;  ///< what was written as text, for a report
+  std::vector<ReportDownload> texts;  ///< text files, for a report
 };
 
-/// Writes a model to those files of a set that are no reports. @throws Error, Cancelled
+/// Writes a model to the `files` that are neither reports nor pictures. @throws Error, Cancelled
 [[nodiscard]] AddedModels add_models(OutputSet& set, std::span<const std::string> files, const Model& model,
                                      const ExportOptions& options, const RunContext& run);
 
-/// Whether a file is to be a picture, or a page, by its ending.
 [[nodiscard]] bool is_picture(const std::filesystem::path& file);
 [[nodiscard]] bool is_report(const std::filesystem::path& file);
 
@@ -42,20 +40,20 @@ struct AddedModels {
 void add_pictures(OutputSet& set, std::span<const std::string> files, const Scene& scene, const PictureOptions& options,
                   const RunContext& run);
 
-/// Refuses a list of inputs and outputs in which two name the same file. @throws WrongUsage
+/// Refuses a list in which two names are the same file. @throws WrongUsage
 void check_distinct(std::span<const std::string> files);
 
-/// Both for all outputs of a command, which are also not to be its `inputs`.
+/// check_output() and check_distinct() for all outputs of a command and its `inputs`.
 void check_outputs(std::span<const std::string> outputs, const std::string& endings,
                    std::span<const std::string> inputs = {});
 
-/// Writes a cloud to each of the files, or to none. @throws Error
+/// Writes a cloud to all files, or to none. @throws Error
 void write_clouds(std::span<const std::string> files, const PointCloud& cloud, const CloudWriteOptions& options);
 
-/// @throws Error naming the file when this build has no page to make reports of.
+/// @throws Error naming the file when this build has no report page.
 void check_report_page(const std::string& file);
 
-/// The options of a subcommand that have a value: given, or by default. No switches that were not given.
+/// All options of a subcommand with a given or default value; no switches that were not given.
 [[nodiscard]] std::vector<ReportParameter> parameters_of(const CLI::App& command);
 
 /// Writes the reports among `files`. @throws Error, Cancelled

@@ -28,7 +28,7 @@ bool is_own_host(const std::string& host, int port) {
   return host == k_loopback + with_port || host == "localhost" + with_port;
 }
 
-/// Everything but the page itself is refused before it is looked at.
+/// Refuses all requests except for the page itself.
 httplib::Server::HandlerResponse refuse_others(const httplib::Request& request, httplib::Response& response, int port) {
   int status = 0;
   if (!is_own_host(request.get_header_value("Host"), port)) {
@@ -49,7 +49,7 @@ void prepare(httplib::Server& server, const std::string& page) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
-  // Who connects and says nothing does not keep it from ending.
+  // A silent client must not delay the end.
   server.set_read_timeout(k_read_timeout);
   server.set_keep_alive_timeout(k_read_timeout.count());
   server.set_default_headers({{"X-Content-Type-Options", "nosniff"},
@@ -77,7 +77,7 @@ void wait_for(const std::stop_token& stop) {
   changed.wait(lock, stop, [] { return false; });
 }
 
-/// Fails when xdg-open does so within a second. What goes on, as a browser may, is not waited for.
+/// Fails if xdg-open fails within a second. Does not wait for longer runs, such as a browser.
 constexpr const char* k_open = R"(xdg-open "$1" &
 for tenth in 1 2 3 4 5 6 7 8 9 10; do kill -0 $! || break; sleep 0.1; done
 kill -0 $! || wait $!)";
@@ -95,7 +95,7 @@ void serve_page(const std::string& page, int port, const std::stop_token& stop,
   std::thread listener([&server] { server.listen_after_bind(); });
   on_ready(fmt::format("http://{}:{}/", k_loopback, bound));
   wait_for(stop);
-  // A stop before it listens would be lost.
+  // A stop before the server listens would be lost.
   while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   server.stop();
   listener.join();

@@ -7,7 +7,7 @@
 #include "cloud2csg/reconstruct.hpp"
 #include "field_arguments.hpp"
 
-/// The options of the way from a raw cloud or mesh to primitives, which `extract` and `detect` have.
+/// Options from a raw cloud or mesh to primitives, shared by `extract` and `detect`.
 namespace cloud2csg::app {
 
 inline void add_cloud(CLI::App& app, std::string& file) {
@@ -21,7 +21,7 @@ inline CLI::Option* add_primitives(CLI::App& app, std::string& file, const std::
   return app.add_option("--primitives", file, whole)->check(file_name())->type_name("MODEL")->group("Input");
 }
 
-/// One file may have both cloud and primitives; an empty name is none.
+/// Cloud and primitives may be in one file; an empty name means none.
 [[nodiscard]] inline std::vector<std::string> inputs_of(const std::string& cloud, const std::string& primitives) {
   return primitives.empty() || primitives == cloud ? std::vector{cloud} : std::vector{cloud, primitives};
 }
@@ -31,14 +31,14 @@ inline void add_raw_options(FieldArguments& fields, ReconstructOptions& options,
   fields.add(reading, {.group = "Finding primitives"});
 }
 
-/// One seed for all that is random, and no more points of a mesh than would be kept.
+/// Shares the seed, and draws no more points from a mesh than the point budget keeps.
 inline void share_values(ReconstructOptions& options, InputOptions& reading) {
   reading.seed = options.extraction.seed;
   options = with_seed(std::move(options), reading.seed);
   reading.mesh_points = std::min(reading.mesh_points, options.preparation.clean.point_budget);
 }
 
-/// Points drawn from a mesh lie on it, and so do not have to be looked at.
+/// Points drawn from a mesh are exact and need no cleaning.
 [[nodiscard]] inline ReconstructOptions options_for(const Input& input, ReconstructOptions options) {
   options.preparation.is_exact = input.mesh.has_value() && options.preparation.keep_normals;
   return options;

@@ -26,14 +26,13 @@ constexpr std::array k_signals{SIGINT, SIGTERM, SIGHUP};
 constexpr char k_byte_interrupt = 'i';
 constexpr char k_byte_quit = 'q';
 
-// A signal handler has no argument: this is the one way to reach it.
+// Global, since a signal handler has no argument.
 std::atomic<int> pipe_write_end = -1;   // NOLINT(readability-identifier-naming)
 std::atomic<bool> is_stopping = false;  // NOLINT(readability-identifier-naming)
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "only lock-free atomics may be used in a signal handler");
 
-/// Only async-signal-safe calls: std::stop_source::request_stop() runs callbacks and may take locks, so the watcher
-/// thread calls it.
+/// Async-signal-safe: the watcher thread calls std::stop_source::request_stop(), which may take locks.
 extern "C" void on_interrupt(int /*signal*/) {
   if (is_stopping.exchange(true)) {
     remove_temporaries();
@@ -47,19 +46,19 @@ extern "C" void on_interrupt(int /*signal*/) {
 constexpr std::chrono::milliseconds k_redraw_interval{50};
 constexpr std::size_t k_bar_width = 30;
 constexpr std::string_view k_clear_line = "\r\x1b[K";
-/// What is left of a stage is not told before it has run so long: the first steps say little of the others.
+/// A forecast from the first steps would be unreliable.
 constexpr double k_seconds_before_forecast = 1;
 
-/// "4.1 M": three digits at most, and a letter for thousands.
+/// "4.1 M": at most three digits and a letter for thousands.
 std::string short_number(double value) {
   constexpr std::array<std::string_view, 4> k_thousands{"", " k", " M", " G"};
   std::size_t power = 0;
-  // 999.5 would be rounded to 1000.
+  // 999.5 would round to 1000.
   while (value >= 999.5 && power + 1 < k_thousands.size()) value /= 1000, ++power;
   return fmt::format("{:.{}f}{}", value, value < 9.95 ? 1 : 0, k_thousands[power]);
 }
 
-/// Empty for what says nothing: one of something, or no time.
+/// Empty where a rate means nothing: a count of one, or no time.
 std::string rate_text(std::size_t count, std::string_view unit, double seconds) {
   if (unit.empty() || count < 2 || seconds <= 0) return {};
   return fmt::format("{} {}/s", short_number(static_cast<double>(count) / seconds), unit);
@@ -72,7 +71,7 @@ std::string time_text(double seconds) {
   return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
-/// By what was done in `seconds`.
+/// Extrapolates from the steps done in `seconds`.
 std::string forecast(const Progress& progress, double seconds) {
   if (progress.done == 0 || progress.done >= progress.total || seconds < k_seconds_before_forecast) return {};
   const auto left = static_cast<double>(progress.total - progress.done);

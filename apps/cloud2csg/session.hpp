@@ -15,8 +15,8 @@
 
 namespace cloud2csg::app {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP requests a stop and the second ends the program at once, with
-/// status 130, less the temporary files that it was writing. At most one at a time.
+/// During its lifetime, the first SIGINT, SIGTERM or SIGHUP requests a stop. The second removes temporary files and
+/// ends the program with status 130. At most one object at a time.
 class InterruptWatcher {
  public:
   InterruptWatcher();
@@ -30,34 +30,33 @@ class InterruptWatcher {
 
  private:
   std::stop_source stop_;
-  std::array<struct sigaction, 3> old_ = {};  ///< what each signal did
+  std::array<struct sigaction, 3> old_ = {};  ///< previous actions
   int pipe_read_ = -1;
   std::thread watcher_;
 };
 
 enum class ProgressStyle {
-  none,   ///< says nothing
-  lines,  ///< one line a stage, when it has ended: for logs
-  bar,    ///< the running stage as a bar that is drawn over, on a terminal
+  none,
+  lines,  ///< one line per completed stage, for logs
+  bar,    ///< the running stage as a redrawn bar, on a terminal
   color_bar,
 };
 
-/// `bar` only when the file is a terminal that can move its cursor; with colour unless NO_COLOR is set (no-color.org).
+/// `bar` if the file is a terminal with cursor control, with colour unless NO_COLOR is set (no-color.org).
 [[nodiscard]] ProgressStyle progress_style(std::FILE* out, bool quiet);
 
 using ProgressClock = std::chrono::steady_clock;
 
-/// Shows how far the stages are. A stage ends when all of it is done, when the next one starts, or with finish(); its
-/// time is counted from the end of the one before. Stages that count something get counts, rate and the time left:
+/// Shows the progress of stages. A stage ends when all of it is done, when the next one starts, or with finish(). Its
+/// time starts at the end of the previous one. Stages with a unit show counts, rate and remaining time:
 ///
 ///     read         [#########.....................]  30 %  4.1 M points/s  2 s left
 ///     read         2.441 s  10000000 points, 4.1 M points/s
 class ProgressDisplay {
  public:
-  /// `now` tells the time.
   ProgressDisplay(std::FILE* out, ProgressStyle style,
                   std::function<ProgressClock::time_point()> now = &ProgressClock::now);
-  /// Ends the running stage; one that was left by an exception has not ended and gets no line.
+  /// Ends the running stage, unless an exception left it: then it gets no line.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -65,13 +64,12 @@ class ProgressDisplay {
   ProgressDisplay& operator=(ProgressDisplay&&) = delete;
 
   void update(const Progress& progress);
-  /// Ends the running stage and prints a line of its own.
+  /// Ends the running stage and prints the line.
   void note(std::string_view line);
-  /// Ends the running stage.
   void finish();
 
  private:
-  /// Work does not end because nobody reads of its progress: nothing is thrown.
+  /// Throws nothing: work goes on when nobody reads the progress.
   void put(const std::string& text) const;
   [[nodiscard]] bool has_bar() const { return style_ == ProgressStyle::bar || style_ == ProgressStyle::color_bar; }
   [[nodiscard]] std::string bar(const Progress& progress, double seconds) const;
@@ -80,27 +78,26 @@ class ProgressDisplay {
   std::FILE* out_;
   ProgressStyle style_;
   std::function<ProgressClock::time_point()> now_;
-  std::string stage_;      ///< the running one; empty for none
-  std::string ended_;      ///< the last one that ended
-  std::string unit_;       ///< of what the running one counts; empty for nothing
-  std::size_t count_ = 0;  ///< of these, as far as it is known
+  std::string stage_;      ///< running stage; empty: none
+  std::string ended_;      ///< last completed stage
+  std::string unit_;       ///< unit of the running stage; empty: none
+  std::size_t count_ = 0;  ///< counted units so far
   ProgressClock::time_point stage_start_;
   ProgressClock::time_point last_drawn_ = {};
 };
 
-/// Options that every subcommand with work to do has.
+/// Options of every subcommand with work to do.
 struct RunOptions {
   int threads = 0;  ///< 0 = all cores
   bool quiet = false;
 };
 
-/// Progress on standard error while it lives.
+/// Shows progress on standard error during its lifetime.
 class Session {
  public:
   Session(const RunOptions& options, std::stop_token stop);
   [[nodiscard]] const RunContext& run() const { return run_; }
   [[nodiscard]] ProgressDisplay& display() { return display_; }
-  /// A note each.
   void warn(const std::vector<std::string>& warnings);
 
  private:

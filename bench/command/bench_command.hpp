@@ -7,10 +7,9 @@
 #include "command.hpp"
 #include "field_arguments.hpp"
 
-/// What the experiments of `bench` have in common.
 namespace cloud2csg::app {
 
-// Each adds its subcommand to bench; one file an experiment.
+// Each adds its subcommand to bench; one file per experiment.
 [[nodiscard]] Command add_bench_paper(CLI::App& bench);
 [[nodiscard]] Command add_bench_compare(CLI::App& bench);
 [[nodiscard]] Command add_bench_scaling(CLI::App& bench);
@@ -20,10 +19,9 @@ void add_results_folder(CLI::App& app, std::string& folder);
 /// @throws Error
 void make_folder(const std::filesystem::path& folder);
 
-/// The threads that a run with this option uses.
 [[nodiscard]] int threads_of(const RunOptions& running);
 
-/// What `work` returns. When it is interrupted, says how to go on.
+/// The result of `work`. When interrupted, tells how to continue.
 template <typename Work>
 auto resumable(const std::string& folder, Session& session, const Work& work) {
   try {

@@ -32,7 +32,7 @@ std::filesystem::path PaperCommand::models_folder() const {
   throw Error({.expected = "the shipped models are not beside the program", .remedy = "name their folder by --models"});
 }
 
-/// All models of a folder, by name.
+/// Sorted names of all models in a folder.
 std::vector<std::string> model_names(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::error_code failure;

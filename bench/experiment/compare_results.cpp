@@ -24,7 +24,7 @@ constexpr std::array<ComparedMeasure, 4> k_measures{
      {"rms distance", [](const PaperRun& run) { return run.fit.rms_distance; }, false},
      {"evaluations", [](const PaperRun& run) { return static_cast<double>(run.evaluations); }, false}}};
 
-/// All but repeats and their seeds.
+/// All options except repeats and seeds must be equal.
 void check_comparable(const PaperOptions& a, const PaperOptions& b) {
   for_each_field<PaperOptions>([&](auto member, const OptionField& field) {
     if (field.name == "repeats" || field.name == "seed" || a.*member == b.*member) return;
@@ -37,7 +37,7 @@ void check_comparable(const PaperOptions& a, const PaperOptions& b) {
 
 Verdict judge(const Change& change, double least_change, double error_rate) {
   if (change.before.count < 2 || change.after.count < 2) return Verdict::unknown;
-  // Not by the relative change, which a mean of 0 before does not have.
+  // Not the relative change: it does not exist for a mean of 0 before.
   const double difference = change.after.mean - change.before.mean;
   const bool matters = std::abs(difference) >= least_change * std::abs(change.before.mean);
   if (difference == 0 || !matters || welch_test(change.before, change.after) >= error_rate) return Verdict::same;
@@ -48,7 +48,6 @@ double relative_change(const Spread& before, const Spread& after) {
   return before.mean == 0 ? 0 : after.mean / before.mean - 1;
 }
 
-/// What is compared, without verdicts.
 std::vector<Change> measured_changes(const PaperResults& before, const PaperResults& after) {
   std::vector<Change> changes;
   for (const ComparedMeasure& compared : k_measures) {

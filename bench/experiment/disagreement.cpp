@@ -10,7 +10,7 @@ namespace cloud2csg {
 namespace {
 
 constexpr std::uint64_t k_stream = 0x646966666572'00;
-/// Of each primitive: as many on either side of its surface and within its bounds.
+/// Per primitive: this many places on either side of its surface and this many within its bounds.
 constexpr std::size_t k_places = 64;
 
 Points places_around(const Primitive& primitive, double offset, RandomStream& random) {

@@ -21,7 +21,7 @@ struct Series {
   std::function<Spread(const ModelDetails&)> value;
 };
 
-/// The data of a figure: a line a model, two columns a series. What was not measured is left out of the picture.
+/// The data of a figure: one line per model, two columns per series. Missing values do not appear.
 std::string data_block(const PaperResults& results, const std::vector<Series>& series) {
   std::string text = "$data << END\nmodel";
   for (const Series& one : series) text += fmt::format(" {} sd", in_gnuplot_quotes(one.title));
@@ -35,7 +35,7 @@ std::string data_block(const PaperResults& results, const std::vector<Series>& s
   return text + "\nEND\n";
 }
 
-/// Bars beside each other, a group a model, with their deviations.
+/// Adjacent bars with deviations, one group per model.
 std::string grouped_bars(const PaperResults& results, std::string_view title, std::string_view unit, bool is_log,
                          const std::vector<Series>& series) {
   return fmt::format(
@@ -45,7 +45,7 @@ std::string grouped_bars(const PaperResults& results, std::string_view title, st
       is_log ? "set logscale y\n" : "set yrange [0:*]\n", data_block(results, series), 2 * series.size());
 }
 
-/// Bars on top of each other, one a model.
+/// Stacked bars, one per model.
 std::string stacked_bars(const PaperResults& results, std::string_view title, std::string_view unit,
                          const std::vector<Series>& series) {
   return fmt::format(

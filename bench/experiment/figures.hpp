@@ -7,7 +7,7 @@
 
 namespace cloud2csg {
 
-/// Durations at low and high sampling by mode, sizes of trees, share of the steps.
+/// Durations at low and high sampling by mode, tree sizes, share of the steps.
 [[nodiscard]] std::vector<Figure> paper_figures(const PaperResults& results);
 
 }  // namespace cloud2csg

@@ -10,7 +10,7 @@
 namespace cloud2csg {
 namespace {
 
-/// The line of gnuplot's complaint that says what is wrong: the last that is not empty.
+/// The last non-empty line, in which gnuplot names the error.
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of(" \n");
   if (end == std::string::npos) return "it does not say why";

@@ -9,12 +9,12 @@
 
 #include "bench/experiment/paper.hpp"
 
-/// What the results of all experiments hold, as JSON. Reading throws Json::exception.
+/// JSON parts shared by the results of all experiments. Reading throws Json::exception.
 namespace cloud2csg {
 
 using Json = nlohmann::ordered_json;
 
-/// Of what an extraction is measured in; the fields of the command line are left out.
+/// The stages within an extraction, without those of the command line.
 [[nodiscard]] Json stages_json(const StageSeconds& seconds);
 [[nodiscard]] StageSeconds stages_from(const Json& json);
 
@@ -54,7 +54,6 @@ void read_value(const Json& json, std::vector<Value>& values) {
   for (const Json& item : json) read_value(item, values.emplace_back());
 }
 
-/// The fields of an experiment's options, by their names.
 template <HasOptionTable Options>
 [[nodiscard]] Json options_json(const Options& options) {
   Json json;
@@ -70,10 +69,9 @@ template <HasOptionTable Options>
   return options;
 }
 
-/// A kind of results file.
 struct ResultsFormat {
-  std::string_view name;  ///< of the field "format"
-  int version;            ///< of the field "format_version"
+  std::string_view name;  ///< value of the field "format"
+  int version;            ///< value of the field "format_version"
   std::string_view what;  ///< for messages: "results of ..."
   std::string_view remedy;
 };
@@ -84,7 +82,7 @@ struct ResultsFormat {
 /// @throws Error when the file is not JSON of this format
 [[nodiscard]] Json read_results_json(const std::filesystem::path& file, const ResultsFormat& format);
 
-/// read_results_json(), then `from`. @throws Error for fields that are missing or of the wrong type, too.
+/// read_results_json(), then `from`. @throws Error also for fields that are missing or of the wrong type.
 template <typename From>
 auto read_results(const std::filesystem::path& file, const ResultsFormat& format, const From& from) {
   const Json json = read_results_json(file, format);

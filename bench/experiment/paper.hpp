@@ -13,18 +13,18 @@
 #include "cloud2csg/extract.hpp"
 #include "cloud2csg/model.hpp"
 
-/// The paper's evaluation (its section 5) as an experiment that anybody can repeat.
+/// The paper's evaluation (its section 5) as a repeatable experiment.
 namespace cloud2csg {
 
-/// The paper's modes: BST, BMTGA (baseline, on one thread or with the population in parallel), SST, SMTP, SMTGA, SMTPGA
-/// (partitioned: on one thread, partitions in parallel, population in parallel, both).
+/// The paper's modes. Baseline: BST (one thread), BMTGA (population in parallel). Partitioned: SST (one thread), SMTP
+/// (partitions in parallel), SMTGA (population in parallel), SMTPGA (both).
 struct PaperMode {
   std::string_view name;
   Strategy strategy;
   Parallel parallel;
 };
 [[nodiscard]] std::span<const PaperMode> paper_modes();
-/// @throws Error when there is none of this name.
+/// @throws Error for an unknown name.
 [[nodiscard]] const PaperMode& paper_mode(std::string_view name);
 
 enum class Sampling { low, high };
@@ -33,7 +33,7 @@ constexpr auto names_of(Sampling /*any*/) {
 }
 
 enum class PaperPreset {
-  paper,    ///< its weights and search, nothing added
+  paper,    ///< the paper's weights and search only
   standard  ///< "default"
 };
 constexpr auto names_of(PaperPreset /*any*/) {
@@ -42,7 +42,7 @@ constexpr auto names_of(PaperPreset /*any*/) {
 
 enum class PaperEvaluator {
   classes,   ///< extract_csg()
-  reference  ///< the paper's steps alone, each tree evaluated at each point as its program does
+  reference  ///< the paper's steps alone, each tree evaluated at each point like the paper's program
 };
 constexpr auto names_of(PaperEvaluator /*any*/) {
   return std::to_array<EnumName<PaperEvaluator>>(
@@ -76,15 +76,15 @@ void option_table(OptionsOf<PaperOptions>, auto&& field) {
   field(&O::threads, "threads", "Threads of the parallel modes; no more than the machine has cores", at_least(1),
         k_library);
 }
-/// No models, or one twice; as many points for both samplings; the reference with the preset `default`.
+/// Refuses no models, repeated models, equal point counts for both samplings, and the reference with preset `default`.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const PaperOptions& options);
 
-/// Where and with what numbers were measured.
+/// The machine and program of a measurement.
 struct Environment {
-  std::string version;   ///< of cloud2csg
-  std::string compiler;  ///< and its version
-  std::string cpu;       ///< as the system names the model
-  int cores = 0;         ///< that the process may use
+  std::string version;
+  std::string compiler;  ///< with its version
+  std::string cpu;       ///< model name as the system reports it
+  int cores = 0;         ///< available to the process
 
   friend bool operator==(const Environment&, const Environment&) = default;
 };
@@ -93,21 +93,20 @@ struct Environment {
 struct ModelDetails {
   std::string name;
   std::size_t primitives = 0;
-  TreeStatistics tree = {};      ///< the true one
-  std::string fingerprint = {};  ///< of the whole model: another one has another
+  TreeStatistics tree = {};
+  std::string fingerprint = {};  ///< hash of the whole model
 };
 
-/// What tells a run from all others of an experiment.
+/// The identity of a run in an experiment.
 struct RunName {
   std::string model;
   Sampling sampling = Sampling::low;
   std::string mode;
-  std::uint64_t seed = 1;  ///< of the search
+  std::uint64_t seed = 1;  ///< seed of the search
 
   friend bool operator==(const RunName&, const RunName&) = default;
 };
 
-/// One extraction, and what was measured on it.
 struct PaperRun {
   RunName name;
   std::string finished;  ///< date and time, UTC, ISO 8601
@@ -115,12 +114,11 @@ struct PaperRun {
   std::vector<std::size_t> clique_histogram = {};
   StageSeconds seconds = {};
   TreeStatistics tree = {};
-  std::string formula;  ///< the tree as text
+  std::string formula;
   FitStatistics fit = {};
-  std::size_t generations = 0, evaluations = 0;  ///< of all searches, those of the merge included
-  std::vector<std::string> merge_ways = {};      ///< one a connected component
-  /// Pairs of trees that share primitives and did not merge. With the evaluator "reference", which has no fall-backs,
-  /// they are united as they are.
+  std::size_t generations = 0, evaluations = 0;  ///< all searches, including those of the merge
+  std::vector<std::string> merge_ways = {};      ///< one per connected component
+  /// Pairs of trees that share primitives and did not merge. The evaluator "reference" unites them as they are.
   std::size_t blocked = 0;
 };
 
@@ -128,24 +126,21 @@ struct PaperResults {
   PaperOptions options = {};
   Environment environment = {};
   std::vector<ModelDetails> models = {};
-  std::vector<PaperRun> runs = {};  ///< as they ended
+  std::vector<PaperRun> runs = {};  ///< in order of completion
 };
 
-/// All runs of an experiment, in the order in which they are made: the modes take turns, so that a machine that gets
-/// slower for a while does not do so to one of them.
+/// All runs of an experiment in order. The modes alternate to share temporary slowdowns of the machine.
 [[nodiscard]] std::vector<RunName> plan_runs(const PaperOptions& options);
 
-/// Makes the planned runs that `results` does not have yet and adds them. The cloud of a model and sampling is the same
-/// in all of them. Calls on_finished() after each; a single run that is not measured goes before those of a cloud.
-/// `models`: those of options.models, in this order, each with a tree. Progress: a stage a cloud.
-/// @throws Error, Cancelled (what `results` got by then stays)
+/// Makes the planned runs that `results` lacks and adds them. All runs of a model and sampling share a cloud. Calls
+/// on_finished() after each run. Each cloud starts with an unmeasured run. `models` are those of options.models, in
+/// this order, each with a tree. Reports progress as one stage per cloud.
+/// @throws Error, Cancelled (`results` keeps the finished runs)
 void run_paper(std::span<const Model> models, PaperResults& results, const std::function<void()>& on_finished,
                const RunContext& run = {});
 
-/// The same from files to a file: models from a folder, results in `folder`/paper.json, which is written after each
-/// run, whole or not at all. Runs that are in there are not made again.
-/// @throws Error when a model is missing or has no tree, `folder` holds results of other options, another machine or
-/// another version; Cancelled
+/// The same with models from a folder. Writes `folder`/paper.json atomically after each run and skips runs in it.
+/// @throws Error for a model that is missing or has no tree, or results of other options, machine or version; Cancelled
 [[nodiscard]] PaperResults reproduce_paper(const PaperOptions& options, const std::filesystem::path& models,
                                            const std::filesystem::path& folder, const RunContext& run = {});
 
@@ -153,27 +148,25 @@ void run_paper(std::span<const Model> models, PaperResults& results, const std::
 /// @throws Error naming the file and the field
 [[nodiscard]] PaperResults read_paper_results(const std::filesystem::path& file);
 
-/// A mean over repeats.
 struct Spread {
   std::size_t count = 0;
   double mean = 0;
   double deviation = 0;  ///< sample standard deviation; 0 for a single value
 };
 [[nodiscard]] Spread spread_of(std::span<const double> values);
-/// a / b, its deviation to first order, a and b being independent. Precondition: b.mean is not 0.
+/// a / b for independent a and b, with the deviation to first order. Precondition: b.mean is not 0.
 [[nodiscard]] Spread ratio(const Spread& a, const Spread& b);
 
-/// Runs of one model, sampling, strategy and seed whose trees differ by the mode: there must be none.
+/// Runs of equal model, sampling, strategy and seed whose trees differ between modes; expected to be empty.
 [[nodiscard]] std::vector<std::string> mode_disagreements(const PaperResults& results);
 
-/// Tables and figures: *.csv, paper.md and figures (.gp scripts and, by gnuplot, .svg) into the folder.
-/// Returns notes on what could not be made: without gnuplot there are no .svg.
-/// @throws Error
+/// Writes tables and figures: *.csv, paper.md, .gp scripts and, by gnuplot, .svg. Returns notes on missing files:
+/// without gnuplot there are no .svg. @throws Error
 [[nodiscard]] std::vector<std::string> write_paper_report(const std::filesystem::path& folder,
                                                           const PaperResults& results);
 
 enum class Verdict {
-  same,     ///< within the noise, or too small a change to matter
+  same,     ///< within the noise, or too small to matter
   better,   ///< faster, smaller
   worse,    ///< slower, larger
   unknown,  ///< fewer than two repeats on one side
@@ -189,7 +182,7 @@ struct Change {
   std::string model;
   Sampling sampling = Sampling::low;
   std::string mode;
-  std::string measure;  ///< "duration, ms", "nodes", "rms distance", "evaluations": of all, less is better
+  std::string measure;  ///< "duration, ms", "nodes", "rms distance", "evaluations"; less is better
   Spread before = {}, after = {};
   double relative = 0;  ///< after / before - 1, of the means
   Verdict verdict = Verdict::unknown;
@@ -214,17 +207,16 @@ void option_table(OptionsOf<ResultComparisonOptions>, auto&& field) {
         {.unit = "P"});
 }
 
-/// The measures of `after` against those of `before`: durations of all modes, the rest of BST and SST. One is better or
-/// worse when Welch's t-test says that the means differ, and they do by enough to matter.
-/// @throws Error naming the option when the two are not of the same models, points, noise, preset and threads.
+/// Compares the measures of two results: durations of all modes, other measures of BST and SST. A measure is better or
+/// worse when Welch's t-test finds different means and the change is large enough to matter.
+/// @throws Error naming the option when models, points, noise, preset or threads differ.
 [[nodiscard]] std::vector<Change> compare_paper_results(const PaperResults& before, const PaperResults& after,
                                                         const ResultComparisonOptions& options = {});
 
-/// Chance that the means of two samples from normal distributions of the same mean, whatever their variances, differ
-/// by as much as these, or more (two-sided). Precondition: two values at least in each.
+/// Two-sided p-value of Welch's t-test: the probability that means of two normal samples with equal mean and any
+/// variances differ at least this much. Precondition: at least two values in each.
 [[nodiscard]] double welch_test(const Spread& a, const Spread& b);
 
-/// As a table.
 [[nodiscard]] std::string changes_markdown(std::span<const Change> changes);
 
 }  // namespace cloud2csg

@@ -6,8 +6,7 @@
 
 namespace cloud2csg {
 
-/// paper.md: how the numbers were made, the tables, the figures when there are pictures. Precondition:
-/// there is a run.
+/// paper.md: setting, tables, and figures if there are pictures. Precondition: there is a run.
 [[nodiscard]] std::string paper_markdown(const PaperResults& results, bool has_pictures);
 
 }  // namespace cloud2csg

@@ -42,7 +42,6 @@ PaperRun measured(const RunName& name, const Extraction& extraction) {
   return run;
 }
 
-/// The runs of one cloud.
 class CloudRuns {
  public:
   CloudRuns(const Model& model, const PaperOptions& options, Sampling sampling, const RunContext& run)
@@ -54,7 +53,7 @@ class CloudRuns {
                                .noise = options.noise,
                                .seed = options.seed},
                               run_)) {
-    // Not measured: threads are started and memory is got from the system once. What takes long is not worth it.
+    // An unmeasured run starts the threads and gets memory from the system. The slow reference is not worth it.
     if (options.evaluator == PaperEvaluator::classes) (void)extraction(paper_mode("SMTPGA"), options.seed);
   }
 
@@ -68,7 +67,7 @@ class CloudRuns {
     Extraction result = options_.evaluator == PaperEvaluator::reference
                             ? extract_as_in_paper(cloud_, model_.primitives, extract, run_)
                             : extract_csg(cloud_, model_.primitives, extract, run_);
-    // The best tree so far is no result of the mode.
+    // The mode gives no result when stopped early.
     if (!result.statistics.complete) throw Cancelled();
     return result;
   }

@@ -23,7 +23,7 @@ double search_milliseconds(const PaperRun& run) {
   return 1e3 * (run.seconds.search + run.seconds.merge);
 }
 
-/// By how much a is larger than b, in percent.
+/// By how much a exceeds b, in percent.
 Spread percent_larger(const Spread& a, const Spread& b) {
   if (a.count == 0 || b.count == 0) return {};
   const Spread quotient = ratio(a, b);
@@ -34,12 +34,12 @@ Spread ratio_if_measured(const Spread& a, const Spread& b) {
   return a.count == 0 || b.count == 0 || b.mean == 0 ? Spread{} : ratio(a, b);
 }
 
-/// A known number.
+/// A value without deviation.
 Spread exactly(double value, std::size_t count) {
   return {.count = count, .mean = value, .deviation = 0};
 }
 
-/// At high sampling: a smaller cloud may have no point on some primitive, which is then left out.
+/// At high sampling, since a smaller cloud may lack points on some primitive, which is then left out.
 std::string cliques_of(const PaperResults& results, const std::string& model) {
   const auto run = std::find_if(results.runs.rbegin(), results.runs.rend(), [&model](const PaperRun& r) {
     return r.name.model == model && r.name.sampling == Sampling::high &&
@@ -62,7 +62,7 @@ Table models_table(const PaperResults& results) {
   return table;
 }
 
-/// A table with a row a model and sampling; `add_cells` adds those of a row to the two that name it.
+/// A table with one row per model and sampling; `add_cells` adds cells after the two that name the row.
 template <typename AddCells>
 Table by_cloud(const PaperResults& results, Table table, const AddCells& add_cells) {
   table.columns.insert(table.columns.begin(), {"model", "sampling"});
@@ -114,7 +114,7 @@ Table growth_table(const PaperResults& results) {
   return table;
 }
 
-/// Each partitioned mode against the baseline that uses as many threads.
+/// Each partitioned mode against the baseline with as many threads.
 Table speed_up_table(const PaperResults& results, Table table, const Measure& value) {
   table.columns = {"BST / SST", "BMTGA / SMTP", "BMTGA / SMTGA", "BMTGA / SMTPGA"};
   return by_cloud(
@@ -148,7 +148,7 @@ Table trees_table(const PaperResults& results) {
       });
 }
 
-/// A table with a row a model, sampling and strategy, on one thread.
+/// A table with one row per model, sampling and strategy, on one thread.
 Table by_strategy(const PaperResults& results, Table table, std::span<const Measure> columns) {
   table.columns.insert(table.columns.begin(), {"model", "sampling", "mode"});
   for (const ModelDetails& model : results.models) {
@@ -169,7 +169,7 @@ Table search_table(const PaperResults& results) {
       [](const PaperRun& run) { return run.fit.rms_angle_deg; },
       [](const PaperRun& run) { return static_cast<double>(run.generations); },
       [](const PaperRun& run) { return static_cast<double>(run.evaluations); },
-      // Of a baseline, whose components are one partition each, all are direct.
+      // Fall-backs. A baseline has none, since each of its components is one partition.
       [](const PaperRun& run) {
         return static_cast<double>(std::count_if(run.merge_ways.begin(), run.merge_ways.end(), [](const auto& way) {
           return way != to_string(MergeWay::single) && way != to_string(MergeWay::paper);

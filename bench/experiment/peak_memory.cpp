@@ -10,7 +10,7 @@
 namespace cloud2csg {
 namespace {
 
-/// A field of /proc/self/status, which are in KiB.
+/// A field of /proc/self/status; its unit is KiB.
 std::optional<std::size_t> status_bytes(std::string_view field) {
   constexpr std::size_t k_kibibyte = 1024;
   std::ifstream status("/proc/self/status");
@@ -25,7 +25,7 @@ std::optional<std::size_t> status_bytes(std::string_view field) {
   return std::nullopt;
 }
 
-/// Brings the highest resident set down to the present one; see proc(5).
+/// Resets the peak resident set to the present one; see proc(5).
 bool reset_highest() {
   std::ofstream file("/proc/self/clear_refs");
   file << "5" << std::flush;

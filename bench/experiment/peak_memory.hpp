@@ -5,13 +5,12 @@
 
 namespace cloud2csg {
 
-/// How far the process' memory grows while this lives: its resident set at the highest over that at the start.
-/// What was freed before is given back to the system first, so that it counts again when it is used again.
+/// Growth of the resident set during the object's lifetime. Freed memory goes back first, so that its reuse counts.
 class PeakMemory {
  public:
   PeakMemory();
 
-  /// Absent where the system does not tell, or does not let the highest be reset.
+  /// Absent where the system does not report the peak or cannot reset it.
   [[nodiscard]] std::optional<std::size_t> grown_bytes() const;
 
  private:

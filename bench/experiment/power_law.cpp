@@ -22,7 +22,7 @@ PowerLaw fit_power_law(std::span<const std::pair<double, double>> size_and_value
     squares += (x - mean_x) * (x - mean_x);
     products += (x - mean_x) * (y - mean_y);
   }
-  // Rounding of the mean leaves something of equal sizes.
+  // Rounding of the mean leaves a residue for equal sizes.
   constexpr double k_one_size = 1e-12;
   if (logs.size() < 2 || squares < k_one_size) return {};
   PowerLaw law{.count = logs.size(), .exponent = products / squares};

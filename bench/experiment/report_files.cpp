@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Draws these scripts, which are there already. False when there is no gnuplot.
+/// Draws existing scripts. Returns false without gnuplot.
 bool add_pictures(OutputSet& pictures, const std::filesystem::path& folder, const std::vector<Figure>& figures) {
   bool is_installed = true;
   for (const Figure& figure : figures) {

@@ -23,7 +23,7 @@ Model read_true_model(const std::filesystem::path& folder, const std::string& na
   return model;
 }
 
-/// FNV-1a of the model as text.
+/// FNV-1a hash of the model's text.
 std::string fingerprint(const Model& model) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const char c : to_json(model)) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
@@ -68,7 +68,7 @@ PaperResults reproduce_paper(const PaperOptions& options, const std::filesystem:
     results.runs = std::move(there.runs);
   }
   const auto keep = [&] { write_text_file(file, to_json(results)); };
-  // Before the first run, so that a folder that cannot be written to shows at once.
+  // Written before the first run, so that a read-only folder fails at once.
   keep();
   run_paper(read, results, keep, run);
   return results;

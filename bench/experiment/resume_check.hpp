@@ -19,7 +19,7 @@ namespace cloud2csg {
   return words;
 }
 
-/// Refuses to put runs together that cannot be compared.
+/// Refuses to combine runs that are not comparable.
 class ResumeCheck {
  public:
   explicit ResumeCheck(const std::filesystem::path& file) : file_(file) {}

@@ -12,8 +12,7 @@
 #include "bench/families/family.hpp"
 #include "cloud2csg/extract.hpp"
 
-/// How time, memory and the trees of an extraction grow with the size of the task, on families of models with known
-/// truth.
+/// Growth of time, memory and trees with the size of the task, on families of models with known truth.
 namespace cloud2csg {
 
 struct ScalingOptions {
@@ -52,13 +51,12 @@ void option_table(OptionsOf<ScalingOptions>, auto&& field) {
   field(&O::time_limit_seconds, "time_limit_seconds",
         "Seconds for the search of a run, which is then not complete; 0: no limit", at_least(0), {.unit = "SECONDS"});
 }
-/// No families or sizes, or one twice.
+/// Refuses empty or repeated families and sizes.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const ScalingOptions& options);
 
-/// A size of the task.
 struct ScalingCase {
   Family family = Family::chain;
-  std::size_t clique_size = 4;  ///< of family random
+  std::size_t clique_size = 4;  ///< family random only
   std::size_t primitives = 0;
   std::size_t points = 0;
   int threads = 1;
@@ -66,15 +64,15 @@ struct ScalingCase {
   friend bool operator==(const ScalingCase&, const ScalingCase&) = default;
 };
 
-/// What is varied while the rest stays.
+/// The quantity that varies while others stay.
 enum class Sweep {
-  primitives,            ///< with points_per_primitive points each
+  primitives,            ///< with points_per_primitive points per primitive
   primitives_at_points,  ///< with at_points points in all
   points,
   cliques,
 };
 [[nodiscard]] std::span<const Sweep> all_sweeps();
-/// As in the names of files.
+/// As in file names.
 constexpr auto names_of(Sweep /*any*/) {
   return std::to_array<EnumName<Sweep>>({{"primitives", Sweep::primitives},
                                          {"primitives_at_points", Sweep::primitives_at_points},
@@ -82,14 +80,13 @@ constexpr auto names_of(Sweep /*any*/) {
                                          {"cliques", Sweep::cliques}});
 }
 
-/// The cases of a sweep for a family, smallest first; none for cliques of other families than random.
+/// The cases of a sweep for a family, smallest first. Only family random has cases for cliques.
 [[nodiscard]] std::vector<ScalingCase> cases_of(const ScalingOptions& options, Sweep sweep, Family family);
-/// Of a case, what the sweep varies.
+/// The value of a case that the sweep varies.
 [[nodiscard]] double size_in(Sweep sweep, const ScalingCase& scaling_case);
-/// The largest case of a family, on one thread and on all: only the second when these are the same.
+/// The largest case of a family on one thread and on all threads; a single case if these are the same.
 [[nodiscard]] std::vector<ScalingCase> thread_cases(const ScalingOptions& options, Family family);
 
-/// One extraction, and what was measured on it.
 struct ScalingRun {
   ScalingCase scaling_case;
   std::uint64_t seed = 1;
@@ -98,32 +95,28 @@ struct ScalingRun {
   std::size_t partitions = 0, components = 0;
   StageSeconds seconds = {};
   TreeStatistics tree = {}, true_tree = {};
-  std::string fingerprint = {};  ///< of the tree: another one has another
+  std::string fingerprint = {};  ///< hash of the tree
   std::size_t generations = 0, evaluations = 0;
-  /// How far the memory of the process grew over what it was before the extraction, cloud and primitives included
-  /// there; 0 where the system does not tell.
+  /// Memory growth during the extraction, beyond cloud and primitives; 0 where the system does not report it.
   std::size_t peak_bytes = 0;
   std::size_t cloud_bytes = 0;
-  double wrong_share = 0;            ///< of places near the primitives' surfaces: in one of tree and truth only
-  std::size_t wrong_primitives = 0;  ///< near which a tenth of the places is wrong at least
+  double wrong_share = 0;            ///< share of places near the primitives' surfaces where tree and truth differ
+  std::size_t wrong_primitives = 0;  ///< primitives with at least a tenth of the places around them wrong
 };
 
 struct ScalingResults {
   ScalingOptions options = {};
   Environment environment = {};
-  std::vector<ScalingRun> runs = {};  ///< as they ended
+  std::vector<ScalingRun> runs = {};  ///< in order of completion
 };
 
-/// A case and seed for each run, in the order in which they are made: repeats take turns, so that a machine that gets
-/// slower for a while does not do so to one size.
+/// Case and seed of each run in order. Repeats alternate to share temporary slowdowns of the machine.
 [[nodiscard]] std::vector<std::pair<ScalingCase, std::uint64_t>> plan_runs(const ScalingOptions& options);
 
-/// Makes one run. @throws Cancelled
 [[nodiscard]] ScalingRun run_scaling_case(const ScalingCase& scaling_case, std::uint64_t seed,
                                           const ScalingOptions& options, const RunContext& run = {});
 
-/// Makes the planned runs that are not in `folder`/scaling.json yet; it is written after each, whole or not at all.
-/// Progress: a stage a family.
+/// Adds missing planned runs to `folder`/scaling.json, written atomically after each. Progress: one stage per family.
 /// @throws Error when `folder` holds results of other options, another machine or another version; Cancelled
 [[nodiscard]] ScalingResults measure_scaling(const ScalingOptions& options, const std::filesystem::path& folder,
                                              const RunContext& run = {});
@@ -132,19 +125,19 @@ struct ScalingResults {
 /// @throws Error naming the file and the field
 [[nodiscard]] ScalingResults read_scaling_results(const std::filesystem::path& file);
 
-/// value = factor * size^exponent, fitted.
+/// A fit of value = factor * size^exponent.
 struct PowerLaw {
-  std::size_t count = 0;  ///< of the pairs that went into it; with fewer than two sizes there is no fit, and it is 0
+  std::size_t count = 0;  ///< fitted pairs; 0, without a fit, for fewer than two sizes
   double factor = 0;
   double exponent = 0;
-  double error = 0;  ///< standard error of the exponent; 0 for two pairs, which any law fits
+  double error = 0;  ///< standard error of the exponent; 0 for two pairs, which fit exactly
 };
-/// Least squares of log(value) against log(size). Pairs whose value is not positive are left out.
+/// Least squares of log(value) against log(size). Leaves out pairs with a value that is not positive.
 [[nodiscard]] PowerLaw fit_power_law(std::span<const std::pair<double, double>> size_and_value);
 
-/// Share of places where the two trees differ, and around how many primitives more than a tenth does. Places are drawn
-/// around the primitives, equally many each: `offset` to either side of their surfaces and within their bounds. Only
-/// the primitives near a place are looked at: O(n log n + overlaps).
+/// Share of places where two trees differ, and number of primitives with more than a tenth of such places around them.
+/// Each primitive gets equally many places, within its bounds and at `offset` on either side of its surface. Looks only
+/// at primitives near a place: O(n log n + overlaps).
 struct Disagreement {
   double share = 0;
   std::size_t primitives = 0;
@@ -152,11 +145,11 @@ struct Disagreement {
 [[nodiscard]] Disagreement disagreement(const CsgTree& a, const CsgTree& b, const PrimitiveSet& primitives,
                                         double offset, std::uint64_t seed, const RunContext& run = {});
 
-/// Runs of the same case and seed whose trees differ by the number of threads: there must be none.
+/// Runs of equal case and seed whose trees differ with the number of threads; expected to be empty.
 [[nodiscard]] std::vector<std::string> thread_disagreements(const ScalingResults& results);
 
-/// Tables and figures: *.csv, scaling.md and figures (.gp scripts and, by gnuplot, .svg) into the folder.
-/// Returns notes on what could not be made: without gnuplot there are no .svg. @throws Error
+/// Writes tables and figures: *.csv, scaling.md, .gp scripts and, by gnuplot, .svg. Returns notes on missing files:
+/// without gnuplot there are no .svg. @throws Error
 [[nodiscard]] std::vector<std::string> write_scaling_report(const std::filesystem::path& folder,
                                                             const ScalingResults& results);
 

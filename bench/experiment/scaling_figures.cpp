@@ -10,14 +10,14 @@
 namespace cloud2csg {
 namespace {
 
-/// A line of a figure: its points, as gnuplot reads them, and its title.
+/// A line of a figure: its title and its points in gnuplot's format.
 struct Line {
   std::string title;
   std::string points;
   std::size_t count = 0;
 };
 
-/// "size mean low high" a case; a deviation that reaches zero, which a logarithm does not, is cut off.
+/// "size mean low high" per case. A low value of zero or less has no logarithm and is clamped.
 Line line_of(const ScalingResults& results, Sweep sweep, Family family, const Quantity& quantity) {
   Line line;
   for (const ScalingCase& one : cases_of(results.options, sweep, family)) {
@@ -31,7 +31,7 @@ Line line_of(const ScalingResults& results, Sweep sweep, Family family, const Qu
   return line;
 }
 
-/// A title with the fitted exponent behind it.
+/// The title followed by the fitted exponent.
 std::string with_exponent(const std::string& title, const PowerLaw& law) {
   return law.count == 0 ? title : fmt::format("{} ~ n^{:.2f}", title, law.exponent);
 }
@@ -54,7 +54,7 @@ std::string size_label(Sweep sweep) {
   return sweep == Sweep::points ? "points" : sweep == Sweep::cliques ? "primitives of a clique" : "primitives";
 }
 
-/// A figure of these lines; none without any.
+/// Adds a figure of the non-empty lines, if there are any.
 void add_figure(std::vector<Figure>& figures, const std::string& name, const std::string& title, Sweep sweep,
                 std::string_view value, std::vector<Line> lines) {
   std::erase_if(lines, [](const Line& line) { return line.count == 0; });

@@ -7,7 +7,7 @@
 
 namespace cloud2csg {
 
-/// Time and memory by size, a line a family; steps by primitives, a figure a family. All log-log.
+/// Log-log figures: time and memory by size, with a line per family; steps by primitives, with a figure per family.
 [[nodiscard]] std::vector<Figure> scaling_figures(const ScalingResults& results);
 
 }  // namespace cloud2csg

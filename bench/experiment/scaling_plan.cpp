@@ -11,7 +11,7 @@ namespace {
 constexpr std::array k_sweeps{Sweep::primitives, Sweep::primitives_at_points, Sweep::points, Sweep::cliques};
 constexpr std::size_t k_clique_size = FamilyOptions{}.clique_size;
 
-/// An entry of a list that is in it twice.
+/// An entry that a list contains twice.
 template <typename Value>
 std::optional<OptionConflict> repeated_in(const std::vector<Value>& values, const char* field) {
   for (auto value = values.begin(); value != values.end(); ++value) {
@@ -25,7 +25,7 @@ void add_if_new(std::vector<ScalingCase>& cases, const ScalingCase& one) {
   if (std::find(cases.begin(), cases.end(), one) == cases.end()) cases.push_back(one);
 }
 
-/// Of all sweeps and the threads, each once.
+/// All cases of a family, from sweeps and threads, each once.
 std::vector<ScalingCase> cases_of(const ScalingOptions& options, Family family) {
   std::vector<ScalingCase> cases;
   for (const Sweep sweep : k_sweeps) {

@@ -33,7 +33,7 @@ std::string thread_check(const ScalingResults& results) {
   return results.options.threads == 1 ? "" : "The number of threads changed no tree.\n";
 }
 
-/// Those that the time limit ended are in the list of runs only.
+/// Runs cut off by the time limit appear only in the list of runs.
 std::string cut_off(const ScalingResults& results) {
   const auto count =
       std::count_if(results.runs.begin(), results.runs.end(), [](const auto& run) { return !run.complete; });

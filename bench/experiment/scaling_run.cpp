@@ -32,7 +32,7 @@ void take_statistics(ScalingRun& result, const ExtractStatistics& statistics) {
   }
 }
 
-/// Threads are started and code is loaded once: not by a run that is measured.
+/// An unmeasured run that starts threads and loads code.
 void warm_up(const ScalingOptions& options, const RunContext& run) {
   const ScalingCase small{.family = Family::grid, .primitives = 20, .points = 4000, .threads = options.threads};
   (void)run_scaling_case(small, options.seed, options, run);
@@ -66,12 +66,12 @@ ScalingRun run_scaling_case(const ScalingCase& scaling_case, std::uint64_t seed,
   ScalingRun result{.scaling_case = scaling_case, .seed = seed};
   result.peak_bytes = memory.grown_bytes().value_or(0);
   result.cloud_bytes = bytes_of(cloud);
-  // The best tree so far is a result of the time limit, but none of an interrupt.
+  // Only a time limit, not an interrupt, gives a valid best tree so far.
   run.throw_if_stopped();
   take_statistics(result, extraction.statistics);
   result.true_tree = statistics_of(*model.tree);
   result.fingerprint = fmt::format("{:016x}", structural_hash(extraction.tree()));
-  // Beyond the noise, so that a place tells which side of the surface it is on.
+  // Beyond the noise, so that the side of a place is clear.
   constexpr double k_offset_in_noise = 4;
   constexpr double k_least_offset = 1e-3;  // solids are about one unit wide
   const Disagreement wrong = disagreement(extraction.tree(), *model.tree, model.primitives,
@@ -92,7 +92,7 @@ ScalingResults measure_scaling(const ScalingOptions& options, const std::filesys
     check_same_experiment(file, there, results);
     results.runs = std::move(there.runs);
   }
-  // Before the first run, so that a folder that cannot be written to shows at once.
+  // Written before the first run, so that a read-only folder fails at once.
   write_text_file(file, to_json(results));
   const auto plan = plan_runs(options);
   bool is_warm = false;

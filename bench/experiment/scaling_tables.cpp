@@ -26,7 +26,7 @@ bool has_runs(const ScalingResults& results, const ScalingCase& one) {
                      [&one](const ScalingRun& run) { return run.scaling_case == one; });
 }
 
-/// Calls visit(case) for each of a sweep that was run.
+/// Calls visit(case) for each case of a sweep that was run.
 template <typename Visit>
 void for_each_case(const ScalingResults& results, Sweep sweep, const Visit& visit) {
   for (const Family family : results.options.families) {

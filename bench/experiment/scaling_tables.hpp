@@ -9,7 +9,6 @@
 
 namespace cloud2csg {
 
-/// What is measured and fitted.
 struct Quantity {
   std::string name;
   std::function<double(const ScalingRun&)> value;
@@ -18,13 +17,13 @@ struct Quantity {
 /// Milliseconds of each step and of the whole extraction.
 [[nodiscard]] std::vector<Quantity> durations();
 [[nodiscard]] Quantity extraction_milliseconds();
-/// In megabytes, beside the cloud.
+/// In megabytes, without the cloud.
 [[nodiscard]] Quantity peak_memory();
 
-/// Over the repeats of a case; without those that the time limit cut off.
+/// Over the repeats of a case that the time limit did not cut off.
 [[nodiscard]] Spread measure(const ScalingResults& results, const ScalingCase& scaling_case, const Quantity& quantity);
 
-/// How a quantity grows along a sweep; all repeats go into it.
+/// The fitted growth of a quantity along a sweep, from all repeats.
 [[nodiscard]] PowerLaw fitted(const ScalingResults& results, Sweep sweep, Family family, const Quantity& quantity);
 
 /// "primitives, 500 points each"...
@@ -32,7 +31,7 @@ struct Quantity {
 
 [[nodiscard]] std::vector<Table> scaling_tables(const ScalingResults& results);
 
-/// A row a run.
+/// One row per run.
 [[nodiscard]] Table scaling_runs_table(const ScalingResults& results);
 
 }  // namespace cloud2csg

@@ -10,7 +10,7 @@ Spread spread_of(std::span<const double> values) {
   Spread spread{.count = values.size()};
   if (values.empty()) return spread;
   const auto count = static_cast<double>(values.size());
-  // From the first, so that equal values have exactly their mean and no deviation.
+  // Relative to the first value, so that equal values have an exact mean and no deviation.
   double differences = 0;
   for (const double value : values) differences += value - values.front();
   spread.mean = values.front() + differences / count;
@@ -23,7 +23,7 @@ Spread spread_of(std::span<const double> values) {
 
 Spread ratio(const Spread& a, const Spread& b) {
   assert(b.mean != 0);
-  // Written without relative deviations, so that a mean of 0 above is no special case.
+  // Avoids relative deviations, which do not exist for a.mean == 0.
   const double quotient = a.mean / b.mean;
   return {.count = std::min(a.count, b.count),
           .mean = quotient,

@@ -7,12 +7,11 @@
 
 namespace cloud2csg {
 
-/// A step of the extraction that is timed.
 struct Step {
   std::string_view name;
   double StageSeconds::*seconds;
 };
-/// In their order.
+/// In order of execution.
 [[nodiscard]] std::span<const Step> extraction_steps();
 
 }  // namespace cloud2csg

@@ -8,11 +8,11 @@
 namespace cloud2csg {
 namespace {
 
-constexpr int k_digits = 4;            ///< of a number
-constexpr int k_deviation_digits = 2;  ///< of a deviation, and the mean has as many decimals
+constexpr int k_digits = 4;            ///< significant digits
+constexpr int k_deviation_digits = 2;  ///< significant digits of a deviation; the mean gets as many decimals
 constexpr int k_most_decimals = 6;
 
-/// So that `digits` digits count.
+/// Decimals for `digits` significant digits.
 int decimals_of(double value, int digits) {
   if (value == 0 || !std::isfinite(value) || value == std::round(value)) return 0;
   const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
@@ -29,7 +29,7 @@ std::string to_text(const Spread& spread) {
   return fmt::format("{:.{}f} ± {:.{}f}", spread.mean, decimals, spread.deviation, decimals);
 }
 
-/// In characters, of which a UTF-8 text has as many as bytes that do not continue one.
+/// Width in characters: the bytes of a UTF-8 text that do not continue a character.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

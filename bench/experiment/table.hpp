@@ -12,21 +12,20 @@ namespace cloud2csg {
 using TableCell = std::variant<std::string, double, Spread>;
 
 struct Table {
-  std::string name;  ///< of its file, without the ending
+  std::string name;  ///< file name without the ending
   std::string title;
-  std::string note = {};  ///< what is measured, in which unit, where the title does not say it all
+  std::string note = {};  ///< measured quantity and unit, beyond the title
   std::vector<std::string> columns;
-  std::vector<std::vector<TableCell>> rows = {};  ///< each with a cell a column
+  std::vector<std::vector<TableCell>> rows = {};  ///< one cell per column
 };
 
-/// Four digits that count, no exponent; of a deviation two, and its mean has as many decimals: "12.346 ± 0.057". That
-/// of a single value is "?".
+/// Four significant digits, no exponent; two for a deviation: "12.346 ± 0.057". A single value has deviation "?".
 [[nodiscard]] std::string to_text(const TableCell& cell);
 
-/// A heading, the note, the columns padded to equal widths.
+/// A heading, the note, and columns padded to equal widths.
 [[nodiscard]] std::string to_markdown(const Table& table);
 
-/// A column with spreads becomes two, NAME and "NAME sd"; full precision. Texts with a comma or a quote are quoted.
+/// A column of spreads becomes two, NAME and "NAME sd". Full precision; texts with a comma or quote are quoted.
 [[nodiscard]] std::string to_csv(const Table& table);
 
 }  // namespace cloud2csg

@@ -15,7 +15,7 @@ double welch_test(const Spread& a, const Spread& b) {
   const double vb = variance_of_mean(b);
   const double difference = std::abs(a.mean - b.mean);
   if (va + vb == 0) return difference == 0 ? 1 : 0;
-  // Welch and Satterthwaite.
+  // Degrees of freedom by Welch and Satterthwaite.
   const double freedom =
       (va + vb) * (va + vb) / (va * va / static_cast<double>(a.count - 1) + vb * vb / static_cast<double>(b.count - 1));
   const boost::math::students_t distribution(freedom);

@@ -10,26 +10,25 @@
 #include "cloud2csg/advanced/option_table.hpp"
 #include "cloud2csg/model.hpp"
 
-/// Families of models with known truth, of any size: for measuring how the method scales and how good its trees are.
+/// Families of models of any size with known truth, to measure scaling and the quality of trees.
 namespace cloud2csg {
 
 enum class Family {
-  /// Spheres, boxes, cylinders and cones in a row, each overlapping the next only, in pairs that are united or of
-  /// which the first is cut by the second.
+  /// Spheres, boxes, cylinders and cones in a row that overlap neighbours only. Each pair is a union or a difference.
   chain,
-  /// The paper's M2, 20 primitives, grown: spheres on a square lattice, all united, four to a clique.
+  /// The paper's M2 (20 primitives), grown: a square lattice of united spheres, four to a clique.
   grid,
-  /// Plates in a row, each with holes, bosses, bosses with a hole, and holes in which a hollow pin stands.
+  /// Plates in a row with holes, bosses, hollow bosses, and holes around a hollow pin.
   plate,
-  /// Clusters of solids of all kinds that all overlap each other, under a random tree each, joined by one bar each.
+  /// Clusters of mutually overlapping solids of all kinds, each under a random tree, joined by one bar each.
   random,
-  /// Boxes in boxes: each nest is a box less (a box less (a box less ...)).
+  /// Nested boxes: each nest is a box - (a box - (a box - ...)).
   nest,
-  /// One panel with holes through it, bosses on it and round dents in it, on a lattice: it overlaps all others.
+  /// One panel with a lattice of holes, bosses and round dents: it overlaps all others.
   panel,
 };
 
-/// All, in the order above.
+/// All families in declaration order.
 [[nodiscard]] std::span<const Family> all_families();
 constexpr auto names_of(Family /*any*/) {
   return std::to_array<EnumName<Family>>({{"chain", Family::chain},
@@ -39,7 +38,7 @@ constexpr auto names_of(Family /*any*/) {
                                           {"nest", Family::nest},
                                           {"panel", Family::panel}});
 }
-/// @throws Error when there is none of this name.
+/// @throws Error for an unknown name.
 [[nodiscard]] Family family_of(std::string_view name);
 
 struct FamilyOptions {
@@ -62,14 +61,14 @@ void option_table(OptionsOf<FamilyOptions>, auto&& field) {
   field(&O::levels, "levels", "nest: boxes in a nest; the last nest may have fewer", from_to(1, 8));
   field(&O::seed, k_seed);
 }
-/// More primitives in the least cluster than in the largest.
+/// Refuses a least cluster size above the largest.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const FamilyOptions& options);
 
-/// A model of a family. Its tree has each primitive as one leaf. All solids are bounded, and their overlap graph is
-/// connected. Of each primitive, a part is surface of the solid, so that it can be recovered: about a twentieth of its
-/// own surface at least. No faces coincide. Features are of about unit size, walls a tenth of that: noise of 0.01 (the
-/// paper's) leaves them be, distances between solids that do not overlap as well. Along a spiral, so that a model of n
-/// primitives is no larger than about sqrt(n). The same for the same options, always. O(n log n)
+/// A model of a family with n primitives, each of them one leaf of the tree. All solids are bounded, their overlap
+/// graph is connected, and no faces coincide. At least about a twentieth of each primitive's surface is surface of the
+/// solid, so that the primitive can be recovered. Features have about unit size and walls a tenth of it. Noise of 0.01
+/// (the paper's) preserves them and the gaps between disjoint solids. Parts lie along a spiral, so the size grows like
+/// sqrt(n). Deterministic for given options. O(n log n)
 /// @throws Error as validate()
 [[nodiscard]] Model make_family(Family family, const FamilyOptions& options = {});
 

@@ -12,16 +12,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_spacing = 2.4;     ///< of clusters
-constexpr double k_bar_reach = 1.32;  ///< of a cluster's bar to either side: over the middle to the next one's
+constexpr double k_spacing = 2.4;     ///< between clusters
+constexpr double k_bar_reach = 1.32;  ///< half length of a cluster's bar: beyond the midpoint to the next cluster
 constexpr double k_core_radius = 0.65;
-/// All solids of a cluster hold its middle, this far inside: so they overlap.
+/// All solids of a cluster contain its centre at this depth, so they overlap.
 constexpr double k_least_depth = 0.06;
-/// Points on a primitive's surface that tell which share of it shows: a word's bits.
+/// Test points on a primitive's surface that measure its visible share: the bits of a word.
 constexpr std::size_t k_probes = 64;
 constexpr int k_least_visible = 5;
 
-/// A solid of the core in the cluster's frame, of any kind.
+/// A random solid of the core, in the cluster's frame.
 Primitive draw_solid(RandomStream& random) {
   Primitive solid{.id = {}, .shape = Sphere{}};
   solid.pose.orientation = random_orientation(random);
@@ -84,7 +84,7 @@ Primitive core_solid(RandomStream& random) {
   }
 }
 
-/// A bar along local x through the middle.
+/// A bar along local x through the centre.
 Primitive bar(RandomStream& random) {
   Primitive solid{.id = {}, .shape = Sphere{}};
   const double width = random.uniform(0.13, 0.25);
@@ -104,7 +104,7 @@ Primitive bar(RandomStream& random) {
   return solid;
 }
 
-/// What is inside of what, at points just inside and outside of each primitive's surface: a bit a point.
+/// Bit masks of which primitive contains the points just inside and outside of another's surface.
 class Probes {
  public:
   Probes(const PrimitiveSet& primitives, RandomStream& random) : count_(primitives.size()) {
@@ -125,7 +125,7 @@ class Probes {
     }
   }
 
-  /// How many primitives show enough of their surface on the surface of a tree over all of them.
+  /// Number of primitives with enough of their surface on the tree's surface.
   [[nodiscard]] std::size_t visible(const CsgTree& tree) const {
     std::size_t sum = 0;
     for (std::size_t p = 0; p < count_; ++p) sum += is_visible(tree, p) ? 1 : 0;
@@ -163,7 +163,7 @@ class Probes {
   }
 
   std::size_t count_;
-  std::vector<std::uint64_t> within_, without_;  ///< by primitive whose points they are, then by the other one
+  std::vector<std::uint64_t> within_, without_;  ///< by primitive of the points, then by other primitive
 };
 
 Operation random_operation(bool may_intersect, RandomStream& random) {
@@ -172,8 +172,8 @@ Operation random_operation(bool may_intersect, RandomStream& random) {
   return draw < 0.6 ? Operation::difference : Operation::union_of;
 }
 
-/// Over primitives first .. first + count - 1, in this order. The first of a whole tree is reached by unions and as the
-/// first operand of differences only, so that what of it is alone in space is in the solid.
+/// Appends a tree over primitives first .. first + count - 1 in order. Only unions and first operands of differences
+/// lead to the first primitive, so space inside it alone is in the solid.
 void append_random_tree(std::vector<CsgNode>& nodes, std::size_t first, std::size_t count, RandomStream& random) {
   if (count == 1) {
     nodes.push_back(CsgNode::leaf(static_cast<PrimitiveIndex>(first)));
@@ -187,7 +187,7 @@ void append_random_tree(std::vector<CsgNode>& nodes, std::size_t first, std::siz
   nodes.push_back(CsgNode::inner(random_operation(/*may_intersect=*/first > 0, random), length));
 }
 
-/// Changes operations of a random tree as long as more primitives show; empty when some stay hidden.
+/// Improves the operations of a random tree while more primitives become visible; empty when some stay hidden.
 CsgTree find_tree(std::size_t count, const Probes& probes, RandomStream& random) {
   std::vector<CsgNode> nodes;
   append_random_tree(nodes, 0, count, random);
@@ -218,7 +218,7 @@ struct Cluster {
   CsgTree tree;
 };
 
-/// In its own frame. Its primitives all overlap each other, and each shows.
+/// A cluster in its own frame, of mutually overlapping and visible primitives.
 Cluster random_cluster(std::size_t count, RandomStream& random) {
   for (;;) {
     Cluster cluster;

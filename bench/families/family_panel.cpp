@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_panel_cell = 1.2;  ///< from a feature's middle to the next one's
+constexpr double k_panel_cell = 1.2;  ///< distance between centres of features
 constexpr double k_margin = 0.5;      ///< around the outermost cells
 constexpr double k_top = 0.25;        ///< half of the panel's thickness
 

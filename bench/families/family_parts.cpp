@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 
 constexpr std::uint64_t k_stage = 0x66616d696c79'00;
 
-/// The nodes of the union of these parts, balanced.
 void append_union(std::vector<CsgNode>& nodes, std::span<const CsgTree> parts) {
   if (parts.size() == 1) {
     nodes.insert(nodes.end(), parts[0].nodes().begin(), parts[0].nodes().end());
@@ -62,7 +61,7 @@ Pose SpiralPath::next() {
 }
 
 Eigen::Quaterniond random_orientation(RandomStream& random) {
-  // Four normal numbers are a direction in four dimensions, without preference for any.
+  // Four normal numbers give a uniform direction in four dimensions.
   Eigen::Vector4d q;
   for (double& c : q) c = random.normal();
   q.normalize();

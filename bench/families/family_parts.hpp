@@ -9,7 +9,7 @@
 
 namespace cloud2csg {
 
-/// A model that grows part by part; its tree is the union of the parts' trees.
+/// Builds a model part by part; its tree is the union of the parts' trees.
 class FamilyBuilder {
  public:
   /// Returns the leaf of the new primitive. Its id is the type's name and a number.
@@ -17,7 +17,7 @@ class FamilyBuilder {
   void add_part(CsgTree tree) { parts_.push_back(std::move(tree)); }
 
   [[nodiscard]] std::size_t size() const { return primitives_.size(); }
-  /// With the parts united in a balanced tree, so that its depth grows with the logarithm only.
+  /// Unites the parts in a balanced tree of logarithmic depth.
   [[nodiscard]] Model finish(std::string description);
 
  private:
@@ -25,10 +25,9 @@ class FamilyBuilder {
   std::vector<CsgTree> parts_;
 };
 
-/// Places one after the other at equal distances on a spiral around the z axis.
 class SpiralPath {
  public:
-  /// `spacing` between places, `pitch` between turns; the first turn is so wide that places hardly turn.
+  /// `spacing` between places, `pitch` between turns. The first turn is wide, so places turn little between neighbours.
   SpiralPath(double spacing, double pitch);
 
   /// The next place: local x along the path, z up.
@@ -40,16 +39,14 @@ class SpiralPath {
   double angle_;
 };
 
-/// A turn around a random axis, by an angle in +-`most_deg`.
+/// A rotation about a random axis by an angle in +-`most_deg`.
 [[nodiscard]] Eigen::Quaterniond random_tilt(double most_deg, RandomStream& random);
 [[nodiscard]] Eigen::Quaterniond random_orientation(RandomStream& random);
 /// Each coordinate in +-`reach`.
 [[nodiscard]] Eigen::Vector3d random_shift(double reach, RandomStream& random);
 
-/// Streams of random numbers: one a family and part.
 [[nodiscard]] RandomStream family_stream(Family family, const FamilyOptions& options, std::size_t part);
 
-// One file a family.
 void build_chain(FamilyBuilder& builder, const FamilyOptions& options);
 void build_grid(FamilyBuilder& builder, const FamilyOptions& options);
 void build_plates(FamilyBuilder& builder, const FamilyOptions& options);

@@ -11,12 +11,12 @@ using Eigen::Vector3d;
 
 constexpr std::size_t k_columns = 3;
 constexpr std::size_t k_rows = 2;
-constexpr double k_cell = 1.2;  ///< from a feature's middle to the next one's
+constexpr double k_cell = 1.2;  ///< distance between centres of features
 
 enum class Feature { hole, boss, hollow_boss, pin_in_hole };
 constexpr std::array<std::size_t, 4> k_primitives_of{1, 1, 2, 3};
 
-/// A plate with features on a lattice, in its own frame: z = 0 in the middle of its thickness.
+/// A plate with a lattice of features, in its own frame: z = 0 is the middle of its thickness.
 class PlateBuilder {
  public:
   PlateBuilder(FamilyBuilder& builder, Pose place, RandomStream& random)
@@ -91,7 +91,7 @@ class PlateBuilder {
 }  // namespace
 
 void build_plates(FamilyBuilder& builder, const FamilyOptions& options) {
-  // Plates reach 0.1 over the middle to the next one, and no feature is there.
+  // Each plate extends 0.1 beyond the midpoint to the next one; that area has no features.
   SpiralPath path(4.4, 3.6);
   for (std::size_t part = 0; builder.size() < options.primitives; ++part) {
     RandomStream random = family_stream(Family::plate, options, part);

@@ -3,7 +3,7 @@
 
 #include "bench/families/family_parts.hpp"
 
-/// The families without rejection: by their measures, each primitive shows and overlaps what it should.
+/// Families without rejection: by construction, each primitive is visible and has the intended overlaps.
 namespace cloud2csg {
 namespace {
 
@@ -22,7 +22,7 @@ struct Placed {
   Quaterniond orientation = Quaterniond::Identity();
 };
 
-/// A link of the chain: it reaches `half_length` along local x, and less than 0.9 across.
+/// A link of the chain: half_length along local x, less than 0.9 across.
 Placed random_link(std::size_t kind, double half_length, RandomStream& random) {
   const double width = random.uniform(0.35, 0.6);
   switch (kind % 4) {
@@ -43,13 +43,13 @@ Placed random_link(std::size_t kind, double half_length, RandomStream& random) {
   }
 }
 
-/// The outermost box of a nest less the others, one in the other. `place` is the nest's middle.
+/// The outermost box of a nest minus the nested others. `place` is the nest's centre.
 CsgTree add_nest(FamilyBuilder& builder, const Pose& place, std::size_t levels, const FamilyOptions& options,
                  RandomStream& random) {
   const Vector3d outermost{1.28, random.uniform(1.0, 1.2), random.uniform(0.9, 1.1)};
   std::vector<CsgTree> boxes;
   for (std::size_t level = 0; level < levels; ++level) {
-    // Walls all of the same thickness but for the tilt.
+    // All walls have the same thickness, up to the tilt.
     const double share = 1 - static_cast<double>(level) / static_cast<double>(options.levels + 1);
     const double wall = 1.0 / static_cast<double>(options.levels + 1);
     Vector3d half = share * outermost;
@@ -71,7 +71,7 @@ void build_chain(FamilyBuilder& builder, const FamilyOptions& options) {
   CsgTree first;
   for (std::size_t i = 0; i < options.primitives; ++i) {
     RandomStream random = family_stream(Family::chain, options, i);
-    // Above half the spacing, so that neighbours overlap by far; below the whole, so that the next but one does not.
+    // Above half the spacing, so that neighbours overlap widely; below the spacing, so that others do not.
     const double half_length = random.uniform(0.66, 0.8);
     const Placed link = random_link(i, half_length, random);
     Pose pose = path.next();
@@ -88,7 +88,7 @@ void build_chain(FamilyBuilder& builder, const FamilyOptions& options) {
 }
 
 void build_grid(FamilyBuilder& builder, const FamilyOptions& options) {
-  // M2: radius 0.25, spacing 0.3, 5 x 4. Displaced a little, so that no four spheres meet in a point.
+  // M2: radius 0.25, spacing 0.3, 5 x 4. Displaced slightly, so that no four spheres meet in a point.
   constexpr double k_radius = 0.25;
   constexpr double k_pitch = 0.3;
   constexpr double k_displacement = 0.008;

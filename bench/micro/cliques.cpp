@@ -4,11 +4,11 @@
 #include "micro/work.hpp"
 #include "random_solids.hpp"
 
-/// Enumeration of maximal cliques of random solids' overlap graphs.
+/// Enumeration of maximal cliques in overlap graphs of random solids.
 namespace cloud2csg::bench {
 namespace {
 
-/// The graph is read once, the cliques are written once.
+/// Reads the graph once and writes the cliques once.
 Work clique_work(const OverlapGraph& graph, std::span<const Clique> cliques) {
   std::size_t members = 0;
   for (const Clique& clique : cliques) members += clique.size();

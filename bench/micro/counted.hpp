@@ -2,8 +2,7 @@
 
 #include <cstddef>
 
-/// A number that has no value but counts what is done with it. The formulas of primitives, which take any kind of
-/// number, run on it say how many operations a point takes: counted from the code, not by hand.
+/// A number type that counts operations, for the primitives' formulas, which are templates over the number type.
 namespace cloud2csg::bench {
 
 struct OperationCount {
@@ -39,7 +38,7 @@ struct Counted {
   friend CountedMask operator>=(Counted a, Counted /*b*/) { return {a.after_plain().count}; }
 };
 
-/// Constants are made once for many points: they cost nothing.
+/// Constants are made once for many points and cost nothing.
 inline Counted broadcast(CountingTag tag, double /*value*/) {
   return {tag.count};
 }

@@ -6,12 +6,11 @@
 #include "micro/work.hpp"
 #include "scene.hpp"
 
-/// Evaluation of a tree per class.
 namespace cloud2csg::bench {
 namespace {
 
-/// What a tree takes at each class: a minimum or maximum for an inner node, one more operation for a sign change, and
-/// one look-up of a score; the bytes are a rank for each leaf, and the line of the table that holds the score.
+/// Work per class: a minimum or maximum per inner node, one more operation per sign change, and one score look-up.
+/// Memory: one rank per leaf, and the table's cache line with the score.
 Work evaluation_work(const RankClasses& table, const CsgTree& tree) {
   const std::size_t row = 2 * table.primitive_count() + 1;
   Work work{.unit = "tree x class", .units = static_cast<double>(table.class_count())};
@@ -23,7 +22,7 @@ Work evaluation_work(const RankClasses& table, const CsgTree& tree) {
   work.look_up_row = row;
   const std::size_t line = std::min<std::size_t>(64, row * sizeof(float));
   work.bytes_read = static_cast<double>(leaf_count(tree) + line);
-  work.footprint = table.class_count() * (primitives_of(tree).size() + line);  // the same tree, the same lines
+  work.footprint = table.class_count() * (primitives_of(tree).size() + line);  // the same tree reads the same lines
   return work;
 }
 

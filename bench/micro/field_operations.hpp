@@ -5,8 +5,7 @@
 
 namespace cloud2csg::bench {
 
-/// Operations for the signed distance and gradient of a primitive at one point.
-/// Precondition: is_plain().
+/// Operations for signed distance and gradient of a primitive at one point. Precondition: is_plain().
 [[nodiscard]] OperationCount field_operations(const Primitive& primitive);
 
 }  // namespace cloud2csg::bench

@@ -18,16 +18,15 @@ namespace cloud2csg::bench::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-/// Independent chains: enough to hide the latency of each operation, few enough to stay in 16 registers.
+/// Independent chains: enough to hide the latency of operations, few enough for 16 registers.
 constexpr std::size_t k_chains = 12;
 using Floats = hn::ScalableTag<float>;
 using Bytes = hn::ScalableTag<std::int8_t>;
 
-/// Between two jumps; g++ copies the registers of all chains there.
+/// Steps between two jumps, where g++ copies the registers of all chains.
 constexpr std::size_t k_steps_a_round = 8;
 
-/// Applies `step` to all chains, k_steps_a_round times a round. What it returns depends on all of them, so that none is
-/// left out.
+/// Applies `step` to all chains, k_steps_a_round times per round. The result uses all chains, so none is optimised out.
 template <class Tag, class Step>
 HWY_INLINE auto run_chains(Tag tag, std::size_t rounds, hn::TFromD<Tag> first, const Step& step) {
   std::array<hn::Vec<Tag>, k_chains> chains;
@@ -127,16 +126,14 @@ HWY_EXPORT(gather_all);
 HWY_EXPORT(float_lanes);
 HWY_EXPORT(target_name);
 
-/// Short and many, so that some are not interrupted; all together long enough for a processor that is slow at the first
-/// wide vectors, until it has raised its voltage.
+/// Short, so that some run without interruption; many, since wide vectors are slow until the voltage has risen.
 constexpr std::size_t k_tries = 100;
 constexpr std::size_t k_rounds = 5000;
-/// Each try of a memory loop moves at least so much.
+/// Each try of a memory loop moves at least this much.
 constexpr std::size_t k_bytes_a_try = std::size_t{2} << 20U;
 /// Whole vectors of every instruction set, four at a time.
 constexpr std::size_t k_padding = 256;
 
-/// Seconds of the fastest of several tries.
 template <class Work>
 double least_seconds(const Work& work) {
   work();
@@ -149,7 +146,7 @@ double least_seconds(const Work& work) {
   return least;
 }
 
-/// Elements a second of a kernel of chains of vectors, which does so many operations a round and chain.
+/// Elements per second of a kernel with this many operations per round and chain of vectors.
 double chain_rate(double (*kernel)(std::size_t, float), double bytes_an_element, double operations) {
   float first = 1.0F;
   benchmark::DoNotOptimize(first);
@@ -163,7 +160,7 @@ std::size_t padded_floats(std::size_t bytes) {
   return (bytes / sizeof(float) + k_padding - 1) / k_padding * k_padding;
 }
 
-/// Bytes a second of `pass`, which goes once through all of them.
+/// Bytes per second of `pass`, which reads or writes all bytes once.
 template <class Pass>
 double memory_rate(std::size_t bytes, const Pass& pass) {
   const std::size_t passes = k_bytes_a_try / std::max<std::size_t>(1, bytes) + 1;

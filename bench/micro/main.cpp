@@ -1,5 +1,5 @@
-// The steps of the extraction one by one, on one core, each beside what the machine could do at best: what has to be
-// computed and moved, at rates that were measured in the same run. Takes Google Benchmark's options.
+// The steps of the extraction one by one on one core, each with the machine's bound: necessary computation and memory
+// traffic at rates measured in the same run. Takes Google Benchmark's options.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr int k_repetitions = 9;
 constexpr double k_least_seconds = 0.1;
 
-/// Seconds of a run of each benchmark, one entry a repetition.
+/// Seconds per run of each benchmark, one entry per repetition.
 class Collector : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context& /*context*/) override { return true; }
@@ -71,7 +71,7 @@ void print_machine(const ArithmeticRates& rates) {
   fmt::print("\n\n");
 }
 
-/// What class building costs beyond the distances, which any method that looks at the points needs.
+/// Cost of class building relative to the distances, which any method that looks at the points needs.
 void print_pass_against_distances(const Collector& collector) {
   for (const char* model : {"m0", "m2"}) {
     const auto pass = collector.seconds.find(std::string("class_pass/") + model);

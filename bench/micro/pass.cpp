@@ -7,26 +7,26 @@
 #include "micro/work.hpp"
 #include "scene.hpp"
 
-/// Class building per point and primitive, and what it cannot do without: the distances and gradients.
+/// Class building per point and primitive, and its necessary part: distances and gradients.
 namespace cloud2csg::bench {
 namespace {
 
-/// Points and fields of a block stay in the first-level cache.
+/// Points and fields of a block fit the first-level cache.
 constexpr std::size_t k_block = 1024;
 
-// What follows for each point and primitive, counted from what E(t) and the segmentation ask for.
+// Operations per point and primitive that E(t) and the segmentation need.
 /// normal . gradient.
 constexpr double k_cosine_operations = 5;
 /// |f| <= tolerance and |cosine| >= tolerance.
 constexpr double k_member_operations = 5;
 /// (beta f)^2.
 constexpr double k_exponent_operations = 2;
-/// Where a contribution is not zero: two exponentials to single precision (argument 6, polynomial 12, scale 3), the
-/// square of the angle from its cosine (18 for a polynomial, 3 around it), their sum for both sides of the surface (3),
-/// and one addition of both at once (twice as wide) to the sums of the point's class.
+/// For contributions other than zero: two exponentials to single precision (argument 6, polynomial 12, scale 3), the
+/// squared angle from its cosine (polynomial 18, rest 3), their sum for both sides of the surface (3), and one
+/// double-width addition of both to the sums of the point's class.
 constexpr double k_contribution_operations = 2 * 21 + 21 + 3 + 2;
 
-/// Points in single precision, from the cloud's middle.
+/// Points in single precision, relative to the cloud's centre.
 struct SinglePoints {
   explicit SinglePoints(const Points& points) {
     const Eigen::Vector3d origin = bounds_of(points).center();
@@ -62,7 +62,7 @@ void evaluate_all(const PrimitiveSet& primitives, const SinglePoints& points, Fi
   }
 }
 
-/// For each point and primitive: the formulas of the distance and gradient, averaged over the primitives.
+/// Work per point and primitive: the formulas of distance and gradient, averaged over the primitives.
 Work field_work(const Scene& scene) {
   const auto primitives = static_cast<double>(scene.model.primitives.size());
   Work work{.unit = "point x primitive", .units = primitives * static_cast<double>(scene.cloud.size())};
@@ -75,7 +75,7 @@ Work field_work(const Scene& scene) {
   return work;
 }
 
-/// The share of points and primitives whose contribution to E(t) is not zero, as a float sees it.
+/// Share of point-primitive pairs whose contribution to E(t) is not zero in single precision.
 double loud_share(const Scene& scene) {
   const Objective objective = resolve(scene.options.objective, scene.cloud.size(), scene.options.noise);
   constexpr double k_least = 1e-7;
@@ -91,7 +91,7 @@ double loud_share(const Scene& scene) {
   return static_cast<double>(loud) / static_cast<double>(scene.cloud.size() * scene.model.primitives.size());
 }
 
-/// Comparisons that put n numbers in order: log2(n!).
+/// Comparisons to sort n numbers: log2(n!).
 double sorting_comparisons(std::size_t n) {
   return std::lgamma(static_cast<double>(n) + 1) / std::log(2.0);
 }

@@ -16,7 +16,7 @@ GaOptions always_fifty_generations() {
   return options;
 }
 
-/// The look-ups alone, one a class for each tree that is scored: how large the trees are is not known from outside.
+/// Counts only one look-up per class and scored tree, since tree sizes are unknown here.
 Work search_work(const RankClasses& table, const Evolution& found) {
   const auto generations = static_cast<double>(found.generations);
   return {.unit = "generation",

@@ -6,13 +6,13 @@
 #include "micro/work.hpp"
 #include "scene.hpp"
 
-/// Merging the trees of partitions, and simplifying a tree: work on formulas, a node at a time.
+/// Merging of partition trees and simplification, per node.
 namespace cloud2csg::bench {
 namespace {
 
 constexpr std::size_t k_points_for_trees = 20'000;
 
-/// Each node is read once, and what is left of them is written once.
+/// Reads each node once and writes each remaining node once.
 Work node_work(std::span<const CsgTree> before, std::span<const CsgTree> after) {
   const std::size_t nodes = total_size(before);
   return {.unit = "node",
@@ -30,7 +30,7 @@ Microbenchmark merging(const char* name) {
           }};
 }
 
-/// All trees are simplified in a run.
+/// Each run simplifies all trees.
 Microbenchmark simplifying(std::size_t primitives, int height) {
   const auto trees = std::make_shared<std::vector<CsgTree>>(random_trees(primitives, height, 20'000));
   std::vector<CsgTree> simple;

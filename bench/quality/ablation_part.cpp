@@ -7,7 +7,7 @@
 namespace cloud2csg::bench {
 namespace {
 
-/// The strategy by cells, and the same with one thing changed or left out.
+/// The strategy by cells, and variants with one change each.
 std::vector<Setting> ablations() {
   std::vector<Setting> settings{{"all of it", {.strategy = Strategy::cells}}};
   const auto add = [&settings](const char* name, auto&& change) {

@@ -17,11 +17,11 @@ using Eigen::Vector3d;
 constexpr std::uint64_t k_defect_stream = 0x646566656374;
 constexpr double k_noise_of_diagonal = 0.005;
 constexpr double k_missing_share = 0.2;
-constexpr double k_patch_of_primitive = 0.25;  ///< points in a patch, of those that a primitive has on average
+constexpr double k_patch_of_primitive = 0.25;  ///< points in a patch, as a share of the average points of a primitive
 constexpr double k_outlier_share = 0.05;
 constexpr double k_large_outlier_share = 0.3;
 constexpr double k_turned_share = 0.2;
-constexpr double k_enlarged = 0.1;  ///< of the bounds, for outliers
+constexpr double k_enlarged = 0.1;  ///< enlargement of the bounds for outliers
 
 Vector3d random_direction(RandomStream& random) {
   for (;;) {
@@ -30,7 +30,6 @@ Vector3d random_direction(RandomStream& random) {
   }
 }
 
-/// The distance within which a share of the points lies.
 double radius_around(const Vector3d& middle, const PointCloud& cloud, double share) {
   std::vector<double> distances(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) distances[i] = (cloud.positions[i] - middle).norm();
@@ -39,7 +38,7 @@ double radius_around(const Vector3d& middle, const PointCloud& cloud, double sha
   return *nth;
 }
 
-/// Balls that each hold `patch_share` of the points.
+/// Removes balls that each hold `patch_share` of the points.
 PointCloud without_patches(const PointCloud& cloud, double patch_share, RandomStream& random) {
   const auto wanted = static_cast<std::size_t>(k_missing_share * static_cast<double>(cloud.size()));
   std::vector<bool> is_kept(cloud.size(), true);
@@ -88,7 +87,7 @@ void scale(Shape& shape, double factor) {
       shape);
 }
 
-/// Shifted by less than half of its least width, so that it overlaps what it is a copy of.
+/// A copy shifted by less than half of its smallest width, so that it overlaps the original.
 Primitive spurious_copy(const PrimitiveSet& primitives, RandomStream& random) {
   Primitive copy = primitives[random.below(primitives.size())];
   copy.id = "spurious";

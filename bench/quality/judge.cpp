@@ -14,8 +14,7 @@ using Eigen::Vector3d;
 constexpr std::uint64_t k_judge_stream = 0x6a75646765;
 constexpr std::size_t k_word = 64;
 
-/// Uniform in the union of the boxes, one for each volume of edge^3: a lattice is laid over each box, and a place in it
-/// is kept where no earlier box has it.
+/// Uniform random places in the union of boxes, one per volume edge^3: jittered lattices without repeated regions.
 Points places_in(std::span<const AlignedBox> boxes, double edge) {
   Points places;
   for (std::size_t b = 0; b < boxes.size(); ++b) {
@@ -42,7 +41,7 @@ Points places_in(std::span<const AlignedBox> boxes, double edge) {
 
 /// About `wanted` places, uniform in the union of the boxes.
 Points spread_places(std::span<const AlignedBox> boxes, std::size_t wanted) {
-  double volume = 0;  // what overlaps is counted twice, so that there are too few places at first
+  double volume = 0;  // overlaps count twice, so the first try finds too few places
   for (const AlignedBox& box : boxes) volume += box.volume();
   const double edge = std::cbrt(volume / static_cast<double>(wanted));
   const double found = static_cast<double>(places_in(boxes, edge).size());
@@ -66,7 +65,7 @@ Judge::Judge(const PrimitiveSet& primitives, const CsgTree& truth, std::size_t p
   std::vector<AlignedBox> boxes;
   for (const Primitive& primitive : primitives) boxes.push_back(bounds(primitive));
   const Points points = spread_places(boxes, places);
-  // A last word that is not full is left out: it need not be told from a full one.
+  // Drops the last partial word, so that all words are full.
   words_ = points.size() / k_word;
   std::vector<double> distances(points.size());
   for (const Primitive& primitive : primitives) {

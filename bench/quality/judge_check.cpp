@@ -13,7 +13,7 @@ namespace {
 
 constexpr int k_resolution = 128;
 
-/// The true tree without one of its primitives, for each of them.
+/// The true tree without one primitive, for each primitive.
 std::vector<CsgTree> faulty_trees(const Model& model) {
   std::vector<PrimitiveIndex> all(model.primitives.size());
   std::iota(all.begin(), all.end(), PrimitiveIndex{0});

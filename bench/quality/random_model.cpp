@@ -35,7 +35,7 @@ CsgTree draw_term(std::span<const PrimitiveIndex> leaves, RandomStream& random) 
   return term;
 }
 
-/// Terms of one to three leaves, most of them united: each primitive once, and so many of them again.
+/// Draws terms of one to three leaves, most of them united: each primitive once, plus `repeats` repeated leaves.
 CsgTree draw_repeating_tree(std::size_t primitives, std::size_t repeats, RandomStream& random) {
   std::vector<PrimitiveIndex> leaves(primitives);
   std::iota(leaves.begin(), leaves.end(), PrimitiveIndex{0});
@@ -51,7 +51,7 @@ CsgTree draw_repeating_tree(std::size_t primitives, std::size_t repeats, RandomS
   return simplify(tree);
 }
 
-/// Of the primitives' bounds, as far as a thousand places tell.
+/// Share of the primitives' bounds inside the tree, from a thousand places.
 double volume_share(const CsgTree& tree, const PrimitiveSet& primitives, RandomStream& random) {
   AlignedBox box;
   for (const Primitive& primitive : primitives) box.extend(bounds(primitive));
@@ -69,7 +69,7 @@ double volume_share(const CsgTree& tree, const PrimitiveSet& primitives, RandomS
 Model make_model(const RandomModel& random_model) {
   Model model = make_family(random_model.family, random_model.options);
   if (random_model.repeats == 0) return model;
-  constexpr double k_least_share = 0.01;  // else there is next to nothing to see
+  constexpr double k_least_share = 0.01;  // a smaller solid is hardly visible
   RandomStream random(random_model.options.seed, k_tree_stream);
   do {
     model.tree = draw_repeating_tree(model.primitives.size(), random_model.repeats, random);

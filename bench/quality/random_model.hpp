@@ -7,11 +7,10 @@
 
 namespace cloud2csg::bench {
 
-/// What make_model() needs.
 struct RandomModel {
   Family family = Family::random;
   FamilyOptions options = {};
-  /// So many leaves more than primitives: another tree over those of the family, in which some appear again.
+  /// Number of repeated leaves. If above 0, the model gets another tree, in which some primitives appear again.
   std::size_t repeats = 0;
 };
 
@@ -19,12 +18,12 @@ struct RandomModel {
 
 inline constexpr std::size_t k_points_per_primitive = 400;
 
-/// The family of a seed: of ten in turn, six are of family random, one each nest, plate, chain and panel.
+/// Out of ten consecutive seeds, six give family random, and one each nest, plate, chain and panel.
 [[nodiscard]] Family family_of_seed(std::uint64_t seed);
 /// A model of 5 to 40 primitives, clusters of up to 2 to 12, nests of 2 to 5 levels; a function of family and seed.
 [[nodiscard]] RandomModel draw_model(Family family, std::uint64_t seed);
 
-/// "random, cliques of 2-7", "one cluster of 12": what goes into one row.
+/// The row of a model in a table: "random, cliques of 2-7", "one cluster of 12".
 [[nodiscard]] std::string kind_of(const RandomModel& model);
 /// As in source code: "make_family(Family::random, {.primitives = 23, .clique_size = 7, ...})".
 [[nodiscard]] std::string source_of(const RandomModel& model);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t k_worst = 10;
 
-/// Models of a table, and their clouds.
+/// The models of a table, with the density of their clouds.
 struct RandomModels {
   std::string name, title;
   std::vector<RandomModel> models = {};
@@ -29,7 +29,7 @@ Task make_random_task(const RandomModel& random_model, std::size_t points_per_pr
   return make_task(model, std::move(cloud), std::make_shared<Judge>(model.primitives, *model.tree), seed);
 }
 
-/// Where models of one kind stand in the table: families in their order, cliques by size.
+/// Row order in the table: families in declaration order, cliques by size.
 using Kind = std::pair<Family, std::size_t>;
 
 Kind kind(const RandomModel& model) {
@@ -74,7 +74,7 @@ Table table_of(const Setting& setting, const RandomModels& of, std::span<const O
   return table;
 }
 
-/// Wrong ones first, the most wrong before all, then those that are larger than the truth, the largest first.
+/// Wrong models first, worst first; then models larger than the truth, largest first.
 Table worst_models(const Setting& setting, std::span<const RandomModel> models, std::span<const Outcome> outcomes) {
   Table table{.name = "worst",
               .title = fmt::format("Worst models, {}", setting.name),
@@ -120,7 +120,7 @@ void print_random(const QualityOptions& options) {
 }
 
 void print_clusters(const QualityOptions& options) {
-  // With 400 points a primitive, most pieces of the surface have none.
+  // With 400 points per primitive, most pieces of the surface have none.
   RandomModels clusters{.name = "clusters", .title = "Clusters", .points_per_primitive = 1000};
   for (const std::size_t size : {12U, 16U, 20U}) {
     for (std::size_t i = 0; i < options.cluster_models; ++i) {

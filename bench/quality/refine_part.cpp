@@ -25,7 +25,7 @@ Eigen::Vector3d random_direction(RandomStream& random) {
   return direction.normalized();
 }
 
-/// Each of its values off by up to a share of its size, and turned.
+/// Displaces each value by up to a share of the size, and turns the primitive.
 Primitive shaken(const Primitive& primitive, RandomStream& random) {
   const LocalFrame frame{.orientation = primitive.pose.orientation, .origin = primitive.pose.position};
   const double size = 2 * oriented_bounds(primitive).half_size.maxCoeff();
@@ -39,7 +39,7 @@ Primitive shaken(const Primitive& primitive, RandomStream& random) {
   return result;
 }
 
-/// Of exact points from the tree's surface, and of the axes of primitives from the true ones.
+/// Errors of exact points from the tree's surface, and of the primitives' axes from the true ones.
 struct Errors {
   double rms = 0, p99 = 0, axis_deg = 0;
 };

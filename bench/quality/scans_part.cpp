@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t k_points_per_primitive_scanned = 2000;
 constexpr std::array<std::size_t, 3> k_views{4, 8, 20};
 
-/// The default, and without what goes beyond the points.
+/// The default, and variants without evidence beyond the points.
 std::vector<Setting> scan_settings() {
   return {{"auto", {}},
           {"no lines of sight", {.cell_labels = {.sight = 0}}},

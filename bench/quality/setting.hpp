@@ -7,13 +7,12 @@
 
 namespace cloud2csg::bench {
 
-/// A way to extract that is measured.
 struct Setting {
   std::string name;
   ExtractOptions options;
 };
 
-/// All, the default first. Add one here, and all tables have it.
+/// All settings, the default first. New ones appear in all tables.
 [[nodiscard]] inline std::vector<Setting> all_settings() {
   return {
       {"auto", {}},

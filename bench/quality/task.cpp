@@ -14,14 +14,14 @@
 namespace cloud2csg::bench {
 namespace {
 
-/// Of the processor for the calling thread: neither other tasks nor other programs count.
+/// CPU time of the calling thread: other tasks and programs do not count.
 double thread_seconds() {
   timespec now{};
   (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Of a tree that is no solid at all; empty for others.
+/// The fault of an empty or unbounded tree; empty for others.
 std::string fault_of(const CsgTree& tree, std::size_t primitives) {
   if (primitives_of(tree).empty()) return "empty tree";
   return contains(tree, std::vector<bool>(primitives, false)) ? "unbounded tree" : "";
@@ -36,7 +36,7 @@ Outcome extract_and_judge(const Task& task, const Setting& setting) {
     const double start = thread_seconds();
     const Extraction result = extract_csg(task.cloud, task.primitives, options);
     const StageSeconds& wall = result.statistics.seconds;
-    // Without the fit of the result, which is measured after it.
+    // Without the final measurement of the fit.
     outcome.milliseconds = 1e3 * (thread_seconds() - start) * wall.extraction / wall.total;
     outcome.failure = fault_of(result.tree(), task.primitives.size());
     if (!outcome.failure.empty()) return outcome;
@@ -50,7 +50,7 @@ Outcome extract_and_judge(const Task& task, const Setting& setting) {
   return outcome;
 }
 
-/// For looking at.
+/// Writes the files of a task for inspection.
 void keep(const std::filesystem::path& stem, const Task& task, const Setting& setting) {
   std::filesystem::create_directories(stem.parent_path());
   ExtractOptions options = setting.options;
@@ -61,7 +61,7 @@ void keep(const std::filesystem::path& stem, const Task& task, const Setting& se
   write_point_cloud(file(".ply"), task.cloud);
 }
 
-/// A line that is overwritten on a terminal; elsewhere, only its end.
+/// A line that is overwritten on a terminal; elsewhere only the final one.
 void show_progress(const std::string& label, std::size_t done, std::size_t count) {
   static const bool is_terminal = isatty(STDERR_FILENO) == 1;
   if (is_terminal) fmt::print(stderr, "\r");

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Everything that most programs need, in one include. Headers of single stages are in cloud2csg/advanced/.
+/// Includes everything that most programs need. cloud2csg/advanced/ has the headers of single stages.
 
 #include "cloud2csg/compare.hpp"
 #include "cloud2csg/csg_tree.hpp"

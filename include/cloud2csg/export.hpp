@@ -11,7 +11,6 @@
 
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct OpenScadOptions {
   int facets = 64, mesh_resolution = 64;
   bool patterns = true;
@@ -29,20 +28,17 @@ void option_table(OptionsOf<OpenScadOptions>, auto&& field) {
   field(&O::comment, "comment", "Lines for the head of the file, such as the fit; without '//'", k_library);
 }
 
-/// An OpenSCAD program: the values of each primitive as named variables in a section of the customiser, a named module
-/// a primitive, the tree with indentation, chains of the same operation as one block. Of three or more equal solids, or
-/// equal combinations of up to 64, that are united, taken away or intersected, at equal steps or at equal angles about
-/// an axis, to 1e-6 of the model's size, the first is written, in a loop; so it is of two combinations that are equal
-/// or mirror images. Renders in OpenSCAD 2021.01 without warnings.
+/// An OpenSCAD program with named variables for each primitive's values in a section of the customiser, a named module
+/// per primitive, and the indented tree, a chain of one operation as one block. Operands become loops when three or
+/// more equal solids (or combinations of up to 64 solids) stand at equal steps or angles about an axis, or two
+/// combinations are equal or mirrored, to 1e-6 of the model's size. Renders in OpenSCAD 2021.01 without warnings.
 [[nodiscard]] std::string to_openscad(const Model& model, const OpenScadOptions& options = {});
 
-/// The flat language that OpenSCAD calculates with (.csg): each solid by a matrix, numbers in place of names, no loops.
-/// Circles have no number of facets of their own ($fn = 0), so that FreeCAD reads true cylinders and spheres; OpenSCAD
-/// makes facets by angle, down to a length of 0.01. Circles so small that it would make fewer than `facets` have that
-/// number, and 17 at least: FreeCAD reads those as round, too.
+/// OpenSCAD's flat language (.csg): each solid has a matrix, with numbers instead of names and no loops. Circles have
+/// $fn = 0, so that FreeCAD reads true cylinders and spheres. OpenSCAD makes their facets by angle, down to a length of
+/// 0.01. Circles too small for `facets` facets that way get $fn = max(`facets`, 17), still round in FreeCAD.
 [[nodiscard]] std::string to_openscad_csg(const Model& model, const OpenScadOptions& options = {});
 
-/// Its fields: see the table.
 struct ScriptOptions {
   int facet_resolution = 16;
   std::string comment = {};
@@ -53,18 +49,15 @@ void option_table(OptionsOf<ScriptOptions>, auto&& field) {
   field(&O::comment, "comment", "Lines for the head of the file; without '#'", k_library);
 }
 
-/// A macro for FreeCAD (.FCMacro, Python): a document in which each primitive is an object with its sizes and its
-/// placement, labelled with its id, and each operation one over others. In numbers that are read as they are here.
-/// Displaced solids, expressions and polytopes have facets.
+/// A FreeCAD macro (.FCMacro, Python). Each primitive is an object with sizes and placement, labelled with its id, and
+/// each operation is an object over others. Numbers are exact. Displaced solids, expressions and polytopes have facets.
 /// @throws Error when the solid is empty
 [[nodiscard]] std::string to_freecad_macro(const Model& model, const ScriptOptions& options = {});
 
-/// A script for CadQuery 2.2 or later (.py): the values of each primitive as named variables, then the solids, then the
-/// operations; the result is `part`.
+/// A script for CadQuery 2.2 or later (.py): variables of each primitive, solids, operations; the result is `part`.
 /// @throws Error when the solid is empty
 [[nodiscard]] std::string to_cadquery(const Model& model, const ScriptOptions& options = {});
 
-/// Its fields: see the table.
 struct ExportOptions {
   OpenScadOptions openscad = {};
   ScriptOptions script = {};
@@ -87,18 +80,16 @@ void option_table(OptionsOf<ExportOptions>, auto&& field) {
                       "many primitives"});
 }
 
-/// What a file does not say of itself.
+/// What the written file does not tell by itself.
 struct ExportReport {
-  /// STEP, BREP, meshes and scripts know bounded solids only: one that goes on beyond its primitives (a lone
+  /// STEP, BREP, meshes and scripts hold bounded solids only. A solid that reaches beyond its primitives (a lone
   /// half-space, a complement) is cut at this box around them. Absent when nothing was cut.
   std::optional<AlignedBox> cut_at = {};
   std::optional<BrepReport> brep = {};  ///< STEP and BREP
 };
 
 /// Writes a model by the file's ending: .json, .scad, .csg, .FCMacro, .py, .step, .stp, .brep, .stl, .off, .obj, .3mf,
-/// .dot.
-/// All but .json need a tree, STEP and BREP need OpenCASCADE (has_brep()).
-/// Nothing half-written. @throws Error
+/// .dot. All but .json need a tree; STEP and BREP need OpenCASCADE (has_brep()). No partial file. @throws Error
 ExportReport export_model(const std::filesystem::path& file, const Model& model, const ExportOptions& options = {},
                           const RunContext& run = {});
 

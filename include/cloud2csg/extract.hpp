@@ -17,21 +17,21 @@
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/advanced/surface.hpp"
 
-/// The whole method: a cloud and fitted primitives in, one tree out.
+/// The whole method: from a cloud and fitted primitives to one tree.
 namespace cloud2csg {
 
 enum class Strategy {
-  automatic,  ///< whatever is best: by cells where the points bear that out, else partitions, checked and polished
-  cells,      ///< space cut into cells, labelled by the points, and the solid taken apart: see cells.hpp
-  partition,  ///< the paper's: a tree per maximal clique, merged
-  baseline,   ///< the paper's baseline: all primitives in one genetic algorithm
+  automatic,  ///< cells where the points support their tree, else partitions, checked and polished
+  cells,      ///< label the cells of space by the points and decompose the solid: see cells.hpp
+  partition,  ///< the paper's method: one tree per maximal clique, merged
+  baseline,   ///< the paper's baseline: one genetic algorithm over all primitives
 };
 
-/// What runs in parallel in the search. The result is the same for each.
+/// The parallel parts of the search. The result does not depend on them.
 enum class Parallel {
   none,        ///< one thread for everything
   population,  ///< the trees of a generation
-  partitions,  ///< the partitions
+  partitions,
   both,
 };
 
@@ -48,7 +48,6 @@ constexpr auto names_of(Parallel /*any*/) {
                                             {"both", Parallel::both}});
 }
 
-/// Its fields: see the table.
 struct ExtractOptions {
   Strategy strategy = Strategy::automatic;
   Parallel parallel = Parallel::both;
@@ -108,16 +107,16 @@ void option_table(OptionsOf<ExtractOptions>, auto&& field) {
   field(&O::seed, k_seed);
 }
 
-/// As in the paper: its weights, its genetic algorithm, no polish, full precision; strategy partition.
+/// The paper's options: its weights and genetic algorithm, full precision, strategy partition, no polish.
 [[nodiscard]] ExtractOptions paper_options();
 
-/// Wall-clock seconds of each stage; those of the command line (reading, writing) are filled in by it.
+/// Wall-clock seconds of each stage. The command line fills in its own, read and write.
 struct StageSeconds {
   double read = 0, clean = 0, normals = 0, detect = 0, solids = 0;
   double segment = 0, overlap = 0, partition = 0, classes = 0, search = 0, merge = 0, simplify = 0;
   double refine = 0;
   double write = 0;
-  double extraction = 0;  ///< from cloud and primitives in memory to the simplified tree, or, refined, to the last one
+  double extraction = 0;  ///< from cloud and primitives in memory to the last simplified tree
   double total = 0;
 
   StageSeconds& operator+=(const StageSeconds& other);
@@ -128,17 +127,17 @@ struct PartitionStatistics {
   std::size_t points = 0, classes = 0;
   std::size_t generations = 0, evaluations = 0;
   double score = 0;           ///< E of the partition's tree over its own points
-  std::size_t tree_size = 0;  ///< after simplification
+  std::size_t tree_size = 0;  ///< number of nodes after simplification
 };
 
-/// How a component's partition trees became one.
+/// How the partition trees of a component became one tree.
 enum class MergeWay {
-  single,                  ///< there was one partition
-  paper,                   ///< the paper's order went through and the result held
-  dominance,               ///< by what primitives are to the partitions' trees: merge_by_dominance()
-  largest_common_subtree,  ///< the paper's by largest common subtrees first
+  single,                  ///< the component has one partition
+  paper,                   ///< merge in the paper's order, which passed the check
+  dominance,               ///< merge_by_dominance()
+  largest_common_subtree,  ///< the paper's merge with the largest common subtrees first
   joint,                   ///< partitions that did not merge were solved together
-  search,  ///< a search over the whole component: up to 24 primitives from the best of these, up to 127 anew
+  search,  ///< a search over the whole component: from the best tree so far for up to 24 primitives, anew for up to 127
 };
 constexpr auto names_of(MergeWay /*any*/) {
   return std::to_array<EnumName<MergeWay>>({{"single", MergeWay::single},
@@ -150,46 +149,45 @@ constexpr auto names_of(MergeWay /*any*/) {
 }
 
 struct MergeStatistics {
-  std::vector<MergeWay> ways;                    ///< one a connected component
-  std::size_t merges = 0;                        ///< pairs of trees put together
-  std::size_t blocked = 0;                       ///< pairs that had a common subtree but no valid merge node
-  std::size_t failed_checks = 0;                 ///< merged trees that fell short of what the partitions promised
+  std::vector<MergeWay> ways;  ///< one per connected component
+  std::size_t merges = 0;
+  std::size_t blocked = 0;                       ///< pairs with a common subtree but without a valid merge node
+  std::size_t failed_checks = 0;                 ///< merged trees that score less than the partitions promised
   std::size_t joint_solutions = 0;               ///< pairs of partitions solved together
-  std::size_t generations = 0, evaluations = 0;  ///< of searches over whole components and their polish
-  double worst_shortfall = 0;  ///< of the result: share of a primitive's promised score that is missing, worst one
+  std::size_t generations = 0, evaluations = 0;  ///< searches over whole components and their polish
+  double worst_shortfall = 0;  ///< largest share of a primitive's promised score that the result misses
 };
 
-/// Of the strategy by cells.
 struct CellStatistics {
   std::size_t cells = 0, patches = 0;  ///< that occur in space
-  std::size_t open_cells = 0;          ///< of which it is not sure whether they are in the solid
-  /// Of these and of cells that were not found, the share in the volume that the primitives take up: estimated.
+  std::size_t open_cells = 0;          ///< cells without a sure label
+  /// Estimated share of the open cells, and of cells that were not found, in the primitives' total volume.
   double open_volume = 0;
-  double speaking_points = 0;      ///< points that say something of the cells
-  double contradicted_points = 0;  ///< of these, those that the tree contradicts, and those that it would need more
+  double speaking_points = 0;      ///< points that support or contradict labels
+  double contradicted_points = 0;  ///< contradicting points and missing points of the tree, as cost_of() counts them
   std::size_t peeled = 0;          ///< primitives that were split off
-  std::vector<std::size_t> cores;  ///< how many primitives the rests had that were solved by formula
-  /// It is proved that no tree with all sure labels has fewer; absent when this one has not all of them.
+  std::vector<std::size_t> cores;  ///< number of primitives in each core that was solved by formula
+  /// Proved lower bound on the leaves of a tree with all sure labels. Absent when this tree lacks some sure label.
   std::optional<std::size_t> least_leaves = {};
-  bool is_minimal = false;  ///< it has no more
+  bool is_minimal = false;  ///< the tree has no more than least_leaves leaves
 
-  /// Of what the points say, the share that is contradicted.
+  /// Share of the speaking points that contradict the tree.
   [[nodiscard]] double contradicted_share() const { return contradicted_points / std::max(1.0, speaking_points); }
 };
 
-/// Of the way from a raw cloud to primitives.
+/// Statistics of the way from a raw cloud to primitives.
 struct FindingStatistics {
-  std::size_t raw_points = 0;        ///< that were given; those that were left out are not in ExtractStatistics::points
-  std::size_t added_points = 0;      ///< on a side that has none, and on hidden walls
-  bool normals_estimated = false;    ///< those given were of no use, or there were none
+  std::size_t raw_points = 0;      ///< points given; ExtractStatistics::points counts those that remain after cleaning
+  std::size_t added_points = 0;    ///< points added on an unseen side and on hidden walls
+  bool normals_estimated = false;  ///< there were no usable normals
   double diagonal = 0, spacing = 0;  ///< see Scale
-  double noise = 0, tolerance = 0;   ///< of the points; how far they may be from their surface
-  std::vector<SurfaceType> surfaces = {};   ///< that were found, the order is that of Snap::surface
-  std::size_t known = 0, known_points = 0;  ///< primitives that were known, and the points on them
-  std::size_t unexplained_points = 0;       ///< on no surface, and no known primitive
-  std::vector<Snap> snaps = {};             ///< what was made regular, and by how much
+  double noise = 0, tolerance = 0;   ///< standard deviation of the points; largest distance of a point from its surface
+  std::vector<SurfaceType> surfaces = {};   ///< types of the detected surfaces; Snap::surface is an index into them
+  std::size_t known = 0, known_points = 0;  ///< number of known primitives and of points on them
+  std::size_t unexplained_points = 0;       ///< points on no detected surface and no known primitive
+  std::vector<Snap> snaps = {};             ///< surfaces made regular, and by how much
   double disagreement = 0;                  ///< see SolidChoice
-  bool is_tree_of_choice = false;           ///< the tree is the one that the solids were chosen with
+  bool is_tree_of_choice = false;           ///< the result is the tree that the solids were chosen with
 };
 
 struct TreeStatistics {
@@ -200,17 +198,17 @@ struct TreeStatistics {
 
 struct FitStatistics {
   double objective = 0;                    ///< E of the result over all points
-  double rms_distance = 0;                 ///< of the points to the surface of the result
-  double p95_distance = 0;                 ///< 95 % of the points are nearer than this
-  double rms_angle_deg = 0;                ///< between normals and the surface's
-  double p95_angle_deg = 0;                ///< 95 % of the normals are nearer than this to the surface's
-  SegmentationTolerances tolerances = {};  ///< in force
-  std::size_t unexplained_points = 0;      ///< how many unexplained_points() there are with these tolerances
+  double rms_distance = 0;                 ///< root mean square distance of the points from the surface of the result
+  double p95_distance = 0;                 ///< 95 % of the points are nearer to the surface than this
+  double rms_angle_deg = 0;                ///< root mean square angle between normals and the surface's
+  double p95_angle_deg = 0;                ///< 95 % of the normals are within this angle of the surface's
+  SegmentationTolerances tolerances = {};  ///< the tolerances in force
+  std::size_t unexplained_points = 0;      ///< number of unexplained_points() with these tolerances
 };
 
-/// Of extract_refined_csg(): what became of the primitives. See Refinement.
+/// What extract_refined_csg() did to the primitives. See Refinement.
 struct RefineStatistics {
-  bool is_taken = false;  ///< false: the result has the primitives that were given, and no change below is in it
+  bool is_taken = false;  ///< false: the result has the given primitives, and the changes below do not apply
   int rounds = 0;
   std::size_t points = 0;
   double rms_before = 0, rms_after = 0;
@@ -231,53 +229,52 @@ struct ExtractStatistics {
   std::size_t components = 0;
   std::vector<PartitionStatistics> partitions;
   MergeStatistics merge;
-  std::optional<CellStatistics> cells;       ///< when the tree is that of the cells
-  std::optional<FindingStatistics> finding;  ///< when the primitives were found in the cloud
-  std::optional<RefineStatistics> refine;    ///< when the primitives were to be refined
-  std::vector<TreeStep> steps;               ///< on the way to the tree, and its nodes after each
+  std::optional<CellStatistics> cells;       ///< present when the tree comes from the cells
+  std::optional<FindingStatistics> finding;  ///< present when the primitives were detected in the cloud
+  std::optional<RefineStatistics> refine;    ///< present when refinement was requested
+  std::vector<TreeStep> steps;               ///< steps on the way to the tree, with its size after each
   TreeStatistics before_simplification, tree;
   FitStatistics fit;
   StageSeconds seconds;
   std::vector<std::string> warnings;
 };
 
-/// What was found in a cloud, whichever way.
+/// The result of an extraction, with or without detection of primitives.
 struct Extraction {
-  Model model;  ///< primitives, and always a tree over them
+  Model model;  ///< the primitives and a tree over them; the tree is always present
   ExtractStatistics statistics = {};
   [[nodiscard]] const CsgTree& tree() const { return *model.tree; }
-  // Where the primitives were found in the cloud:
-  PointCloud cloud = {};                       ///< the points that were used: cleaned, with normals
-  std::vector<DetectedSurface> surfaces = {};  ///< that these lie on, but for what lies on known primitives
-  std::vector<SurfacePoints> points = {};      ///< of these, the ones on each of the primitives, as these were found
+  // Only after detection of primitives:
+  PointCloud cloud = {};                       ///< the points used: cleaned, with normals
+  std::vector<DetectedSurface> surfaces = {};  ///< surfaces of the points that lie on no known primitive
+  std::vector<SurfacePoints> points = {};      ///< points of `cloud` on each primitive as it was detected
 };
 
-/// Section 4 of the paper from cloud to tree, with a merge that is checked against the cloud and cannot fail.
-/// The same seed gives the same tree for any number of threads.
-/// A triggered stop token ends the search with the best tree so far (statistics.complete is false).
+/// Section 4 of the paper, from cloud to tree. The merge is checked against the cloud and always gives a tree. The same
+/// seed gives the same tree for any number of threads. A stop gives the best tree (statistics.complete is false).
 /// @throws Error when the cloud has no normals or no points, there are no primitives, or no point is near any of them;
 /// Cancelled when stopped before the search began.
 [[nodiscard]] Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const ExtractOptions& options = {}, const RunContext& run = {});
 
-/// The refinement that goes with an extraction: normals may be as far off.
+/// Refinement options that match an extraction: the same angle tolerance of normals.
 [[nodiscard]] RefineOptions refine_options_for(const ExtractOptions& extraction);
 
-/// extract_csg(), refine_primitives() on its tree, and extract_csg() again over what comes out; of the trees over both
-/// sets of primitives, the one with the highest E, measured with the refined noise. The statistics are those of the
-/// extraction that was taken, with the seconds of all. Stopped early, or past its time limit: the best so far.
+/// Runs extract_csg(), refine_primitives() on its tree, and extract_csg() again over the refined primitives. Returns
+/// the tree with the highest E among those over both sets of primitives, measured with the refined noise. Statistics
+/// are those of its extraction, with the seconds of all steps. A stop or time limit gives the best so far.
 /// @throws Error as extract_csg() and validate(RefineOptions); Cancelled.
 [[nodiscard]] Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives,
                                              const ExtractOptions& options = {},
                                              const RefineOptions& refine_options = {}, const RunContext& run = {});
 
-/// The points that a tree does not explain: farther from its surface than the tolerance, or with a normal that is not
-/// within the angle of the surface's outward one. Ascending. O(points x primitives near each)
+/// The points that a tree does not explain, ascending: those farther from its surface than the tolerance, or with a
+/// normal outside of the angle tolerance around the surface's outward normal. O(points x primitives near each)
 [[nodiscard]] std::vector<std::uint32_t> unexplained_points(const Model& model, const PointCloud& cloud,
                                                             const SegmentationTolerances& tolerances,
                                                             const RunContext& run = {});
 
-/// The statistics as the JSON of the command line's --stats.
+/// The statistics as JSON, as the command line's --stats writes them.
 [[nodiscard]] std::string to_json(const ExtractStatistics& statistics);
 
 }  // namespace cloud2csg

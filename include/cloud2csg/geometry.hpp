@@ -6,11 +6,10 @@
 #include <span>
 #include <vector>
 
-/// Small things on top of Eigen: points as structure of arrays, rigid poses, boxes.
+/// Small types on top of Eigen: points as structure of arrays, rigid poses, boxes.
 namespace cloud2csg {
 
-/// Points or directions that someone else owns, as structure of arrays: three spans of equal length. `Real` is double
-/// or float.
+/// A view of points or directions as structure of arrays: three spans of equal length. `Real` is double or float.
 template <class Real>
 struct BasicPointsView {
   std::span<const Real> x, y, z;
@@ -42,7 +41,7 @@ struct Points {
   operator PointsView() const { return view(); }  // NOLINT(google-explicit-constructor): a view is what it is
 };
 
-/// A rigid motion from a solid's own frame to the world: x_world = orientation * x_local + position.
+/// A rigid motion from a solid's local frame to the world: x_world = orientation * x_local + position.
 struct Pose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< unit length
@@ -53,10 +52,10 @@ struct Pose {
   }
 };
 
-/// `outer` after `inner`: compose(a, b).to_world(x) == a.to_world(b.to_world(x)).
+/// Applies `inner`, then `outer`: compose(a, b).to_world(x) == a.to_world(b.to_world(x)).
 [[nodiscard]] Pose compose(const Pose& outer, const Pose& inner);
 
-/// A pose whose local z axis is `axis` (any length but zero), at `position`.
+/// A pose at `position` whose local z axis is `axis` (any length but zero).
 [[nodiscard]] Pose pose_from_axis(const Eigen::Vector3d& position, const Eigen::Vector3d& axis);
 
 /// Axis-aligned box; may be infinite in some directions (half-spaces).

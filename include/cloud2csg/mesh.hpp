@@ -17,7 +17,6 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Its fields: see the table.
 struct MeshingOptions {
   int resolution = 128;
   bool corners_first = true;
@@ -31,28 +30,28 @@ void option_table(OptionsOf<MeshingOptions>, auto&& field) {
         k_library);
 }
 
-/// The surface of a solid as a closed mesh, by dual contouring of its implicit value with the known gradients, so
-/// that sharp edges stay sharp. Every edge has exactly two triangles. Unbounded solids are cut at `bounds`.
-/// Empty when the solid is. O(surface cells x size): space far from the surface is skipped, and near it only the
-/// primitives that can matter are evaluated. Expressions are evaluated everywhere within their bounds.
+/// The surface of a solid as a closed mesh, by dual contouring of its implicit value with exact gradients, which keeps
+/// edges sharp. Every edge has exactly two triangles. Unbounded solids are cut at `bounds`. Empty for an empty solid.
+/// O(surface cells x size): it skips space far from the surface and evaluates only the primitives that matter near it.
+/// Expressions are evaluated everywhere within their bounds.
 /// @throws Error when neither the solid nor `bounds` is finite, or the resolution is not 4 to 4096; Cancelled
 [[nodiscard]] TriangleMesh mesh_surface(const Model& model, const AlignedBox& bounds,
                                         const MeshingOptions& options = {}, const RunContext& run = {});
 
-/// Bounds of the solid: those of its bounded primitives where the formula allows, by the tree (the union of both
-/// for a union, the common part for an intersection, the first for a difference). May be infinite.
+/// Bounds by the tree, maybe infinite: a union has both operands', an intersection their overlap, a difference the
+/// first's.
 [[nodiscard]] AlignedBox bounds_of(const Model& model);
 
 /// Whether every edge has exactly two triangles, in opposite directions.
 [[nodiscard]] bool is_watertight(const TriangleMesh& mesh);
-/// Volume enclosed by a closed mesh, positive when it is oriented outward.
+/// Volume enclosed by a closed mesh; positive when the mesh is oriented outward.
 [[nodiscard]] double volume_of(const TriangleMesh& mesh);
 
-/// .stl (binary and text) .off .obj .ply .3mf .glb by the file's ending. Polygons are cut into triangles, vertices at
-/// the same place joined; triangles that lose a corner by it are left out. .3mf is read in millimetres.
-/// O(vertices log vertices) @throws Error for whatever else a file may hold
+/// Reads .stl (binary and text) .off .obj .ply .3mf .glb by the file's ending. Cuts polygons into triangles, joins
+/// equal vertices and drops triangles that lose a corner by it. .3mf is read in millimetres. O(vertices log vertices)
+/// @throws Error for any other content
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);
-/// .stl (binary) .off .obj .3mf by the file's ending. Nothing half-written. @throws Error
+/// Writes .stl (binary) .off .obj .3mf by the file's ending. Never leaves a partial file. @throws Error
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
 
 }  // namespace cloud2csg

@@ -8,29 +8,27 @@
 
 namespace cloud2csg {
 
-/// A model file (.json), or one of OpenSCAD: .csg as parse_openscad() reads it, .scad too; what is beyond that in a
-/// .scad, OpenSCAD flattens, where it is installed, which `warnings` tell. Names and digits beyond six are lost by
-/// that.
-/// @throws Error naming the file and the path of the field (e.g. "/primitives/3/radius"): not JSON, not the schema
-/// (unknown fields are refused), duplicate or dangling id, a parameter that validate() refuses.
+/// Reads a model file (.json) or OpenSCAD's language (.csg, .scad) as parse_openscad() does. OpenSCAD, if installed,
+/// flattens a .scad beyond that; names and digits beyond six are then lost (see `warnings`).
+/// @throws Error naming the file and the path of the field (e.g. "/primitives/3/radius"): not JSON, against the schema
+/// (unknown fields are refused), duplicate or unknown id, a parameter that validate() refuses.
 [[nodiscard]] Model read_model(const std::filesystem::path& file);
-/// The same from JSON text; `name` stands for the file in messages.
+/// The same from JSON text; messages use `name` as the file name.
 [[nodiscard]] Model parse_model(std::string_view json, const std::string& name = "model");
 
-/// The model that a text in OpenSCAD's language makes, of the part of the language that docs/openscad.md lists: cube,
-/// sphere, cylinder, convex polyhedron, torus, moved by any affine map after which they are solids of ours; union,
-/// difference, intersection; variables, loops, modules without parameters. Solids that are equal become one primitive.
-/// Solids are round whatever $fn is, but for cylinders of 3 to 8 facets, which become prisms. Nesting is limited, so
-/// no text overflows the stack. O(n log n)
+/// The model of a text in OpenSCAD's language. docs/openscad.md lists the supported part: cube, sphere, cylinder,
+/// convex polyhedron, torus, under any affine map that keeps them among our solids; union, difference, intersection;
+/// variables, loops, modules without parameters. Equal solids become one primitive. $fn is ignored and solids are
+/// round, except that cylinders of 3 to 8 facets become prisms. Nesting is limited to protect the stack. O(n log n)
 /// @throws Error naming the file, line and column
 [[nodiscard]] Model parse_openscad(std::string_view text, const std::string& name = "model");
 
-/// The tree is written n-ary: chains of the same union or intersection become one node with many children.
+/// Writes the tree n-ary: a chain of one union or intersection becomes a node with many children.
 [[nodiscard]] std::string to_json(const Model& model);
-/// Nothing half-written: a temporary file, then a rename. @throws Error
+/// Never leaves a partial file: writes a temporary file, then renames it. @throws Error
 void write_model(const std::filesystem::path& file, const Model& model);
 
-/// The JSON schema that model files are validated against.
+/// The JSON schema of model files.
 [[nodiscard]] std::string_view model_schema();
 
 }  // namespace cloud2csg

@@ -10,10 +10,9 @@
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/extract.hpp"
 
-/// The whole way: a raw cloud in, solids and one tree out.
+/// The whole way from a raw cloud to solids and one tree.
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct ReconstructOptions {
   PrimitiveSet known = {};
   PrepareOptions preparation = {};
@@ -46,21 +45,19 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
         {.absent = "they stay where they are", .option = k_no_option});
 }
 
-/// The options with one seed for all that is random in them.
 [[nodiscard]] ReconstructOptions with_seed(ReconstructOptions options, std::uint64_t seed);
 
-/// Cleans and orients the cloud, detects its surfaces and chooses solids that these bound, with the tree that they were
-/// chosen with: prepare_cloud(), detect_surfaces(), choose_solids(). Points that lie on known primitives are not
-/// offered to the detection; known primitives that the points do not bear out are in no tree, and a warning names them.
-/// The same seed gives the same for any number of threads.
-/// @throws Error when the cloud has too few points, no surface was found in it, it has no inside, or a known primitive
-/// is invalid or has the id of another, or the time limit of the extraction is over before surfaces were found; then
-/// on, there are solids to give at any time, with a warning. Cancelled.
+/// Cleans and orients the cloud, detects its surfaces, and chooses solids bounded by them with a tree: prepare_cloud(),
+/// detect_surfaces(), choose_solids(). Detection skips points on known primitives. The tree leaves out known primitives
+/// that the points do not support, and a warning names them. The same seed gives the same result for any number of
+/// threads. A time limit that ends after the detection of surfaces gives the best solids so far, with a warning.
+/// @throws Error when the cloud has too few points, no surface or no inside was found, a known primitive is invalid or
+/// has the id of another, or the extraction's time limit ends before surfaces were found; Cancelled.
 [[nodiscard]] Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},
                                          const RunContext& run = {});
 
-/// find_primitives(), then extract_csg() over them. The tree is that of the extraction, or the one that the solids were
-/// chosen with, whichever costs less in disagreement with the cloud and leaves; or else the refined one.
+/// find_primitives(), then extract_csg(). Returns the extracted tree or the tree of the solid choice, whichever has the
+/// lower cost (disagreement with the cloud plus leaves); with refinement, the refined tree where it is taken.
 /// @throws as find_primitives() and extract_csg()
 [[nodiscard]] Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {},
                                      const RunContext& run = {});

@@ -7,21 +7,20 @@
 
 namespace cloud2csg {
 
-/// How far a stage has come. `total` is 0 when it is not known in advance.
+/// Progress of a stage. `total` is 0 when it is not known in advance.
 struct Progress {
-  std::string_view stage;  ///< as in the statistics: "read", "overlap", "classes", "search"...
+  std::string_view stage;  ///< name as in the statistics: "read", "overlap", "classes", "search"...
   std::size_t done = 0;
   std::size_t total = 0;
-  /// What is counted, in the plural: "points", "primitives"... Empty where the counts are steps that mean nothing to a
-  /// user. A stage with a unit has done all of `total` when the next one starts.
+  /// The counted things in the plural: "points", "primitives"... Empty where the counts mean nothing to a user. A stage
+  /// with a unit has reached `total` when the next one starts.
   std::string_view unit = {};
 };
 
-/// How to run, never what to compute: the result does not depend on anything in here, except that a
-/// triggered stop token ends the work early. The seed is an option of the stage that uses it.
+/// How to run. Nothing here changes the result, except that a triggered stop token ends the work early.
 struct RunContext {
   std::stop_token stop = {};
-  /// Called from the thread that called the library, or from one worker at a time.
+  /// Called by the calling thread, or by one worker at a time.
   std::function<void(const Progress&)> on_progress = {};
   int threads = 1;  ///< 0 = all cores
 

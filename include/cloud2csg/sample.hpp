@@ -8,10 +8,9 @@
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/point_cloud.hpp"
 
-/// Clouds from known shapes: points on a surface, and a range scanner around it.
+/// Clouds from known shapes: points on a surface, and a simulated range scanner.
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct SampleOptions {
   std::size_t count = 10'000;
   double density = 0, noise = 0, normal_noise_deg = 0;
@@ -28,22 +27,20 @@ void option_table(OptionsOf<SampleOptions>, auto&& field) {
         "Standard deviation by which normals are tilted, in degrees; of models only", at_least(0), {.unit = "DEG"});
   field(&O::seed, k_seed);
 }
-/// Neither a count nor a density.
+/// Refuses options with neither a count nor a density.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const SampleOptions& options);
 
-/// Points on a model's surface: uniform by area, only where the primitives' surfaces are the surface of the whole
-/// solid, with outward normals. Positions are moved by the noise after the normal was taken.
+/// Draws points uniformly by area from the solid's surface, with the outward normals of their places before the noise.
 /// @throws Error when the solid is empty or unbounded; Cancelled.
 [[nodiscard]] PointCloud sample_surface(const Model& model, const SampleOptions& options = {},
                                         const RunContext& run = {});
 
-/// Moves each coordinate by a Gaussian of this sigma, in the cloud's units; normals stay. The same seed moves the same
-/// way. O(n)
+/// Moves each coordinate by a Gaussian of this sigma, in the cloud's units; normals stay. Deterministic. O(n)
 [[nodiscard]] PointCloud with_noise(PointCloud cloud, double sigma, std::uint64_t seed = 1);
 
-/// A range scanner that is put around a part, view by view. Lengths are shares of the diagonal of the part's bounds
-/// where nothing else is said; the part's bounding sphere has half that diagonal as radius. The defaults are those of a
-/// fair hand-held scanner on a part that reflects well. Its fields: see the table.
+/// A range scanner that views a part from several places. Lengths are shares of the diagonal of the part's bounds
+/// unless stated otherwise; the part's bounding sphere has half that diagonal as radius. The defaults are those of a
+/// fair hand-held scanner on a part that reflects well. option_table() describes the fields.
 struct ScanOptions {
   std::size_t views = 20;
   bool on_table = false;
@@ -102,23 +99,22 @@ void option_table(OptionsOf<ScanOptions>, auto&& field) {
   field(&O::meshing, "meshing", "Models: the mesh that tells what a ray hits first");
   field(&O::seed, k_seed);
 }
-/// Neither a count nor a step.
+/// Refuses options with neither a count nor an angular step.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const ScanOptions& options);
 
 /// The same scanner without noise, quantisation, missing returns, outliers, mixed pixels and misregistration.
 [[nodiscard]] ScanOptions without_defects(ScanOptions options);
 
-/// What scanners see of a mesh: the first hit of each ray, from both sides of triangles, with the defects of the
-/// options. Sensor positions are where the registration of the views puts them, moved along with the points.
-/// Points come view by view, row by row. The result does not depend on the number of threads. (Rays that hit within
-/// rounding of an edge may take either of its triangles on machines with other instruction sets.)
-/// O(triangles log triangles + rays log triangles).
+/// Simulated scans of a mesh: the first hit of each ray, on either side of a triangle, with the defects of the options.
+/// Sensor positions share the misregistration of their view. Points come view by view, row by row. The result does not
+/// depend on the number of threads. (Rays that hit within rounding of an edge may take either of its triangles on other
+/// instruction sets.) O(triangles log triangles + rays log triangles).
 /// @throws Error naming the option that is out of range, or when there is nothing to see; Cancelled.
 [[nodiscard]] PointCloud scan_mesh(const TriangleMesh& mesh, const ScanOptions& options = {},
                                    const RunContext& run = {});
 
-/// The same for a model: its mesh tells what each ray hits first, the model's formulas where exactly. What is thinner
-/// than a few cells of the mesh may be missed.
+/// The same for a model. A ray's hit on its mesh is moved onto the solid's surface. May miss parts thinner than some
+/// cells.
 /// @throws Error as scan_mesh(), and when the solid is empty or unbounded; Cancelled.
 [[nodiscard]] PointCloud scan_model(const Model& model, const ScanOptions& options = {}, const RunContext& run = {});
 

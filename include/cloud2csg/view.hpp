@@ -15,8 +15,7 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/run_context.hpp"
 
-/// Clouds and solids to look at: pictures, without a window or a browser, and the report, one HTML file that shows a
-/// cloud, the solid that was made of it, and how far apart they are.
+/// Pictures of clouds and solids, made without a window, and the report: an HTML file with cloud, solid and distances.
 namespace cloud2csg {
 
 /// Red, green and blue of each pixel, row by row from the top.
@@ -25,14 +24,13 @@ struct Image {
   std::vector<std::uint8_t> rgb = {};
 };
 
-/// What is to be seen: the cloud on the left, the solid on the right, in the same view. What is absent has no half.
+/// Content of a picture: the cloud on the left and the solid on the right, in the same view, if present.
 struct Scene {
-  Model model = {};  ///< without a tree there is no solid
+  Model model = {};  ///< shown as a solid only with a tree
   std::optional<PointCloud> cloud = {};
-  std::vector<Colour> colours = {};  ///< of the points, one each; none: all are grey
+  std::vector<Colour> colours = {};  ///< one per point; none: all points are grey
 };
 
-/// Its fields: see the table.
 struct PictureOptions {
   int width = 0, height = 600;
   double azimuth_deg = -60, elevation_deg = 25;
@@ -55,26 +53,24 @@ void option_table(OptionsOf<PictureOptions>, auto&& field) {
         "Cells along the longest side of the solid's mesh, of which only outlines show any", from_to(4, 4096),
         k_library);
 }
-/// More pixels than 4 million.
+/// Refuses more than 4 million pixels.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const PictureOptions& options);
 
-/// The colour of a pixel in this row where there is nothing.
+/// The background colour of this row of pixels.
 [[nodiscard]] Colour background(const PictureOptions& options, int row);
 
-/// A parallel projection, three by three rays a pixel. The solid has the colours of its primitives
-/// (primitive_colour()), and lines where these meet, at edges and outlines. The same for any number of threads.
-/// O(pixels x primitives near each + points).
+/// A parallel projection with 3 x 3 rays per pixel. The solid has primitive_colour() and lines between primitives, at
+/// edges and outlines. Does not depend on threads. O(pixels x primitives near each + points).
 /// @throws Error when the scene is empty or an option is out of range; Cancelled
 [[nodiscard]] Image draw_picture(const Scene& scene, const PictureOptions& options = {}, const RunContext& run = {});
 
-/// The image as a PNG file's bytes. @throws Error when it has no pixels or cannot be compressed.
+/// The image as the bytes of a PNG file. @throws Error when it has no pixels or cannot be compressed.
 [[nodiscard]] std::string to_png(const Image& image);
 
-/// Nothing half-written. @throws as draw_picture(), and when the file cannot be written.
+/// Never leaves a partial file. @throws as draw_picture(), and when the file cannot be written.
 void write_picture(const std::filesystem::path& file, const Scene& scene, const PictureOptions& options = {},
                    const RunContext& run = {});
 
-/// An option that was in force.
 struct ReportParameter {
   std::string group, name, value;
 };
@@ -85,19 +81,19 @@ struct ReportDownload {
   std::string content;
 };
 
-/// What a report tells of; what is absent has no place on the page.
+/// The content of a report; absent parts do not appear on the page.
 struct Report {
   std::string title = {};   ///< e.g. the name of the cloud's file
-  std::string source = {};  ///< a line on where it comes from
+  std::string source = {};  ///< one line about the origin of the data
   Model model = {};         ///< with a tree
   std::optional<PointCloud> cloud = {};
   std::optional<ExtractStatistics> statistics = {};
   std::vector<ReportParameter> parameters = {};
   std::vector<ReportDownload> downloads = {};
-  std::vector<std::string> warnings = {};  ///< beyond those of the statistics
+  std::vector<std::string> warnings = {};  ///< in addition to those of the statistics
 };
 
-/// How large the page is: see the table.
+/// Limits on the size of the page. option_table() describes the fields.
 struct ReportOptions {
   std::size_t most_points = 100'000;
   int resolution = 128, part_resolution = 64;
@@ -120,32 +116,31 @@ void option_table(OptionsOf<ReportOptions>, auto&& field) {
       "Parts of the tree that have a mesh of their own. The whole, then primitives, then inner nodes from the root on.",
       at_least(1));
 }
-/// Fewer triangles in all than of the solid.
+/// Refuses fewer triangles in all than for the solid.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const ReportOptions& options);
 
-/// A distance report as in metrology: signed distances of points to a solid's surface, positive outside.
+/// Summary of signed distances from points to a solid's surface, positive outside, as in metrology.
 struct DeviationSummary {
   std::size_t points = 0;
   double mean = 0, standard_deviation = 0;
   double rms = 0;
-  double p95 = 0;  ///< 95 % are nearer than this
+  double p95 = 0;  ///< 95 % of the distances are smaller in absolute value
   double least = 0, greatest = 0;
 };
 
-/// Of the distances given; all 0 for none. O(n)
+/// All fields are 0 for no distances. O(n)
 [[nodiscard]] DeviationSummary summarise_deviation(std::vector<double> signed_distances);
 
-/// Whether this build has the page that reports are made of: it takes Node.js to build it.
+/// Whether this build contains the report page, which needs Node.js at build time.
 [[nodiscard]] bool has_report_page();
 
-/// The report as the text of a page that needs nothing else, no network either: meshes and points are quantised
-/// (positions to 1/65535 of the bounds, distances to 11 bits) and compressed in it. All texts of the model are part of
-/// that, so that none can be taken for HTML.
+/// The report as a self-contained HTML page. Meshes and points are quantised (positions to 1/65535 of the bounds,
+/// distances to 11 bits) and compressed. So are texts of the model, and none can be taken for HTML.
 /// @throws Error when the model has no tree, the page is not in this build, an option is out of range; Cancelled
 [[nodiscard]] std::string report_page(const Report& report, const ReportOptions& options = {},
                                       const RunContext& run = {});
 
-/// Nothing half-written. @throws as report_page(), and when the file cannot be written.
+/// Never leaves a partial file. @throws as report_page(), and when the file cannot be written.
 void write_report(const std::filesystem::path& file, const Report& report, const ReportOptions& options = {},
                   const RunContext& run = {});
 

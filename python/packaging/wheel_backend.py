@@ -45,7 +45,7 @@ def installed_package(stage, build_folder):
     build = pathlib.Path(build_folder or ROOT / "build/wheel")
     if build_folder is None:
         subprocess.run(["cmake", *OPTIONS, "-B", build, f"-DPython_EXECUTABLE={sys.executable}"], cwd=ROOT, check=True)
-        # As the preset does, so that builds share what the compiler's cache has.
+        # As in the preset, so that builds share the compiler's cache.
         cached = {**os.environ, "CCACHE_BASEDIR": str(ROOT), "CCACHE_NOHASHDIR": "1"}
         subprocess.run(["cmake", "--build", build, "--target", "cloud2csg_package"], env=cached, check=True)
     for component in ("Python", "Wheel"):

@@ -2,12 +2,12 @@
 
 #include <pybind11/pybind11.h>
 
-/// The Python module, a concept a file. Names, defaults and units are those of the library; see docs/python.md.
+/// The Python module, one file per concept. Names, defaults and units are the library's; see docs/python.md.
 namespace cloud2csg::python {
 
 namespace py = pybind11;
 
-// Each adds its classes and functions to the module; those of a later one use those of the ones before it.
+// Each adds its classes and functions to the module; later ones use classes of earlier ones.
 void bind_errors(py::module_& module);
 void bind_options(py::module_& module);
 void bind_clouds(py::module_& module);

@@ -10,7 +10,7 @@
 
 namespace cloud2csg::python {
 
-/// `cloud2csg.PointCloud`: a cloud that does not change, and what is known of where it comes from.
+/// `cloud2csg.PointCloud`: an immutable cloud with facts about its origin.
 class Cloud {
  public:
   explicit Cloud(PointCloud points, bool is_exact = false, std::vector<std::string> warnings = {})
@@ -20,7 +20,7 @@ class Cloud {
   [[nodiscard]] bool is_exact() const { return is_exact_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// Arrays of shape (n, 3), made when first asked for; None where the cloud has no such.
+  /// Arrays of shape (n, 3), made on first use; None where the cloud has no such data.
   [[nodiscard]] pybind11::object position_rows() { return rows(points_.positions, position_rows_); }
   [[nodiscard]] pybind11::object normal_rows() { return rows(points_.normals, normal_rows_); }
   [[nodiscard]] pybind11::object sensor_rows() { return rows(points_.sensor_positions, sensor_rows_); }
@@ -34,7 +34,7 @@ class Cloud {
   pybind11::object position_rows_, normal_rows_, sensor_rows_;
 };
 
-/// The cloud itself, or one of what PointCloud(...) takes: an array of positions.
+/// The cloud itself, or a new one from an argument of PointCloud(...): an array of positions.
 /// @throws ValueError, TypeError
 [[nodiscard]] pybind11::object to_cloud(const pybind11::object& cloud);
 

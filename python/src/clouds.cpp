@@ -36,7 +36,7 @@ namespace {
 
 using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
 
-/// Directions at unit length; those that have it keep their bits.
+/// Scales directions to unit length; unit vectors keep their bits.
 void normalise(Points& normals) {
   constexpr double k_rounding = 8 * std::numeric_limits<double>::epsilon();  // as read_point_cloud()
   for (std::size_t i = 0; i < normals.size(); ++i) {

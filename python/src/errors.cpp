@@ -10,7 +10,7 @@
 namespace cloud2csg::python {
 namespace {
 
-/// Translators are functions without a state, so the class of the module is looked up.
+/// Translators are stateless functions, so this looks up the module's class.
 void raise(const Error& error) {
   const py::object type = py::module_::import("cloud2csg._native").attr("Error");
   const py::object raised = type(error.what());
@@ -21,7 +21,7 @@ void raise(const Error& error) {
   PyErr_SetObject(type.ptr(), raised.ptr());
 }
 
-/// Which function takes a file of this kind, where another one was given it.
+/// The function that takes a file of this kind, to suggest it in place of another.
 const char* taker_of(FileKind kind) {
   switch (kind) {
     case FileKind::cloud:

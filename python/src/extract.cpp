@@ -31,7 +31,7 @@ std::optional<RefineOptions> refine_options(const py::object& refine, const Extr
   return refine_options_for(options);
 }
 
-/// `seed` and `refine` win over what the options say.
+/// `seed` and `refine` override the options.
 ReconstructOptions asked_for(const AnyOptions& options, const Cloud& cloud, std::optional<std::uint64_t> seed,
                              const py::object& refine) {
   ReconstructOptions raw;
@@ -45,7 +45,6 @@ ReconstructOptions asked_for(const AnyOptions& options, const Cloud& cloud, std:
   return raw;
 }
 
-/// Over primitives that are known.
 Extraction extract_over(const Cloud& cloud, const PrimitiveSet& primitives, const ReconstructOptions& options,
                         const RunContext& run) {
   validate(options);

@@ -9,7 +9,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// Enough that what a tree needs beside its columns is made seldom, few enough for all cores and for Ctrl-C.
+/// Large enough to amortise a tree's set-up, small enough for all cores and for Ctrl-C.
 constexpr std::size_t k_block = 16'384;
 
 /// Calls work(points of a block, index of its first one).

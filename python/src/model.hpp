@@ -12,10 +12,10 @@
 
 namespace cloud2csg::python {
 
-/// Primitives of a model, or of any iterable of primitives. @throws Error for an id that is there twice; TypeError
+/// Primitives of a model, or of any iterable of primitives. @throws Error for a repeated id; TypeError
 [[nodiscard]] PrimitiveSet to_primitives(const pybind11::object& primitives);
 
-/// Writes the report where the file ends in .html, else the model. @throws Error
+/// Writes the report for a file that ends in .html, else the model. @throws Error
 [[nodiscard]] ExportReport write_any(const std::filesystem::path& file, const Report& report,
                                      const std::optional<ExportOptions>& options, const RunArguments& arguments);
 

@@ -70,7 +70,7 @@ Model make_model(const py::object& primitives, const py::object& tree, std::stri
   return model;
 }
 
-/// Whether a file can be a model's is for its content to say; what it holds is for its schema.
+/// read_model() checks the content, whatever the file's ending.
 Model read_file(const std::filesystem::path& file) {
   const py::gil_scoped_release unlocked;
   return read_model(file);

@@ -23,7 +23,6 @@ namespace cloud2csg::python {
 /// Vectors are lists of three numbers in Python.
 using Rows = std::vector<std::array<double, 3>>;
 
-/// The type that a field has in Python's notation.
 template <typename Value>
 struct PythonType {
   static std::string name() {
@@ -55,8 +54,7 @@ struct PythonType<std::vector<Value>> {
   static std::string name() { return "list[" + PythonType<Value>::name() + "]"; }
 };
 
-/// What Python is given of a field: options within options by reference, so that options.search.seed = 3 works. Lists,
-/// and options that may be absent, are copies.
+/// A field's value: nested options by reference (options.search.seed = 3), lists and optional options as copies.
 template <typename Value>
 decltype(auto) to_python(Value& value) {
   if constexpr (HasNames<Value>) {
@@ -83,15 +81,15 @@ void from_python(const pybind11::handle& given, Value& value) {
     value.clear();
     for (const auto& [x, y, z] : given.cast<Rows>()) value.emplace_back(x, y, z);
   } else {
-    // pybind11 takes None for False.
+    // pybind11 would convert None to False.
     if (std::is_same_v<Value, bool> && given.is_none()) throw pybind11::cast_error();
     value = given.cast<Value>();
   }
 }
 
-/// An options struct as a Python class, made from its table: a constructor with the fields as keywords, attributes with
-/// their default and meaning as docstrings, repr, equality, copies and pickles. Values of a wrong type are a TypeError
-/// that names the field; whether they are in range is for the function that takes the options to say.
+/// An options struct as a Python class, made from its table: keyword constructor, attributes with default and meaning
+/// as docstrings, repr, equality, copies and pickles. A value of a wrong type is a TypeError that names the field. The
+/// function that takes the options checks ranges.
 template <typename Options>
 class OptionClass {
  public:
@@ -205,7 +203,7 @@ class OptionClass {
   pybind11::dict annotations_;
 };
 
-/// `options`, or the defaults where it is None, with other values for the fields that `fields` names.
+/// `options`, or the defaults for None, with the values in `fields`.
 template <typename Options>
 Options with_fields(const std::optional<Options>& options, const pybind11::kwargs& fields) {
   const Options start = options.value_or(Options{});
@@ -213,7 +211,7 @@ Options with_fields(const std::optional<Options>& options, const pybind11::kwarg
   return pybind11::cast(start).attr("replace")(**fields).template cast<Options>();
 }
 
-/// Makes the class of a struct; what is returned takes further methods.
+/// Makes the class of a struct; the returned class takes further methods.
 template <typename Options>
 pybind11::class_<Options> add_options(pybind11::module_& module, const char* name, const char* doc) {
   OptionClass<Options> made(module, name, doc);

@@ -7,7 +7,7 @@
 #include "cloud2csg/view.hpp"
 #include "option_class.hpp"
 
-/// The option classes; those within others come first. Their fields are those of the tables beside the structs.
+/// The option classes, nested ones first. The tables beside the structs define their fields.
 namespace cloud2csg::python {
 namespace {
 

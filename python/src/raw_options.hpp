@@ -8,7 +8,7 @@
 
 namespace cloud2csg::python {
 
-/// Options with what the cloud tells of itself, and with `seed` instead of all of their own.
+/// Options with the cloud's exactness, and with `seed` in place of all their seeds.
 [[nodiscard]] ReconstructOptions raw_options(const ReconstructOptions& options, const Cloud& cloud,
                                              std::optional<std::uint64_t> seed);
 

@@ -10,7 +10,7 @@
 
 namespace cloud2csg::python {
 
-/// What extract() or detect() found. Cloud, model and surfaces are shared with Python.
+/// The result of extract() or detect(). Cloud, model and surfaces are shared with Python.
 struct Result {
   std::shared_ptr<Cloud> cloud;
   std::shared_ptr<Model> model;
@@ -18,7 +18,7 @@ struct Result {
   ExtractStatistics statistics;
 };
 
-/// `given`: the cloud that the result speaks of, unless it brings one of its own.
+/// `given`: the result's cloud, unless `found` has one of its own.
 [[nodiscard]] inline Result result_of(Extraction found, const std::shared_ptr<Cloud>& given) {
   Result result{.cloud = given,
                 .model = std::make_shared<Model>(std::move(found.model)),

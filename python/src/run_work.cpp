@@ -23,10 +23,10 @@ struct Message {
   std::size_t done, total;
 };
 
-/// What the thread that works tells the one that waits.
+/// Messages from the working thread to the waiting one.
 class Mailbox {
  public:
-  /// Of messages that nobody has read yet, only the last one of each stage in a row is kept.
+  /// Keeps only the last unread message of a stage.
   void put(const Progress& progress) {
     {
       const std::lock_guard lock(mutex_);
@@ -44,7 +44,7 @@ class Mailbox {
     changed_.notify_one();
   }
 
-  /// Messages since the last call, and whether they were the last. Returns soon when there are none.
+  /// Messages since the last call, and whether the work has finished. Waits briefly when there are none.
   std::pair<std::vector<Message>, bool> wait() {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, k_signal_interval, [&] { return is_finished_ || !messages_.empty(); });
@@ -58,7 +58,7 @@ class Mailbox {
   bool is_finished_ = false;
 };
 
-/// The lock of the interpreter is held on entry and on return.
+/// The interpreter's lock is held on entry and on return.
 void hand_on(Mailbox& mailbox, const py::object& progress) {
   bool is_finished = false;
   while (!is_finished) {

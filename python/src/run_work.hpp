@@ -10,19 +10,19 @@
 
 namespace cloud2csg::python {
 
-/// The keyword arguments `threads` and `progress` of a function that has work to do.
+/// The keyword arguments `threads` and `progress` of functions with work to do.
 struct RunArguments {
   int threads = 0;                               ///< 0 = all cores
   pybind11::object progress = pybind11::none();  ///< callable(stage: str, done: int, total: int), or None
 };
 
-/// Calls `work` on a thread of its own, without the interpreter's lock. The calling thread, meanwhile, hands on
-/// progress and looks for signals twenty times a second: an exception of either (KeyboardInterrupt...) stops the work
-/// and is passed on once that has ended. `work` must not touch Python objects.
-/// @throws what `work` or the callback does; ValueError for negative threads
+/// Calls `work` on a new thread without the interpreter's lock. The calling thread passes on progress and checks for
+/// signals 20 times a second. An exception of either (KeyboardInterrupt...) stops the work and is raised at its end.
+/// `work` must not touch Python objects.
+/// @throws exceptions of `work` and the callback; ValueError for negative threads
 void run_on_thread(const RunArguments& arguments, const std::function<void(const RunContext&)>& work);
 
-/// The same for work that returns something.
+/// The same for work with a result.
 template <typename Work>
 auto run_work(const RunArguments& arguments, const Work& work) -> std::invoke_result_t<Work, const RunContext&> {
   std::optional<std::invoke_result_t<Work, const RunContext&>> result;

@@ -32,13 +32,13 @@ Operation operation_named(const std::string& name) {
   return Operation::difference;
 }
 
-/// From (operation, id) of each node, children first.
+/// Builds a tree from (operation, id) of each node, children first.
 CsgTree read_postfix(const py::list& nodes, const PrimitiveSet& primitives) {
   IndexOfId index_of_id;
   for (PrimitiveIndex i = 0; i < primitives.size(); ++i) index_of_id.emplace(primitives[i].id, i);
   std::vector<CsgNode> postfix;
   postfix.reserve(nodes.size());
-  std::vector<std::uint32_t> lengths;  // of the subtrees that have no parent yet
+  std::vector<std::uint32_t> lengths;  // subtrees without a parent so far
   for (const py::handle& node : nodes) {
     const auto [name, id] = node.cast<std::pair<std::string, std::string>>();
     const Operation operation = operation_named(name);

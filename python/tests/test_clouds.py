@@ -194,4 +194,4 @@ def test_any_cut_raises_or_reads(tmp_path, plate):
                 cloud2csg.read_mesh(file)
             except cloud2csg.Error:
                 refused += 1
-        assert refused >= (1 if ending == ".obj" else 100), ending  # a part of an .obj may be one, too
+        assert refused >= (1 if ending == ".obj" else 100), ending  # a truncated .obj may be valid

@@ -37,7 +37,7 @@ def test_ctrl_c_stops_the_search(root, progress):
     try:
         assert child.stdout.readline() == "searching\n"
         if not progress:
-            time.sleep(0.5)  # into the search; the test holds for any time
+            time.sleep(0.5)  # into the search; the test is valid for any time
         child.send_signal(signal.SIGINT)
         rest, _ = child.communicate(timeout=120)  # the search itself would take years
     finally:

@@ -82,7 +82,7 @@ def test_measures(plate):
 def test_pictures(plate, tmp_path):
     picture = plate.picture(width=60, height=40)
     assert picture.shape == (40, 60, 3) and picture.dtype == np.uint8
-    assert (picture != picture[:1]).any(axis=2).mean() > 0.1  # more than the background, which a row has in common
+    assert (picture != picture[:1]).any(axis=2).mean() > 0.1  # the background is constant along a row
     with_cloud = plate.picture(cloud2csg.sample(plate, count=500), height=40, azimuth_deg=30)
     assert with_cloud.shape == (40, 80, 3)
     plate.write(tmp_path / "plate.png")

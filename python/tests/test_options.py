@@ -9,10 +9,10 @@ import cloud2csg
 
 CLASSES = [value for name, value in vars(cloud2csg).items()
            if isinstance(value, type) and (name.endswith("Options") or name == "SampleCounts")]
-# Structs of parts of the library that Python does not have.
+# Structs of library parts that Python does not have.
 LEFT_OUT = {"CellOptions", "FamilyOptions", "FitOptions", "OverlapOptions", "PaperOptions",
             "PointPassOptions", "ResultComparisonOptions", "ScalingOptions"}
-# Fields that look at memory of the caller's.
+# Fields that view the caller's memory.
 LEFT_OUT_FIELDS = {("CloudWriteOptions", "colours")}
 
 
@@ -21,7 +21,7 @@ def structs(root):
     for header in sorted((root / "include/cloud2csg").rglob("*.hpp")):
         text = re.sub(r"//[^\n]*", "", header.read_text(encoding="utf-8"))
         for name, body in re.findall(r"struct (\w+Options|SampleCounts) \{(.*?)\n\};", text, flags=re.DOTALL):
-            # A member: type, name, maybe a value, to the semicolon; those side by side share the type.
+            # A member: type, name, maybe a value, up to the semicolon; members in one declaration share the type.
             members = []
             while re.search(r"\{[^{}]*\}", body):
                 body = re.sub(r"\{[^{}]*\}", "", body)

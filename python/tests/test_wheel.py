@@ -68,7 +68,7 @@ def test_make_install(root, tmp_path, here):
     run("cmake", "--install", BUILD, "--prefix", prefix)
     package, = prefix.rglob("cloud2csg/__init__.py")
     place = package.parent.parent
-    # Below /usr/local and /usr, Debian's interpreter looks there by itself.
+    # Debian's interpreter searches this folder below /usr/local and /usr.
     assert place == prefix / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/dist-packages"
     assert use(place, root).startswith(here)
     assert str(BUILD.resolve()) not in run("readelf", "-d", package.with_name(next(package.parent.glob("_native*.so")).name))

@@ -8,7 +8,7 @@
 namespace cloud2csg {
 
 double CellExtraction::trust() const {
-  // Where most points are near several surfaces at once, the cells do not tell much.
+  // If most points are near several surfaces, the cells have too little evidence.
   constexpr double k_least_share = 0.6;
   const auto assigned = static_cast<double>(complex.order.size() - complex.unassigned);
   if (!tree || is_constant(*tree) || statistics.speaking_points < k_least_share * assigned) return 0;

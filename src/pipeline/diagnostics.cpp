@@ -22,18 +22,18 @@
 namespace cloud2csg {
 namespace {
 
-/// The surface of a solid that no point of a cloud is near.
+/// The part of a solid's surface that no point of a cloud is near.
 struct BareSurface {
-  double share = 0;                                  ///< of the solid's surface within the bounds of the cloud
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< the place on it that is farthest from all points
+  double share = 0;                                  ///< share of the solid's surface within the bounds of the cloud
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< the place on it farthest from all points
 };
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_samples = 400;  ///< of each primitive
-constexpr double k_step = 1e-4;  ///< of the diagonal: so far off its surface a solid is looked at from both sides
+constexpr std::size_t k_samples = 400;  ///< per primitive
+constexpr double k_step = 1e-4;  ///< share of the diagonal: distance of the two test points on either side of a surface
 
-/// The samples that are on the solid's surface, too.
+/// The samples that lie on the solid's surface.
 Points on_surface(const PointCloud& samples, const CsgTree& tree, const PrimitiveSet& primitives, double step) {
   Points over;
   Points under;
@@ -50,8 +50,7 @@ Points on_surface(const PointCloud& samples, const CsgTree& tree, const Primitiv
   return result;
 }
 
-/// Estimated by samples, always the same. Absent where no sample is on the surface. O(points log points + samples x
-/// size)
+/// Estimated from deterministic samples; absent without samples on the surface. O(points log points + samples x size)
 std::optional<BareSurface> find_bare_surface(const CsgTree& tree, const PrimitiveSet& primitives,
                                              const PointCloud& cloud, double near, const RunContext& run) {
   const AlignedBox box = bounds_of(cloud.positions);
@@ -81,13 +80,13 @@ std::optional<BareSurface> find_bare_surface(const CsgTree& tree, const Primitiv
   return result;
 }
 
-/// Of the surfaces that were found, those whose points are not on the solid.
+/// Detected surfaces whose points are not on the solid.
 struct UnusedSurfaces {
   std::size_t count = 0;
-  std::size_t largest = 0;  ///< index of the one with the most points; no meaning where there are none
+  std::size_t largest = 0;  ///< index of the surface with the most points; meaningless for count 0
 };
 
-constexpr std::size_t k_sample = 200;  // points of a surface that tell
+constexpr std::size_t k_sample = 200;  // points that represent a surface
 
 bool is_unused(const CsgTree& tree, const PrimitiveSet& solids, const PointCloud& cloud, const DetectedSurface& surface,
                double near) {
@@ -101,8 +100,8 @@ bool is_unused(const CsgTree& tree, const PrimitiveSet& solids, const PointCloud
   return 2 * static_cast<std::size_t>(far) > count;
 }
 
-/// Unused: more than half of its points are farther than `near` from the surface of the solid. Those with fewer points
-/// than `least_points` are passed over. O(surfaces x size)
+/// A surface is unused when more than half of its points are farther than `near` from the solid's surface. Skips
+/// surfaces with fewer than `least_points` points. O(surfaces x size)
 UnusedSurfaces find_unused_surfaces(const CsgTree& tree, const PrimitiveSet& solids, const PointCloud& cloud,
                                     std::span<const DetectedSurface> surfaces, double near, std::size_t least_points) {
   UnusedSurfaces unused;
@@ -115,17 +114,17 @@ UnusedSurfaces find_unused_surfaces(const CsgTree& tree, const PrimitiveSet& sol
 }
 
 constexpr double k_much_unexplained = 0.1;
-constexpr double k_coarse = 0.05;  ///< tolerance, of the diagonal
+constexpr double k_coarse = 0.05;  ///< tolerance as a share of the diagonal
 constexpr double k_much_disagreement = 0.1;
 constexpr double k_much_bare_surface = 0.05;
-constexpr std::size_t k_noted_surface = 200;  ///< points of the cloud for one of a surface that is worth a word
-constexpr double k_bare_spacings = 6;         ///< as far from all points, a surface is bare
+constexpr std::size_t k_noted_surface = 200;  ///< no warning for surfaces with fewer than 1 in 200 points
+constexpr double k_bare_spacings = 6;         ///< a surface this many spacings from all points is bare
 
 double share(std::size_t part, std::size_t all) {
   return static_cast<double>(part) / static_cast<double>(all);
 }
 
-/// Where most of the points lie that are on no surface, and on nothing that is known.
+/// The centre of most points that lie on no surface and no known primitive.
 Eigen::Vector3d unexplained_place(const RestDetection& found, const PreparedCloud& prepared) {
   std::vector<bool> is_explained(prepared.cloud.size(), false);
   const auto note = [&is_explained](std::span<const std::uint32_t> points) {
@@ -137,7 +136,7 @@ Eigen::Vector3d unexplained_place(const RestDetection& found, const PreparedClou
   for (std::size_t i = 0; i < is_explained.size(); ++i) {
     if (!is_explained[i]) rest.push_back(prepared.cloud.positions[i]);
   }
-  constexpr double k_neighbourhood = 0.1;  // of the diagonal
+  constexpr double k_neighbourhood = 0.1;  // share of the diagonal
   return crowded_place(rest, k_neighbourhood * prepared.scale.diagonal);
 }
 

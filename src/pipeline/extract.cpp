@@ -17,7 +17,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Of climbing by E, in evaluations x classes x nodes: about a second.
+/// Work limit of climbing by E, in evaluations x classes x nodes: about a second.
 constexpr double k_climbing_work = 4e9;
 
 void check_primitive(const Primitive& primitive) {
@@ -84,7 +84,7 @@ class Extractor {
   }
 
  private:
-  /// Whether their tree is asked for, or the points bear it out. Else it is kept for comparison, where there is one.
+  /// Whether the cells' tree is requested or supported by the points. Keeps the tree otherwise, for comparison.
   bool is_solved_by_cells() {
     const bool is_asked_for = options_.strategy == Strategy::cells;
     if (!is_asked_for && (options_.strategy != Strategy::automatic || options_.cell_trust > 1)) return false;
@@ -112,13 +112,12 @@ class Extractor {
     return by_partitions_->tree;
   }
 
-  /// The cells, the partitions: whichever the tree is from.
   void note_way(std::size_t unassigned, const std::vector<std::string>& warnings) {
     statistics_.unassigned_points = unassigned;
     append(statistics_.warnings, warnings);
   }
 
-  /// Of the trees of the partitions and of the cells, the one of the higher E, which a local search improves.
+  /// Takes the tree of higher E, of the partitions' and the cells', and improves it by a local search.
   CsgTree solve_by_partitions() {
     by_partitions_ = extract_by_partitions(cloud_, input_, scale_, options_, run_);
     statistics_.seconds += by_partitions_->seconds;
@@ -132,7 +131,7 @@ class Extractor {
     if (!options_.polish) return start;
     CsgTree climbed = climb(start);
     if (climbed == start || objective_of(climbed) <= objective_of(start)) return start;
-    statistics_.cells.reset();  // it is not their tree any more
+    statistics_.cells.reset();  // the cells' statistics do not describe this tree
     note("climbing by E", climbed);
     return climbed;
   }
@@ -154,12 +153,12 @@ class Extractor {
     return objective;
   }
 
-  /// By E over all points, or of a large cloud every k-th. Not where the points bear the cells out: E does not see what
-  /// they lack. The primitives that points support only.
+  /// Local search by E over all points (every k-th in a large cloud) and the supported primitives. Not applied where
+  /// the points support the cells, since E does not see missing points.
   CsgTree climb(const CsgTree& start) {
     const SupportedPrimitives& supported = by_cells_->supported;
     RunContext run = run_.search();
-    if (by_partitions_->partitions.size() > 1) run.on_progress = {};  // what is counted then is partitions
+    if (by_partitions_->partitions.size() > 1) run.on_progress = {};  // progress counts partitions
     const bool knows_all = std::ranges::includes(supported.original, primitives_of(start));
     if (is_constant(start) || !knows_all || supported.size() > RankClasses::k_byte_limit) return start;
     run_.enforce_limit();
@@ -205,7 +204,7 @@ class Extractor {
     append(statistics_.warnings, fit_warnings(statistics_, scale_.tolerances.distance));
   }
 
-  /// What the way by cells does without, and who reads the statistics wants to see.
+  /// Adds statistics that the extraction by cells does not need.
   void describe_cells() {
     const RunContext run = without_stop(run_.pass());
     statistics_.cells->open_volume = open_volume(*by_cells_, bounds_of(cloud_.positions), run);

@@ -22,7 +22,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Of the cloud, those on no known primitive.
+/// Indices of the cloud's points on no known primitive.
 std::vector<std::uint32_t> points_of_none(const std::vector<SurfacePoints>& known, std::size_t count) {
   std::vector<bool> is_taken(count, false);
   for (const SurfacePoints& own : known) {
@@ -31,7 +31,6 @@ std::vector<std::uint32_t> points_of_none(const std::vector<SurfacePoints>& know
   return places_where(is_taken, false);
 }
 
-/// Adds the side, if one is missing, to the cloud and to the surfaces.
 void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   PointCloud& cloud = found.prepared.cloud;
   const std::optional<UnseenSide> side = find_unseen_side(cloud, found.detection.surfaces, found.prepared.scale, run);
@@ -42,7 +41,7 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   found.added_points += side->points.size();
   append(cloud, side->points);
   found.detection.surfaces.push_back(std::move(plane));
-  // Without digits that say nothing, and without a sign before zeros.
+  // Rounded, and + 0.0 turns -0 into 0.
   const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
   found.warnings.push_back(
       fmt::format("the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed "
@@ -51,7 +50,7 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
                   place_text(bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
 }
 
-/// Adds the walls that nobody could see to the cloud, and their points to the surfaces.
+/// Adds hidden walls to the cloud, and their points to the surfaces.
 void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
   PointCloud& cloud = found.prepared.cloud;
   const std::vector<HiddenWall> walls = find_hidden_walls(cloud, found.detection.surfaces, found.prepared.scale, run);
@@ -72,8 +71,7 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
                   walls.size(), place_text(middle, found.prepared.scale.diagonal)));
 }
 
-/// With points and surfaces added where no sensor saw the part: find_unseen_side(), find_hidden_walls(). Warnings say
-/// what was closed, and where. Precondition: the surfaces are detected.
+/// Adds points and surfaces where no sensor saw the part, with warnings. Precondition: the surfaces are detected.
 FoundPrimitives with_unseen_closed(FoundPrimitives found, const RunContext& run) {
   close_unseen_side(found, run);
   close_hidden_walls(found, run);
@@ -97,13 +95,12 @@ void check_known(const PrimitiveSet& known) {
   }
 }
 
-/// The tolerances by which points lie on solids, when they are those of the detection.
+/// The tolerances of detection as those of a segmentation.
 SegmentationTolerances tolerances_of(const DetectOptions& options, const Scale& scale) {
   return {.distance = detection_tolerance(options, scale),
           .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180)};
 }
 
-/// Tells of each solid which points lie on it.
 void add_evidence(FoundPrimitives& found, const DetectOptions& options, const RunContext& run) {
   PrimitiveSet& solids = found.choice.solids;
   found.points = deal_points(found.prepared.cloud, solids, tolerances_of(options, found.prepared.scale), run);
@@ -112,7 +109,7 @@ void add_evidence(FoundPrimitives& found, const DetectOptions& options, const Ru
   }
 }
 
-/// find_primitives() without a word on known primitives.
+/// find_primitives() without warnings about known primitives.
 FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   check_known(options.known);
   Stopwatch watch;
@@ -126,7 +123,7 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   RestDetection rest = detect_rest(found.prepared.cloud, found.prepared.scale, options.known, options.detection, run);
   append(found.warnings, detection_warnings(rest, found.prepared));
   found.detection = std::move(rest.detection);
-  // What is known has ends of its own.
+  // Known primitives have ends of their own.
   if (options.close_unseen && options.known.empty()) found = with_unseen_closed(std::move(found), run);
   found.detect_seconds = watch.lap();
 
@@ -144,7 +141,7 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
                  .remedy = "give a cloud of a closed object, or of most of its surface, of some thousand points"});
   }
   append(found.warnings, found.choice.warnings);
-  // The choice may have been cut short, and has a tree all the same.
+  // An early stop of the choice still leaves a tree.
   add_evidence(found, options.detection, without_stop(run));
   found.choose_seconds = watch.lap();
   return found;

@@ -10,29 +10,27 @@
 namespace cloud2csg {
 
 struct RestDetection {
-  std::vector<SurfacePoints> known;  ///< the points on each known primitive
-  Detection detection;               ///< of the others, as indices into the whole cloud
+  std::vector<SurfacePoints> known;
+  Detection detection;  ///< surfaces of the other points, as indices into the whole cloud
 };
 
-/// Deals points out to the primitives that are known and detects surfaces in the rest: detect_surfaces(), with the
-/// limits that hold for the whole cloud. The same as that where nothing is known.
+/// Assigns points to known primitives and runs detect_surfaces() on the others, with limits for the whole cloud.
 /// Precondition: the cloud has normals and points. @throws Error, Cancelled
 [[nodiscard]] RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const PrimitiveSet& known,
                                         const DetectOptions& options, const RunContext& run);
 
-/// What find_primitives() found, with all that is known on the way.
+/// The result of find_primitives() with its intermediate results.
 struct FoundPrimitives {
-  PreparedCloud prepared;        ///< the cloud that everything else speaks of
-  Detection detection;           ///< the surfaces that it lies on, beyond what lies on known primitives
-  std::size_t added_points = 0;  ///< on what was not seen, a side or walls: the last ones of the cloud
-  SolidChoice choice;            ///< those known, a few solids that surfaces bound, with evidence, and a tree over them
-  std::vector<SurfacePoints> points;  ///< of the prepared cloud, that lie on each of these solids
+  PreparedCloud prepared;             ///< the cloud that all other members refer to
+  Detection detection;                ///< surfaces of the points on no known primitive
+  std::size_t added_points = 0;       ///< points on an unseen side or hidden walls, at the end of the cloud
+  SolidChoice choice;                 ///< known solids, chosen solids with evidence, and a tree over them
+  std::vector<SurfacePoints> points;  ///< points of the prepared cloud on each solid
   double detect_seconds = 0, choose_seconds = 0;
-  std::vector<std::string> warnings;  ///< sentences for the user: what is doubtful, and where
+  std::vector<std::string> warnings;  ///< sentences for the user: doubts, with places
 };
 
-/// find_primitives() without a word on known primitives that are not used. The time limit of the extraction holds: the
-/// choice of solids has a tree to give at any time.
+/// find_primitives() without warnings about unused known primitives. Gives a tree if the time limit ends the choice.
 [[nodiscard]] FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& options,
                                            const RunContext& run);
 

@@ -12,11 +12,11 @@
 namespace cloud2csg {
 namespace {
 
-/// Random streams of searches over components and of joint searches; those of partitions are named by their primitives.
+/// Random streams of component searches and joint searches; partition_item() gives those of partitions.
 constexpr std::uint64_t k_component_items = std::uint64_t{1} << 40U;
 constexpr std::uint64_t k_joint_items = std::uint64_t{1} << 41U;
 
-/// By index in a larger set, the places of some of its members among these.
+/// By index in the larger set: the position in `members`.
 std::vector<PrimitiveIndex> local_indices(std::span<const PrimitiveIndex> members, std::size_t primitives) {
   std::vector<PrimitiveIndex> local(primitives, 0);
   for (std::size_t i = 0; i < members.size(); ++i) local[members[i]] = static_cast<PrimitiveIndex>(i);
@@ -45,14 +45,14 @@ class PartitionExtractor {
   }
 
  private:
-  /// Whether points support all primitives; else the others are left out, and it is to be done anew.
+  /// Whether points support all primitives. Otherwise it drops the unsupported ones and must run again.
   bool make_tables() {
     Stopwatch watch;
     partitions_ = partition_primitives(cloud_, supported_.primitives, scale_, options_, run_.pass());
     result_.seconds.overlap += partitions_.overlap_seconds;
     result_.seconds.partition += partitions_.partition_seconds;
     watch.lap();
-    tables_ = {};  // of primitives that were left out: not two of them in memory
+    tables_ = {};  // frees the old tables before building new ones
     tables_ = build_partition_tables(cloud_, supported_.primitives, partitions_, scale_, options_, run_.pass());
     const PointPass& pass = tables_.pass;
     const double wall = watch.lap();
@@ -64,7 +64,7 @@ class PartitionExtractor {
     return supported_.size() == before;
   }
 
-  /// Of several searches at once, those that have ended are counted; a single one tells its generations.
+  /// Progress counts completed searches when there are several, and generations when there is one.
   [[nodiscard]] RunContext search_run() const {
     RunContext run = run_.search();
     if (partitions_.sets.size() > 1) run.on_progress = {};
@@ -103,7 +103,7 @@ class PartitionExtractor {
     result_.is_complete = result_.is_complete && evolution.complete;
   }
 
-  /// Over the primitives that points support: a tree a component, united.
+  /// Tree over the supported primitives: one per component, united.
   CsgTree merge_components() {
     Stopwatch watch;
     std::vector<CsgTree> trees;
@@ -135,7 +135,7 @@ class PartitionExtractor {
     const auto has_points = [&](std::size_t k) { return tables_.pass.tables[k].point_count() > 0; };
     const bool some_have_points = std::ranges::any_of(sets, has_points);
     for (const std::size_t k : sets) {
-      if (some_have_points && !has_points(k)) continue;  // without points, any tree is as good as another
+      if (some_have_points && !has_points(k)) continue;  // without points, all trees are equally good
       Clique& clique = component.cliques.emplace_back();
       for (const PrimitiveIndex p : partitions_.sets[k]) clique.push_back(local[p]);
       component.trees.push_back(renumber(evolutions_[k].tree, clique));
@@ -152,7 +152,7 @@ class PartitionExtractor {
     return component;
   }
 
-  /// A tree for some primitives of a component, from a pass over the points for just them; component's indices.
+  /// Solves a subset of a component by a pass over the points for it alone. Uses the component's indices.
   CsgTree solve_set(const Clique& set, std::span<const PrimitiveIndex> component) {
     PrimitiveSet members;
     for (const PrimitiveIndex p : set) members.push_back(supported_.primitives[component[p]]);

@@ -13,20 +13,19 @@
 namespace cloud2csg {
 namespace {
 
-/// What a tree costs: wrong places, and leaves.
+/// Cost of a tree: wrong places and leaves.
 double cost_of(const CsgTree& tree, const SolidChoice& choice, const SolidOptions& options) {
   return wrong_place_share(tree, choice.solids, choice.places) +
          options.leaf_cost * static_cast<double>(leaf_count(tree));
 }
 
-/// There is a tree already to fall back on: no need to search partitions where the cells say little, or are
-/// contradicted.
+/// The tree of the choice is a fall-back, so partitions need not be searched where cells fail.
 ExtractOptions with_cells_alone(ExtractOptions options) {
   options.cell_trust = 0;
   return options;
 }
 
-/// The smallest tree over the chosen solids that the points bear out; or that of the choice, when it costs less.
+/// The extracted tree over the chosen solids, or the tree of the choice when it costs less.
 Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared, const ReconstructOptions& options,
                         const RunContext& run) {
   const ExtractOptions extraction = with_cells_alone(options.extraction);
@@ -37,7 +36,7 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
     statistics.tree = statistics_of(choice.tree);
     statistics.steps = {{"choice of solids", choice.tree.size()}};
     statistics.cells.reset();
-    statistics.warnings.clear();  // they are about the other tree
+    statistics.warnings.clear();  // they describe the other tree
     statistics.fit = measure_fit({.primitives = choice.solids, .tree = choice.tree}, prepared.cloud, statistics.noise,
                                  extraction, without_stop(run));
   }
@@ -49,7 +48,7 @@ double seconds_left(double limit, double gone) {
   return std::max(k_next_to_nothing, limit - gone);
 }
 
-/// What was found out about the cloud is true of the refined tree as well.
+/// Takes the refined tree if its E is higher; the finding's statistics apply to it as well.
 void refine_found(Extraction& found, const ReconstructOptions& options, double seconds_gone, const RunContext& run) {
   ExtractStatistics& before = found.statistics;
   if (!options.refine || !before.complete) return;
@@ -74,14 +73,13 @@ void refine_found(Extraction& found, const ReconstructOptions& options, double s
   found.statistics = std::move(after);
 }
 
-/// Moves into the result what is known of the cloud.
+/// Moves the results of the detection into the result.
 void take_finding(Extraction& result, FoundPrimitives& found) {
   result.cloud = std::move(found.prepared.cloud);
   result.surfaces = std::move(found.detection.surfaces);
   result.points = std::move(found.points);
 }
 
-/// Adds the time that it took to find the primitives.
 void note_seconds(const FoundPrimitives& found, StageSeconds& seconds) {
   seconds.clean = found.prepared.clean_seconds;
   seconds.normals = found.prepared.normals_seconds;

@@ -26,7 +26,7 @@ void note_incomplete(ExtractStatistics& statistics) {
   statistics.complete = false;
 }
 
-/// Absent when stopped, or when the time is over.
+/// Absent when stopped or past the time limit.
 std::optional<Refinement> refined(const PointCloud& cloud, const PrimitiveSet& primitives, const CsgTree& tree,
                                   const RefineOptions& options, std::optional<double> seconds, const RunContext& run) {
   const TimeLimit limit(run.stop, seconds);
@@ -40,7 +40,7 @@ std::optional<Refinement> refined(const PointCloud& cloud, const PrimitiveSet& p
   }
 }
 
-/// Absent when stopped, or when no time is left.
+/// Absent when stopped or without time left.
 std::optional<Extraction> extracted_again(const PointCloud& cloud, const PrimitiveSet& primitives,
                                           ExtractOptions options, std::optional<double> seconds,
                                           const RunContext& run) {

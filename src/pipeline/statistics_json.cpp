@@ -19,7 +19,7 @@ Json seconds_json(const StageSeconds& s) {
           {"refine", s.refine},   {"write", s.write},     {"extraction", s.extraction}, {"total", s.total}};
 }
 
-/// Of each stage in the extraction.
+/// Share of each stage in the extraction.
 Json share_json(const StageSeconds& s) {
   const auto share = [&s](double seconds) { return s.extraction > 0 ? seconds / s.extraction : 0.0; };
   return {{"segment", share(s.segment)},   {"overlap", share(s.overlap)}, {"partition", share(s.partition)},
@@ -100,7 +100,7 @@ Json refine_json(const RefineStatistics& s) {
           {"regularities", std::move(regularities)}};
 }
 
-/// Each with the surface that was changed, by its number among them, from 0, and its type.
+/// Each entry has the index (from 0) and the type of the changed surface.
 Json snaps_json(const FindingStatistics& s) {
   Json list = Json::array();
   for (const Snap& snap : s.snaps) {

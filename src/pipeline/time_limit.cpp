@@ -6,7 +6,7 @@ TimeLimit::TimeLimit(const std::stop_token& caller, std::optional<double> second
     : on_caller_(caller, RequestStop{source_}) {
   if (!seconds) return;
   const std::chrono::duration<double> limit(*seconds);
-  // Ten years of a clock fit its counter; longer limits are none.
+  // The clock's counter holds ten years; longer limits mean no limit.
   if (limit > std::chrono::years(10)) return;
   end_ = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
   watch_ = std::jthread([this](const std::stop_token& done) {

@@ -10,18 +10,17 @@
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/run_context.hpp"
 
-/// Solids bounded by exact surfaces, for CAD programs: STEP and BREP files, and meshes of them, by OpenCASCADE. Its
-/// part of the library is a module that is loaded when first needed, so programs that write none do not pay for it.
+/// Solids bounded by exact surfaces, for CAD programs: STEP and BREP files and their meshes, by OpenCASCADE. A module
+/// with OpenCASCADE is loaded on first use, so programs that need none do not pay for it.
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct BrepOptions {
   std::string name = {};
   bool with_primitives = false;
   int facet_resolution = 16;
   double volume_tolerance = 1e-3, mesh_deviation = 3e-4;
 };
-/// Of all scripts and files of exact solids.
+/// Shared by all scripts and files of exact solids.
 inline constexpr OptionField k_facet_resolution{
     "facet_resolution",
     "STEP, BREP, .FCMacro, .py: cells along the longest side of what has no exact surface, and has facets. Displaced "
@@ -43,63 +42,61 @@ void option_table(OptionsOf<BrepOptions>, auto&& field) {
         k_library);
 }
 
-/// A node of the tree whose exact solid could not be had, and which is written with facets instead.
+/// A node of the tree whose exact solid failed, so that it is written with facets.
 struct FailedNode {
-  std::string node;    ///< as to_text() writes it, shortened when long
-  std::string reason;  ///< one line
+  std::string node;  ///< as to_text() writes it, shortened when long
+  std::string reason;
 };
 
-/// What was written, as far as the file does not say.
+/// What the written file does not tell by itself.
 struct BrepReport {
-  double volume = 0;             ///< of the solid as it is in the file
-  double tree_volume = 0;        ///< of the tree, by samples of its implicit value
-  double tree_volume_error = 0;  ///< standard error of that
-  bool is_valid = false;         ///< whether the kernel finds no fault in the solid
-  std::size_t solids = 0;        ///< separate bodies
+  double volume = 0;       ///< volume of the solid in the file
+  double tree_volume = 0;  ///< volume of the tree, from samples of its implicit value
+  double tree_volume_error = 0;
+  bool is_valid = false;   ///< the kernel finds no fault in the solid
+  std::size_t solids = 0;  ///< separate bodies
   std::size_t faces = 0;
-  std::size_t healed_faces = 0;              ///< faces that were invalid before they were mended
-  std::vector<PrimitiveIndex> faceted = {};  ///< primitives without exact surfaces
+  std::size_t healed_faces = 0;  ///< faces that were invalid before they were mended
+  std::vector<PrimitiveIndex> faceted = {};
   std::vector<FailedNode> failed = {};
-  /// The box at which a solid without ends was cut.
+  /// The box at which an unbounded solid was cut.
   std::optional<AlignedBox> cut_at = {};
 
-  /// Whether the solid is exact and without fault: nothing failed, nothing has facets, the volume is the tree's.
+  /// Whether the solid is exact and valid: no node failed, nothing has facets, and the volume is the tree's.
   [[nodiscard]] bool is_exact(const BrepOptions& options) const;
-  /// |volume - tree_volume| as a part of the tree's; 0 when both are empty.
+  /// |volume - tree_volume| / tree_volume; 0 when both are empty.
   [[nodiscard]] double volume_difference() const;
 };
 
-/// Whether files can be written: the library was built with OpenCASCADE, and its module is found.
+/// Whether the library was built with OpenCASCADE and its module is found.
 [[nodiscard]] bool has_brep();
 
-/// What has_brep() depends on, for reports on an installation.
+/// Details behind has_brep(), for reports on an installation.
 struct BrepSupport {
-  bool is_built_in = false;           ///< the library was built with OpenCASCADE
-  bool lacks_opencascade = false;     ///< its module is there, OpenCASCADE's own libraries are not
-  std::filesystem::path module = {};  ///< the file that was loaded; empty when none could be
-  std::string fault = {};             ///< why not
+  bool is_built_in = false;
+  bool lacks_opencascade = false;     ///< the module is there, but OpenCASCADE's own libraries are missing
+  std::filesystem::path module = {};  ///< the loaded file; empty when none could be loaded
+  std::string fault = {};
   std::string remedy = {};
 };
-/// Loads the module, but where there is none to load.
+/// Loads the module if there is one.
 [[nodiscard]] BrepSupport brep_support();
-/// Without loading it.
+/// Does not load the module.
 [[nodiscard]] bool is_brep_built_in();
 
-/// For a program that wants to know before it starts what would keep `file` from being written.
-/// @throws Error saying what is missing, and how to get it
+/// Checks before a run whether `file` can be written. @throws Error saying what is missing, and how to get it
 void require_brep(const std::filesystem::path& file);
 
-/// The tree's solid as a STEP file (AP214, millimetres): one part, of one or more solids, whose faces have the names of
-/// the primitives that they come from. Primitives become exact solids, half-spaces reach to model_extent(). Booleans
-/// are made of many operands at a time, of those only whose boxes meet; each result is checked for validity and volume,
-/// tried again with growing tolerances, and in the end replaced by facets and reported. Nothing half-written.
-/// The same for any number of threads.
-/// @throws Error when OpenCASCADE is missing, for options out of range, when the file cannot be written or the solid is
-/// empty; Cancelled
+/// Writes the tree's solid as a STEP file (AP214, millimetres): one part of one or more solids, whose faces have the
+/// names of their primitives. Primitives become exact solids; half-spaces reach to model_extent(). One Boolean
+/// operation takes many operands, but only those whose boxes meet. Each result is checked for validity and volume,
+/// tried again with growing tolerances, finally replaced by facets and reported. Never leaves a partial file. The
+/// result does not depend on the number of threads.
+/// @throws Error without OpenCASCADE, for an empty solid, a bad option, a file that cannot be written; Cancelled
 BrepReport write_step(const std::filesystem::path& file, const Model& model, const BrepOptions& options = {},
                       const RunContext& run = {});
 
-/// The same as a BREP file, OpenCASCADE's own: no names, no units.
+/// The same as a BREP file, OpenCASCADE's own format, without names and units.
 BrepReport write_brep(const std::filesystem::path& file, const Model& model, const BrepOptions& options = {},
                       const RunContext& run = {});
 
@@ -108,9 +105,9 @@ struct BrepMesh {
   BrepReport report;
 };
 
-/// The surface of the same solid as triangles: planes are flat and edges true, and as few triangles as the deviation
-/// allows. Closed, where the solid is valid. The same for any number of threads.
-/// @throws as write_step(), but for files
+/// The surface of the same solid as triangles: planes are flat, edges exact, and triangles as few as the deviation
+/// allows. Closed where the solid is valid. The result does not depend on the number of threads.
+/// @throws as write_step(), except for files
 [[nodiscard]] BrepMesh mesh_brep(const Model& model, const BrepOptions& options = {}, const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -11,39 +11,37 @@
 #include "cloud2csg/advanced/segmentation.hpp"
 #include "cloud2csg/csg_tree.hpp"
 
-/// Cells: the pieces into which the primitives cut space, and what a cloud says of them. A tree says of each cell
-/// whether it is in the solid, and nothing else; few of the 2^n combinations of n primitives occur in space.
+/// Cells: the pieces into which the primitives cut space, with evidence from a cloud. A tree is a label (in or out of
+/// the solid) for each cell. Few of the 2^n combinations of n primitives occur in space.
 namespace cloud2csg {
 
-/// The primitives that a place is inside of, ascending.
+/// The primitives that contain a place, ascending.
 using Cell = std::vector<PrimitiveIndex>;
 using CellIndex = std::uint32_t;
 
-/// Where two cells meet: at the surface of the primitives that only one of them is inside of; more than one where
-/// surfaces coincide.
+/// The border of two cells: the surface of the primitives (several where they coincide) that contain only one cell.
 struct Patch {
   CellIndex first, second;  ///< first < second
-  /// Points on it whose normals say that the first cell is in the solid and the second is not, and the other way
-  /// round. A point that is nearly on the surface of other primitives, too, counts a quarter.
+  /// Number of points whose normals put only the first cell into the solid, or only the second. A point that is nearly
+  /// on the surface of other primitives counts a quarter.
   double first_in = 0, second_in = 0;
-  double area = 0;  ///< estimated from samples of the primitives' surfaces; in the same sense of counting
+  double area = 0;  ///< estimated from samples of the primitives' surfaces, which count like points
 };
 
 struct CellComplex {
   std::vector<Cell> cells;     ///< in lexicographic order; the first is outside of all primitives
   std::vector<Patch> patches;  ///< ascending by (first, second)
-  /// Those that reach to infinity, ascending: they cannot be in a bounded solid. The first cell, but where half-spaces
-  /// shut it in.
+  /// Cells that reach to infinity, ascending: out of any bounded solid. The first cell only, without half-spaces.
   std::vector<CellIndex> unbounded = {0};
-  /// By cell: lines of sight from the sensors to points on a primitive that pass through it, each counted as the points
-  /// that it stands for. Empty where the cloud has no sensor positions.
+  /// By cell: number of lines of sight, from sensors to points on a primitive, that pass through it, times the points
+  /// that each line represents. Empty where the cloud has no sensor positions.
   std::vector<double> seen_through = {};
-  std::vector<std::size_t> points_of_primitive;  ///< how many points are on the surface of each primitive
-  std::size_t unassigned = 0;                    ///< points that are on none
-  std::vector<std::uint32_t> order;              ///< all points, so that neighbours are near each other
+  std::vector<std::size_t> points_of_primitive;  ///< number of points on the surface of each primitive
+  std::size_t unassigned = 0;                    ///< points on no primitive
+  std::vector<std::uint32_t> order;              ///< all points along a space-filling curve
 };
 
-/// How many samples of its surface a primitive gets, to find cells and patches without points: see the table.
+/// Number of surface samples per primitive. They find cells and patches without points.
 struct SampleCounts {
   std::size_t base = 48, a_neighbour = 40, most = 1024;
 };
@@ -60,31 +58,28 @@ struct CellOptions {
   double noise;  ///< see estimate_noise()
   Precision precision = Precision::automatic;
   SampleCounts samples = {};
-  std::size_t sight_lines = 20'000;  ///< at most so many are looked at, of points all over the cloud
+  std::size_t sight_lines = 20'000;  ///< largest number of lines, sampled over the whole cloud
 };
 
-/// The cells that points and samples of the primitives' surfaces meet, with what they say. A point speaks where it is
-/// clear on which side of each other primitive it lies: of the cell just inside and just outside of the surface that it
-/// is on. Where the sensors stood is known, lines of sight say of the cells that they pass through clearly, away from
-/// all surfaces, that these are empty. O(points x primitives near each + sight lines x primitives) time. The result
-/// does not depend on the number of threads or the instruction set. Precondition: the cloud has normals and points.
+/// Finds the cells and patches that points and samples of the primitives' surfaces meet, with their evidence. A point
+/// is evidence where its side of every other primitive is clear: for the cells just inside and just outside of its
+/// surface. With sensor positions, lines of sight are evidence that the cells which they cross well away from all
+/// surfaces are empty. O(points x primitives near each + sight lines x primitives) time. The result does not depend on
+/// the number of threads or the instruction set. Precondition: the cloud has normals and points.
 /// @throws Cancelled
 [[nodiscard]] CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives,
                                      const CellOptions& options, const RunContext& run = {});
 
-/// What the pieces take up.
 struct CellVolumes {
-  std::vector<double>
-      of_cell;           ///< by cell, in cubed units of length; of those that reach out of the box, what is inside
-  double elsewhere = 0;  ///< of cells that find_cells() did not find
+  std::vector<double> of_cell;  ///< by cell, in cubed units of length, clipped to the box
+  double elsewhere = 0;         ///< volume of cells that find_cells() did not find
 };
 
-/// Estimated by so many places in the box, always the same. O(places x primitives)
+/// Estimates volumes inside the box from `places` deterministic samples. O(places x primitives)
 [[nodiscard]] CellVolumes measure_volumes(const CellComplex& complex, const PrimitiveSet& primitives,
                                           const AlignedBox& box, std::size_t places = 5'000,
                                           const RunContext& run = {});
 
-/// Its fields: see the table.
 struct LabelOptions {
   double absence = 0.25, absence_in_scans = 0.05;
   double presence = 5, sight = 1;
@@ -106,27 +101,23 @@ void option_table(OptionsOf<LabelOptions>, auto&& field) {
 }
 
 struct CellLabels {
-  std::vector<bool> is_in = {};       ///< by cell: whether it is in the solid
-  std::vector<double> evidence = {};  ///< by cell: how many points more it costs to change its label alone; at least 0
-  double density = 0;                 ///< points per area of what is surface, where they are sparse
-  double points = 0;                  ///< that speak
-  double cost = 0;                    ///< see cost_of()
-  LabelOptions options = {};          ///< what they were made with
+  std::vector<bool> is_in = {};       ///< by cell
+  std::vector<double> evidence = {};  ///< by cell: extra cost in points of changing this label alone; at least 0
+  double density = 0;                 ///< points per area of surface where points are sparsest
+  double points = 0;
+  double cost = 0;  ///< see cost_of()
+  LabelOptions options = {};
 };
 
-/// Tells which cells are in the solid: the labels with the least cost, exactly, by a minimum cut between the cells
-/// (Boykov and Kolmogorov 2004). Cells that reach to infinity are out. O(cells + patches) and the cut, which is
-/// nearly linear in practice.
+/// Finds the exact labels of least cost by a minimum cut (Boykov and Kolmogorov 2004). Unbounded cells are out. O(cells
+/// + patches) and the cut, which is nearly linear in practice.
 [[nodiscard]] CellLabels label_cells(const CellComplex& complex, const LabelOptions& options = {});
 
-/// What it costs to have just these cells in the solid, in points: those that say the opposite of one of their two
-/// cells, a half for each, those that are missing on patches between a cell that is in and one that is not, and those
-/// that were seen through the solid.
-/// `density` as in CellLabels. O(cells + patches)
+/// Cost of labels, in points: half a point per contradiction of a point to one of its two cells, missing points between
+/// cells in and out of the solid, points seen through the solid. `density`: see CellLabels. O(cells + patches)
 [[nodiscard]] double cost_of(const CellComplex& complex, const std::vector<bool>& is_in, double density,
                              const LabelOptions& options = {});
 
-/// Its fields: see the table.
 struct CellSolveOptions {
   std::vector<double> least_evidence = {12, 3, 1, 0.3};
   double leaf_cost = 3;
@@ -147,10 +138,10 @@ void option_table(OptionsOf<CellSolveOptions>, auto&& field) {
         "from all that was tried. By what the cells and leaves of a tree cost: over all of up to 64 primitives, of "
         "more core by core. The limits are those of each search; no work, no climbing.");
 }
-/// Evidence that does not descend.
+/// Refuses evidence that does not descend.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const CellSolveOptions& options);
 
-/// A step on the way to a tree, and the nodes of the best one after it.
+/// A step on the way to a tree, with the size of the best tree after it.
 struct TreeStep {
   std::string name;
   std::size_t size = 0;
@@ -158,23 +149,22 @@ struct TreeStep {
 
 struct CellSolution {
   CsgTree tree = {};                       ///< over the primitives
-  double least_evidence = 0;               ///< the one that was taken
-  double cost = 0;                         ///< of the tree's cells: see cost_of()
-  std::vector<CellIndex> open_cells = {};  ///< those whose labels were not sure enough, ascending
-  std::size_t peeled = 0;  ///< primitives that were split off since they are wholly in, or wholly out of, the rest
-  std::vector<std::size_t> cores = {};  ///< how many primitives each of the parts has that are left then
-  /// It is proved that no tree with the labels that are sure has fewer. Absent when the tree has not all of these.
+  double least_evidence = 0;               ///< the limit that gave the tree
+  double cost = 0;                         ///< cost_of() the tree's cells
+  std::vector<CellIndex> open_cells = {};  ///< cells with evidence below least_evidence, ascending
+  std::size_t peeled = 0;                  ///< primitives split off as wholly in or out of the remaining solid
+  std::vector<std::size_t> cores = {};     ///< number of primitives in each remaining core
+  /// Proved lower bound on the leaves of a tree with all sure labels. Absent when the tree lacks some sure label.
   std::optional<std::size_t> least_leaves = {};
-  std::vector<TreeStep> steps = {};  ///< "decomposition", "minimal formulas", "climbing": those that were needed
-  bool is_complete = true;           ///< false when it was stopped early
+  std::vector<TreeStep> steps = {};  ///< the steps that were needed, of "decomposition", "minimal formulas", "climbing"
+  bool is_complete = true;           ///< false when stopped early
   [[nodiscard]] bool is_minimal() const { return least_leaves == leaf_count(tree); }
 };
 
-/// A small tree that has the label of each cell that is sure at the highest limit, and mostly at the one taken.
-/// Primitives that no label depends on are left out; those that are wholly in the solid, or wholly out of it, but for
-/// what others add or take, are split off, again and again, until nothing or a core is left; parts of it that share no
-/// cell are solved one by one. Absent when one of them has more than 64 primitives. O(size of all cells) but for the
-/// cores. A triggered run.stop ends it soon, with the best tree so far.
+/// Finds a small tree with the label of each cell that is sure at the highest limit, and mostly of those at the chosen
+/// limit. It leaves out primitives that no label depends on, repeatedly splits off primitives wholly in or out of the
+/// remaining solid, and solves the remaining cores, which share no cells, one by one. Absent when a core has more than
+/// 64 primitives. O(size of all cells), plus the cores. A triggered run.stop soon ends it with the best tree.
 [[nodiscard]] std::optional<CellSolution> solve_cells(const CellComplex& complex, const CellLabels& labels,
                                                       const CellSolveOptions& options = {}, const RunContext& run = {});
 

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Colours that tell primitives apart.
 namespace cloud2csg {
 
 struct Colour {
@@ -11,11 +10,10 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// Of points that lie on no primitive.
+/// Colour of points on no primitive.
 inline constexpr Colour k_no_primitive_colour{.red = 150, .green = 150, .blue = 150};
 
-/// Of the primitive with this index, always the same: that of the report in its light theme. Neighbours in the list get
-/// hues far apart.
+/// The fixed colour of a primitive, as in the report's light theme. Neighbouring indices get distant hues.
 [[nodiscard]] Colour primitive_colour(std::size_t index);
 
 }  // namespace cloud2csg

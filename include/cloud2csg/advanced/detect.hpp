@@ -11,10 +11,9 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/run_context.hpp"
 
-/// Detection: the surfaces that a cloud lies on.
+/// Detection of the surfaces in a cloud.
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct DetectOptions {
   std::optional<double> distance_tolerance = {};
   double angle_tolerance_deg = 25.0;
@@ -45,34 +44,34 @@ void option_table(OptionsOf<DetectOptions>, auto&& field) {
         {.absent = "no limit", .unit = "D", .option = "max-size"});
   field(&O::seed, k_inner_seed);
 }
-/// A least_size above most_size.
+/// Refuses a least_size above most_size.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const DetectOptions& options);
 
 struct DetectedSurface {
   Surface surface;
-  std::vector<std::uint32_t> points;  ///< that lie on it and are nearer to no other, ascending
-  double rms = 0;                     ///< of their distances, in the cloud's units
-  double turn_deg = 0;                ///< standard deviation of the axis in its worst direction, by these points
+  std::vector<std::uint32_t> points;  ///< points on it that are nearer to no other, ascending
+  double rms = 0;                     ///< root mean square distance of the points, in the cloud's units
+  double turn_deg = 0;                ///< standard deviation of the axis in its worst direction, from these points
 };
 
 struct Detection {
   std::vector<DetectedSurface> surfaces;
-  std::size_t unexplained = 0;    ///< points that lie on none
-  double distance_tolerance = 0;  ///< the one in force
+  std::size_t unexplained = 0;
+  double distance_tolerance = 0;
 };
 
-/// The tolerance in force: the option, or what it stands for when absent. In the cloud's units.
+/// The distance tolerance in force: the option or its default. In the cloud's units.
 [[nodiscard]] double detection_tolerance(const DetectOptions& options, const Scale& scale);
 
-/// The least number of points of a surface in a cloud of so many: the option, or what it stands for when absent.
+/// The least number of points of a surface in a cloud of `points`: the option or its default.
 [[nodiscard]] std::size_t detection_least_points(const DetectOptions& options, std::size_t points);
 
-/// Finds planes, spheres, cylinders, cones and tori, convex and concave, by random samples of points that are near each
-/// other, in the manner of Schnabel, Wahl, Klein: Efficient RANSAC for Point-Cloud Shape Detection (2007). The largest
-/// surface is taken first, its points set aside, and so on; then all are looked at together. Faces in one plane are one
-/// surface, so are pieces of one cylinder. Each surface has no ends: where it ends is for the solids to tell.
-/// O(points x surfaces): 100 000 points take some tenths of a second. The result does not depend on the number of
-/// threads or the units. Precondition: the cloud has normals and points. @throws Error as validate(); Cancelled
+/// Finds planes, spheres, cylinders, cones and tori, convex and concave, from random samples of neighbouring points, in
+/// the manner of Schnabel, Wahl, Klein: Efficient RANSAC for Point-Cloud Shape Detection (2007). It takes the largest
+/// surface first and sets its points aside, repeatedly, then settles all surfaces together. Coplanar faces are one
+/// surface, and so are pieces of one cylinder. Surfaces are unbounded: choose_solids() finds their ends. O(points x
+/// surfaces): 100 000 points take some tenths of a second. The result does not depend on the number of threads or the
+/// units. Precondition: the cloud has normals and points. @throws Error as validate(); Cancelled
 [[nodiscard]] Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const DetectOptions& options = {},
                                         const RunContext& run = {});
 

@@ -12,13 +12,12 @@
 /// The search for the tree of one partition (section 4.3 of the paper).
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct GaOptions {
   int population = 150, elites = 2, tournament = 2;
   double crossover_rate = 0.3, mutation_rate = 0.3, new_tree_rate = 0.5;
   std::optional<int> height_limit = {};
   int idle_generations = 40, generation_limit = 10'000;
-  // Beyond the paper. bench/recovery measures each alone.
+  // Beyond the paper; bench/recovery measures the effect of each.
   std::size_t listing_limit = 4;
   double trust = 0.97;
   int restarts = 3;
@@ -62,49 +61,47 @@ void option_table(OptionsOf<GaOptions>, auto&& field) {
         {.option = "local-search", .opposite = "no-local-search", .otherwise = "Take the best tree as it is"});
   field(&O::seed, k_inner_seed);
 }
-/// More elites than trees.
+/// Refuses more elites than trees.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const GaOptions& options);
 
-/// The parameters of the paper, nothing added.
 [[nodiscard]] GaOptions paper_ga_options();
 
-/// The tree found for one set of primitives, and what it took.
+/// The tree found for one set of primitives, and the effort.
 struct Evolution {
   CsgTree tree;         ///< over the table's local indices
   double score = 0;     ///< E(t)
   double geometry = 0;  ///< E(t) without the cost of size
   std::size_t generations = 0;
   std::size_t evaluations = 0;
-  bool complete = true;  ///< false when it was stopped early: the best tree so far
+  bool complete = true;  ///< false when stopped early with the best tree so far
 };
 
-/// Height limit of the paper for n primitives; at least 1.
+/// The paper's height limit for n primitives; at least 1.
 [[nodiscard]] inline int default_height_limit(std::size_t primitives) {
   const auto n = static_cast<double>(primitives);
   return std::max(1, static_cast<int>(std::sqrt(std::numbers::pi / 2 * n * (n - 1))));
 }
 
-/// The name of a partition's random stream: the same for the same primitives, whoever searches.
+/// The random stream of a partition: equal for equal primitives.
 [[nodiscard]] std::uint64_t partition_item(std::span<const PrimitiveIndex> primitives);
 
-/// Searches for the tree with the highest E(t). `item` tells partitions apart: each has a random stream of its own.
-/// The result depends on the table, the options and `item` only, not on threads. With run.threads == 1 there is one,
-/// else the population is spread over those of the task arena that the caller is in, so that searches may be run side
-/// by side. Stops between generations when run.stop is triggered. Precondition: the table has at least one primitive.
+/// Searches for the tree with the highest E(t). `item` selects the random stream of the partition. The result depends
+/// only on the table, the options and `item`, not on threads. With run.threads == 1 the search uses one thread.
+/// Otherwise it spreads the population over the caller's task arena, so searches may run side by side. Stops between
+/// generations when run.stop is triggered. Precondition: the table has at least one primitive.
 [[nodiscard]] Evolution evolve_tree(const RankClasses& table, const GaOptions& options, std::uint64_t item,
                                     const RunContext& run = {});
 
-/// The same with a tree to start from (over local indices), e.g. one that is nearly right.
+/// The same from a start tree over local indices, e.g. a nearly correct one.
 [[nodiscard]] Evolution evolve_tree_from(const RankClasses& table, const CsgTree& start, const GaOptions& options,
                                          std::uint64_t item, const RunContext& run = {});
 
-/// The sentence of the paper in one call: the tree for one clique of primitives, over the whole set's indices, from the
-/// points that belong to them.
+/// The paper's step in one call: a clique's tree, over indices of the whole set, from the points on its primitives.
 [[nodiscard]] CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, const Clique& clique,
                                   const GaOptions& options = {}, const RunContext& run = {});
 
-/// Climbs from `start` by the best of all small changes (a node replaced by its child, by a leaf, by another operation;
-/// a leaf put in anywhere) until none improves E(t). Deterministic.
+/// Climbs from `start` by the best small change until none improves E(t). Changes replace a node by its child, a leaf
+/// or another operation, or insert a leaf anywhere. Deterministic.
 [[nodiscard]] Evolution local_search(const RankClasses& table, const CsgTree& start,
                                      const LocalSearchOptions& options = {}, const RunContext& run = {});
 

@@ -6,7 +6,7 @@
 
 namespace cloud2csg {
 
-/// Of searches that climb by the best of all small changes of a tree. Its fields: see the table.
+/// Options of searches that climb by the best small change of a tree.
 struct LocalSearchOptions {
   bool shrink_only = false;
   std::size_t evaluation_limit = 100'000;

@@ -14,7 +14,6 @@
 ///   d = beta * f_t(s),  theta = gamma * angle between the gradient of f_t at s and the point's normal.
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct ObjectiveOptions {
   std::optional<double> alpha = {}, beta = {};
   double gamma = 18.0 / std::numbers::pi;
@@ -32,7 +31,7 @@ void option_table(OptionsOf<ObjectiveOptions>, auto&& field) {
         "Weight of angles, per radian. The paper's 18 / pi: a normal that is 10 degrees off counts exp(-1).", above(0));
 }
 
-/// The objective's weights for one set of points: nothing left to be derived.
+/// The objective's weights for one set of points, with all defaults resolved.
 struct Objective {
   double alpha;
   double beta;
@@ -40,13 +39,12 @@ struct Objective {
 };
 [[nodiscard]] Objective resolve(const ObjectiveOptions& options, std::size_t points, double noise);
 
-/// What a point adds to E for a surface at signed distance `distance` with (unit) gradient at angle `angle` (radians).
+/// Share of a point in E at signed distance `distance`, with `angle` (radians) between gradient and normal.
 [[nodiscard]] double point_score(double distance, double angle, const Objective& objective);
 
-/// E(t), evaluated as it is written: for each point the tree is walked, in double precision, with the libm exp and
-/// acos. The reference that the fast evaluation is held against. O(points x size).
-/// `points` are indices into the cloud; the tree's leaves index `primitives`. Where several primitives have the same
-/// |value|, the one whose gradient counts is chosen by signed ranks (see implicit_gradient).
+/// E(t) by its definition: walks the tree for each point, in double precision, with the libm exp and acos. The
+/// reference for the fast evaluation. O(points x size). `points` are indices into the cloud; the tree's leaves index
+/// `primitives`. Signed ranks choose among gradients of equal |value| (see implicit_gradient).
 [[nodiscard]] double reference_objective(const CsgTree& tree, const PrimitiveSet& primitives, const PointCloud& cloud,
                                          std::span<const std::uint32_t> points, const Objective& objective);
 

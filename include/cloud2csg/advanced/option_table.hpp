@@ -11,8 +11,7 @@
 
 #include "cloud2csg/error.hpp"
 
-/// Tables of options: each options struct has one beside it, with an entry a field. Validation, command line,
-/// configuration files, the Python classes and whatever else speaks of options are made from it.
+/// Each options struct has a table beside it, the source of validation, command line, configuration and Python classes.
 ///
 ///     void option_table(OptionsOf<GaOptions>, auto&& field) {
 ///       using O = GaOptions;
@@ -20,12 +19,12 @@
 ///       ...
 namespace cloud2csg {
 
-/// The numbers that a field takes: finite ones in any case.
+/// The allowed numbers of a field, always finite.
 struct OptionRange {
   double least = std::numeric_limits<double>::lowest();
   double most = std::numeric_limits<double>::max();
-  bool is_above = false;    ///< `least` itself is none of them
-  bool takes_zero = false;  ///< 0 is one of them, too
+  bool is_above = false;    ///< `least` itself is excluded
+  bool takes_zero = false;  ///< 0 is allowed, too
 
   [[nodiscard]] constexpr bool holds(double value) const {
     return (takes_zero && value == 0) || ((is_above ? value > least : value >= least) && value <= most);
@@ -48,43 +47,42 @@ constexpr OptionRange from_to(double least, double most) {
 }
 inline constexpr OptionRange k_share = from_to(0, 1);
 
-/// How an option is called that only the library has.
+/// OptionDetails::option of a field without an option on the command line.
 inline constexpr std::string_view k_no_option = "-";
 
 struct OptionDetails {
-  OptionRange range = {};           ///< of numbers, each of a list, and the length of vectors
-  std::string_view absent = {};     ///< what an absent value stands for
-  std::string_view unit = {};       ///< what stands for a value in the help of the command line: "DEG"
-  std::string_view option = {};     ///< its long name on the command line, if it is not the field's: see option_name()
-  char letter = 0;                  ///< ... and its short one
+  OptionRange range = {};        ///< allowed numbers, list elements or vector lengths
+  std::string_view absent = {};  ///< meaning of an absent value
+  std::string_view unit = {};    ///< placeholder for the value in the command line's help: "DEG"
+  std::string_view option = {};  ///< long name on the command line, if not derived from the field: see option_name()
+  char letter = 0;
   std::string_view opposite = {};   ///< bool: the option that sets it to false
-  std::string_view otherwise = {};  ///< ... and the sentence on that one
-  std::string_view group = {};      ///< of the command line's help; empty: that of the struct
+  std::string_view otherwise = {};  ///< help of the opposite option
+  std::string_view group = {};      ///< group in the command line's help; empty: the struct's group
 };
 
-/// What there is to tell of a field. Other fields stand in `these`, which the command line replaces by its options.
+/// Describes a field. Texts name other fields in `backticks`, which the command line replaces by its options.
 struct OptionField : OptionDetails {
-  std::string_view name;  ///< in C++, Python, JSON and messages
-  std::string_view text;  ///< sentences; the help of the command line has the first
+  std::string_view name;  ///< as in C++, Python, JSON and messages
+  std::string_view text;  ///< sentences; the command line's help shows the first
 
   constexpr OptionField(std::string_view its_name, std::string_view its_text, const OptionDetails& details = {})
       : OptionDetails(details), name(its_name), text(its_text) {}
 };
 
-/// Of fields that only the library has.
+/// For fields without an option on the command line.
 inline constexpr OptionDetails k_library{.option = k_no_option};
 
-/// The entry of a seed.
 inline constexpr OptionField k_seed{
     "seed", "The same seed gives the same result, for any number of threads", {.unit = "S"}};
-/// ... in structs that stand within others, which have one for all.
+/// The entry of a seed in nested structs; the outermost struct has the seed for all.
 inline constexpr OptionField k_inner_seed{k_seed.name, k_seed.text, k_library};
 
-/// Chooses the table of a struct.
+/// Selects the table of a struct.
 template <typename Options>
 using OptionsOf = std::type_identity<Options>;
 
-/// What a table calls with its entries: hands each on to `visit(member, field)`.
+/// The `field` argument of a table: passes each entry to `visit(member, field)`.
 template <typename Visit>
 struct FieldVisitor {
   Visit visit;
@@ -111,9 +109,9 @@ void for_each_field(Visit visit) {
   option_table(OptionsOf<Options>{}, FieldVisitor<Visit>{std::move(visit)});
 }
 
-/// Two fields that are each in range, but not together.
+/// Two fields that are in range one by one, but not together.
 struct OptionConflict {
-  std::string field;     ///< the one at fault
+  std::string field;
   std::string expected;  ///< "expected no more than `most_size`, found 3 and 2"
 };
 
@@ -127,7 +125,6 @@ template <typename Enum>
 concept HasNames = std::is_enum_v<Enum> && requires(Enum value) {
   names_of(value);
 };
-/// The value of this name, if there is one.
 template <HasNames Enum>
 [[nodiscard]] constexpr std::optional<Enum> enum_named(std::string_view name) {
   for (const EnumName<Enum>& known : names_of(Enum{})) {
@@ -143,19 +140,19 @@ template <HasNames Enum>
   return {};
 }
 
-/// The numbers of a range in words: "2 or more", "a number from 0 to 1".
+/// The range in words: "2 or more", "a number from 0 to 1".
 [[nodiscard]] std::string range_text(const OptionRange& range, bool is_whole);
-/// "expected 2 or more, found 1"; empty when the value is in range.
+/// "expected 2 or more, found 1"; empty for a value in range.
 [[nodiscard]] std::string range_fault(const OptionRange& range, double value, bool is_whole);
 
-/// The name of a field's option, without dashes: that of the table, or the field's without its unit,
-/// "angle_tolerance_deg" is "angle-tolerance". Empty where the command line has none.
+/// The option name of a field without dashes: the table's name, or the field's without its unit ("angle-tolerance" for
+/// "angle_tolerance_deg"). Empty where the command line has none.
 [[nodiscard]] std::string option_name(const OptionField& field);
 
-/// The shortest text that is read as the same number.
+/// The shortest text that reads back as the same number.
 [[nodiscard]] std::string value_text(double value);
 [[nodiscard]] std::string value_text(const Eigen::Vector3d& value);
-/// Numbers, names of enumerations, texts, lists of these; empty for what is absent or has no such text.
+/// Numbers, names of enumerations, texts, and lists of these; empty for absent values and other types.
 template <typename Value>
 [[nodiscard]] std::string value_text(const Value& value) {
   if constexpr (std::is_integral_v<Value>) {
@@ -208,9 +205,9 @@ void check(const std::string& path, const OptionRange& range, const std::vector<
 
 }  // namespace options_detail
 
-/// Holds the fields against their ranges, those of structs within as well, then against each other: by
-/// `std::optional<OptionConflict> conflict_in(const Options&)` beside the table, where there is one. `path` stands
-/// before the names of fields. @throws Error naming the field that is out of range.
+/// Checks all fields, nested structs included, against their ranges, then against each other by
+/// `std::optional<OptionConflict> conflict_in(const Options&)`, where the struct has one. Error messages put `path`
+/// before field names. @throws Error naming the field that is out of range.
 template <HasOptionTable Options>
 void validate(const Options& options, const std::string& path) {
   for_each_field<Options>([&](auto member, const OptionField& field) {

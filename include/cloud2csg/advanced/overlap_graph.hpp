@@ -12,11 +12,10 @@
 /// Overlap graph and partitions (section 4 of the paper: PO-graph, maximal cliques).
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct OverlapOptions {
   double tolerance = 1e-6;
-  /// For infinite primitives (half-spaces): the oriented bounds of the points they were fitted to, by primitive
-  /// index; an entry that is absent means the primitive itself. May be shorter than the primitive set.
+  /// For infinite primitives (half-spaces): oriented bounds of the points they were fitted to, by primitive index. An
+  /// absent entry means the primitive itself. May be shorter than the primitive set.
   std::vector<std::optional<OrientedBox>> extents = {};
 };
 void option_table(OptionsOf<OverlapOptions>, auto&& field) {
@@ -25,10 +24,10 @@ void option_table(OptionsOf<OverlapOptions>, auto&& field) {
         "sets it from the measured noise.",
         at_least(0));
 }
-/// Extents that are no finite boxes.
+/// Refuses extents that are not finite boxes.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const OverlapOptions& options);
 
-/// Undirected, without loops: an edge for each pair of primitives whose solids share space.
+/// Undirected, without loops: an edge joins each pair of primitives whose solids share space.
 struct OverlapGraph {
   std::vector<std::vector<PrimitiveIndex>> neighbours;  ///< by primitive, each list ascending
 
@@ -37,8 +36,8 @@ struct OverlapGraph {
   [[nodiscard]] std::size_t edge_count() const;
 };
 
-/// Broad phase by an R-tree over the bounds, O(n log n + pairs); narrow phase exact for convex pairs (by libccd), by
-/// the distance fields for the rest. One solid inside another overlaps it.
+/// Broad phase by an R-tree over the bounds, O(n log n + pairs). The narrow phase is exact for convex pairs (libccd)
+/// and uses the distance fields for all others. A solid inside another one overlaps it.
 /// @throws Cancelled
 [[nodiscard]] OverlapGraph build_overlap_graph(const PrimitiveSet& primitives, const OverlapOptions& options = {},
                                                const RunContext& run = {});
@@ -46,11 +45,11 @@ struct OverlapGraph {
 /// Primitives that all overlap each other, ascending: the paper's partition.
 using Clique = std::vector<PrimitiveIndex>;
 
-/// All maximal cliques, in lexicographic order; a primitive without neighbours is a clique of one. Bron-Kerbosch with
-/// pivoting in degeneracy order: O(d n 3^(d/3)) for degeneracy d.
+/// All maximal cliques in lexicographic order, by Bron-Kerbosch with pivoting in degeneracy order. A primitive without
+/// neighbours is a clique of one. O(d n 3^(d/3)) for degeneracy d.
 [[nodiscard]] std::vector<Clique> maximal_cliques(const OverlapGraph& graph);
 
-/// How many cliques have 1, 2, 3... primitives, as in the paper's table of models.
+/// Number of cliques with 1, 2, 3... primitives, as in the paper's table of models.
 [[nodiscard]] std::vector<std::size_t> clique_histogram(std::span<const Clique> cliques);
 
 /// The connected components, each ascending, ordered by their first primitive.

@@ -9,11 +9,9 @@
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/point_cloud.hpp"
 
-/// Refinement: primitives that were fitted roughly are moved, turned and sized so that the surface of a tree over them
-/// is as near to the points as it can be.
+/// Refinement: moves, turns and resizes primitives, to bring the surface of a tree over them nearest to the points.
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct RefineOptions {
   std::optional<double> noise = {};
   double angle_tolerance_deg = 30.0;
@@ -47,10 +45,10 @@ void option_table(OptionsOf<RefineOptions>, auto&& field) {
 }
 
 enum class RegularityType {
-  directions,  ///< axes and faces that are parallel or orthogonal to each other
-  faces,       ///< parallel faces in one plane
-  centres,     ///< middles in line: of two cylinders, once for each of two directions, that they have one axis
-  radii,       ///< equal radii
+  directions,  ///< parallel or orthogonal axes and faces
+  faces,       ///< coplanar faces
+  centres,     ///< aligned centres; coaxial cylinders count once for each of two directions
+  radii,
 };
 constexpr auto names_of(RegularityType /*any*/) {
   return std::to_array<EnumName<RegularityType>>({{"directions", RegularityType::directions},
@@ -62,41 +60,40 @@ constexpr auto names_of(RegularityType /*any*/) {
 /// Primitives that are exactly regular in the result.
 struct Regularity {
   RegularityType type;
-  std::vector<PrimitiveIndex> primitives;  ///< ascending; one may be named twice, with two faces in a plane
-  double spread;  ///< how far apart they were before: the largest difference, in radians or the cloud's units
+  std::vector<PrimitiveIndex> primitives;  ///< ascending; a primitive appears twice with two coplanar faces
+  double spread;                           ///< largest difference before, in radians or the cloud's units
 };
 
-/// What became of a primitive.
 struct PrimitiveChange {
-  std::size_t points = 0;    ///< that it was refined on; 0: left as it was
-  double largest_shift = 0;  ///< of a centre, face or radius, in the cloud's units
-  double turn_deg = 0;       ///< of its axis or, where it has none, of the whole
-  double rms_before = 0;     ///< of its points' distances from it, those that are no outliers
+  std::size_t points = 0;    ///< points of its fit; 0: unchanged
+  double largest_shift = 0;  ///< largest move of a centre, face or radius, in the cloud's units
+  double turn_deg = 0;       ///< turn of the axis or, without an axis, of the whole
+  double rms_before = 0;     ///< root mean square distance of its points, without outliers
   double rms_after = 0;
 };
 
 struct Refinement {
-  PrimitiveSet primitives;               ///< as many as given, in their order, with their ids, types and displacements
-  bool is_better = false;                ///< false: `primitives` are those that were given
+  PrimitiveSet primitives;               ///< the given number and order, with their ids, types and displacements
+  bool is_better = false;                ///< false: `primitives` are the given ones
   std::vector<PrimitiveChange> changes;  ///< by primitive
   std::vector<Regularity> regularities;
-  std::size_t points = 0;  ///< that some primitive was refined on
-  double rms_before = 0;   ///< of the distances of these points from their primitives, outliers left out
+  std::size_t points = 0;  ///< points of any primitive's fit
+  double rms_before = 0;   ///< root mean square distance of the points from their primitives, without outliers
   double rms_after = 0;
-  double noise = 0;  ///< that was given or measured in the end
+  double noise = 0;  ///< given, or measured at the end
   int rounds = 0;
 };
 
-/// Least squares, with a robust loss, over the poses and sizes of all primitives of the tree, with the tree as it is. A
-/// point counts for the primitive whose value the tree takes there, where that is near zero and the normals agree; that
-/// is found anew each round. What no point determines stays: the end of a bore that is in the air, or a face of a box
-/// that is within another. Expressions, and primitives without points, stay as they are; a polytope is turned and its
-/// planes are shifted, but the angles between them stay; a cone keeps its apex, if it has one.
-/// Regularities are found among what the points determine, and kept where they were exact before: directions are then
-/// turned together, and equal values are one unknown, so that they hold exactly. They are given up where the points
-/// contradict them.
-/// Where the tree's surface is not nearer to the points than before, by the same loss, the primitives that were given
-/// are returned. O(rounds x points x (primitives + unknowns of each)); the result does not depend on the threads.
+/// Robust least squares over the poses and sizes of all primitives of a fixed tree. A point counts for the primitive
+/// whose value the tree takes there, if that is near zero and the normals agree; each round assigns the points anew.
+/// Values that no point determines stay, such as the end of a bore in the air or the face of a box inside another one.
+/// Expressions and primitives without points stay. A polytope turns and its planes shift at fixed angles. A cone keeps
+/// its apex, if it has one.
+/// Regularities are found among values that the points determine, and kept where they were exact before. Regular
+/// directions turn together and equal values are one unknown, so they hold exactly. Regularities that the points
+/// contradict are dropped.
+/// Returns the given primitives where the tree's surface comes no nearer to the points, by the same loss. Does not
+/// depend on threads. O(rounds x points x (primitives + unknowns of each))
 /// @throws Error as validate(); Cancelled.
 /// Preconditions: the cloud has normals; valid primitives; the tree is over them.
 [[nodiscard]] Refinement refine_primitives(const PointCloud& cloud, const PrimitiveSet& primitives, const CsgTree& tree,

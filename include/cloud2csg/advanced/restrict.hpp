@@ -6,22 +6,21 @@
 
 #include "cloud2csg/csg_tree.hpp"
 
-/// What a tree says where only some of its primitives are: the way to work on a large model piece by piece.
+/// Restricts a tree to a region that only some of its primitives reach, to work on a large model piece by piece.
 namespace cloud2csg {
 
-/// The tree with all primitives but `kept` (in any order) taken for the empty solid, and what follows from that: a
-/// single constant, or a tree without constants in which no complement stands right on another. Where no other
-/// primitive is, both contain the same points, and of its own leaves the result has those of the tree in their order,
-/// each as often. Nothing else is simplified. O(size + largest index)
+/// Replaces all primitives except `kept` (in any order) by the empty solid and folds constants. The result is a single
+/// constant, or has neither constants nor double complements. It equals the tree wherever no other primitive reaches.
+/// It keeps the kept leaves' order and repetitions, and simplifies nothing else. O(size + largest index)
 [[nodiscard]] CsgTree restrict_to(const CsgTree& tree, std::span<const PrimitiveIndex> kept);
 
-/// restrict_to() of one tree, many times: O(k log k) for k kept leaves, however large the tree is.
+/// restrict_to() of one tree, many times: O(k log k) for k kept leaves, however large the tree.
 class TreeRestriction {
  public:
   /// O(size log size) time and memory.
   explicit TreeRestriction(const CsgTree& tree);
 
-  /// Equal to restrict_to(tree, kept). Repeated indices and those that are not in the tree change nothing.
+  /// Equal to restrict_to(tree, kept). Repeated indices and indices outside of the tree change nothing.
   [[nodiscard]] CsgTree restrict_to(std::span<const PrimitiveIndex> kept) const;
 
  private:
@@ -37,17 +36,17 @@ class TreeRestriction {
 
   CsgTree tree_;
   // By node:
-  std::vector<NodeIndex> parent_;  ///< of the root: itself
+  std::vector<NodeIndex> parent_;  ///< the root's is itself
   std::vector<std::uint32_t> depth_;
-  std::vector<bool> is_full_;  ///< when all primitives are empty, its subtree is all of space; else it is empty
-  /// Steps from here to the root, on which all siblings are taken for constants, that turn inside out...
+  std::vector<bool> is_full_;  ///< value of the subtree when all primitives are empty: all of space or empty
+  /// Number of inverting steps from here to the root, when all siblings on the way are constants.
   std::vector<std::uint32_t> inversions_;
-  /// ...and the depth of the nearest node, this one included, whose step to its parent forgets what it is; 0: none.
+  /// Depth of the nearest node from here to the root whose step to its parent ignores its value; 0: none.
   std::vector<std::uint32_t> forgetting_depth_;
   /// shallowest_[k][i]: the node of least depth among i .. i + 2^k - 1.
   std::vector<std::vector<NodeIndex>> shallowest_;
-  std::vector<NodeIndex> leaves_;        ///< nodes that are primitives, by primitive
-  std::vector<std::size_t> leaf_begin_;  ///< by primitive: its first in leaves_; one more at the end
+  std::vector<NodeIndex> leaves_;        ///< primitive leaves, sorted by primitive
+  std::vector<std::size_t> leaf_begin_;  ///< by primitive: index of its first leaf in leaves_; one more at the end
 };
 
 }  // namespace cloud2csg

@@ -11,7 +11,6 @@
 /// Segmentation: which points lie on the surface of which primitive.
 namespace cloud2csg {
 
-/// Its fields: see the table.
 struct SegmentationOptions {
   std::optional<double> distance_tolerance = {};
   double angle_tolerance_deg = 30.0;
@@ -28,43 +27,40 @@ void option_table(OptionsOf<SegmentationOptions>, auto&& field) {
         above_to(0, 90), {.unit = "DEG"});
 }
 
-/// The standard deviation of the points' distances from the primitives, robust: 1.4826 times the median distance to the
-/// nearest primitive whose normal agrees, over a subsample of at most 4096 points, taken again without the points that
-/// are five times as far. Never below 1e-5 of the cloud's diagonal, so that a perfect cloud has a usable scale, and
-/// never above a tenth of it, so that a cloud that lies elsewhere is not taken for a noisy one. O(primitives).
-/// Precondition: the cloud has normals.
+/// Robust standard deviation of the points' distances from the primitives. It is 1.4826 times the median distance to
+/// the nearest primitive with an agreeing normal, over at most 4096 sampled points, repeated without points five times
+/// as far. It is at least 1e-5 of the cloud's diagonal, as a scale for perfect clouds, and at most a tenth of it, so
+/// that a misplaced cloud does not pass for a noisy one. O(primitives). Precondition: the cloud has normals.
 [[nodiscard]] double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives,
                                     double angle_tolerance_deg = SegmentationOptions{}.angle_tolerance_deg,
                                     const RunContext& run = {});
 
-/// The tolerances in force: options with what was absent filled in from the measured noise.
+/// The tolerances in force: the options, with defaults from the measured noise.
 struct SegmentationTolerances {
   double distance = 0;
-  double cosine = 0;  ///< of the angle
+  double cosine = 0;  ///< cosine of the angle tolerance
 };
 [[nodiscard]] SegmentationTolerances segmentation_tolerances(const SegmentationOptions& options, double noise);
 
-/// A point belongs to every primitive that it is near enough to; to none when it is near none.
+/// A point belongs to every primitive within the tolerances, maybe to none.
 struct Segmentation {
   std::vector<std::vector<std::uint32_t>> points_of;  ///< point indices, ascending, by primitive
-  std::size_t unassigned = 0;                         ///< points that belong to no primitive
+  std::size_t unassigned = 0;
 };
 
-/// O(points x primitives). The reference for the fused pass of build_rank_classes(), and the way to look at a
-/// segmentation on its own. Precondition: the cloud has normals.
+/// Reference for the fused pass of build_rank_classes(). Precondition: the cloud has normals. O(points x primitives)
 [[nodiscard]] Segmentation segment_points(const PointCloud& cloud, const PrimitiveSet& primitives,
                                           const SegmentationTolerances& tolerances, const RunContext& run = {});
 
 /// The points that lie on a primitive's surface and are nearer to no other's.
 struct SurfacePoints {
   std::vector<std::uint32_t> points;  ///< indices, ascending
-  double rms = 0;                     ///< of their distances from the surface; 0 where there are none
+  double rms = 0;                     ///< root mean square distance from the surface; 0 without points
 };
 
-/// Deals the points out to the primitives, one entry each: a point is near enough to a primitive as in a segmentation,
-/// but belongs to the nearest only, of equally near ones to the first. Where a field is no distance (expressions,
-/// displaced solids), the distance is its value over its slope. O(points x primitives).
-/// Precondition: the cloud has normals. @throws Cancelled
+/// Assigns points to primitives, with one result per primitive. A point within the tolerances belongs only to its
+/// nearest primitive, the first of equally near ones. For expressions and displaced solids the distance is the field's
+/// value over its slope. O(points x primitives). Precondition: the cloud has normals. @throws Cancelled
 [[nodiscard]] std::vector<SurfacePoints> deal_points(const PointCloud& cloud, const PrimitiveSet& primitives,
                                                      const SegmentationTolerances& tolerances,
                                                      const RunContext& run = {});

@@ -16,15 +16,14 @@
 /// From detected surfaces to few solids and a small tree over them.
 namespace cloud2csg {
 
-/// Places of which it is known whether they are in the solid.
+/// Places with a known label: in the solid or out of it.
 struct LabelledPlaces {
   Points positions = {};
-  /// One a place: how much it counts, positive in the solid, negative outside. Places all over the volume weigh 1 in
-  /// all per volume of the solid, those just beside the surface 1 for all of the surface.
+  /// One per place: positive in the solid, negative outside. Volume places weigh 1 in total per volume of the solid;
+  /// places just beside the surface weigh 1 in total for the whole surface.
   std::vector<double> weights = {};
 };
 
-/// Its fields: see the table.
 struct PlaceOptions {
   std::optional<double> noise = {};
   std::size_t volume_places = 30'000, surface_points = 8'000;
@@ -43,23 +42,19 @@ void option_table(OptionsOf<PlaceOptions>, auto&& field) {
   field(&O::seed, k_inner_seed);
 }
 
-/// Places in the volume are labelled by the winding number of the oriented points (Barill et al. 2018), those beside a
-/// point by its normal. Unclear ones are left out. O((places + points) log points) and places x occupied voxels, of
-/// which there are some thousands.
-/// @throws Error (where = "cloud", "noise"...) when the cloud has no normals, fewer than 16 points, or no inside, or an
-/// option is out of range; Cancelled.
+/// Labels places in the volume by the winding number of the oriented points (Barill et al. 2018) and places beside a
+/// point by its normal. Leaves out unclear places. O((places + points) log points + places x some thousand voxels)
+/// @throws Error (where = "cloud", "noise"...) for no normals, no inside, fewer than 16 points, a bad option; Cancelled
 [[nodiscard]] LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options = {},
                                           const RunContext& run = {});
 
-/// The weight of the places that a tree labels otherwise; 0 when it is right everywhere. O(places x size).
+/// Total weight of the places that the tree labels differently; 0 when it is right everywhere. O(places x size).
 [[nodiscard]] double wrong_place_share(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places);
 
-/// Of the places that a tree labels otherwise, the one deepest inside or farthest outside of its solid. O(places x
-/// size). Precondition: there is one.
+/// The wrongly labelled place deepest inside or farthest outside. O(places x size). Precondition: there is one.
 [[nodiscard]] Eigen::Vector3d worst_place(const CsgTree& tree, const PrimitiveSet& solids,
                                           const LabelledPlaces& places);
 
-/// Its fields: see the table.
 struct RegularityOptions {
   bool snap = true;
   double angle_tolerance_deg = 1.0;
@@ -112,14 +107,14 @@ enum class RegularityKind : std::uint8_t {
 /// "direction", "offset", "axis", "radius", "given direction", "given radius", "arrangement".
 [[nodiscard]] std::string_view to_string(RegularityKind kind);
 
-/// What was snapped.
+/// One value that was made regular.
 struct Snap {
   RegularityKind kind = RegularityKind::direction;
   std::uint32_t surface = 0;  ///< index into the surfaces
-  double change = 0;          ///< of a direction in degrees, of the others in units of length
+  double change = 0;          ///< degrees for a direction, else units of length
 };
 
-/// Of directions in degrees, of all others in units of length; 0 where there are none.
+/// Turns in degrees, all other changes in units of length; 0 without any.
 struct LargestChange {
   double turn_deg = 0, shift = 0;
 };
@@ -127,27 +122,26 @@ struct LargestChange {
 [[nodiscard]] LargestChange largest_change(std::span<const Snap> snaps);
 
 struct RegularSurfaces {
-  std::vector<DetectedSurface> surfaces = {};  ///< as many as there were, in the same order
+  std::vector<DetectedSurface> surfaces = {};  ///< the given number and order
   std::vector<Snap> snaps = {};
 };
 
-/// What of a surface is known: it is not changed, and others are made like it.
+/// The known values of a surface: they stay, and other surfaces adapt to them.
 struct FixedValues {
   bool direction = false, position = false, radius = false;
 };
 
-/// Makes directions that nearly are so equal or orthogonal, planes that nearly are so coplanar, axes coaxial, radii
-/// equal. A direction is laid along an axis of coordinates where that moves no surface by more than the distance
-/// tolerance: a part that lies so is easier to edit. A value that several share is the mean by their points, so what
-/// has more is moved less. Parallel axes of cylinders of equal radius are put into rows and grids of equal steps and
-/// into circles of equal angles (regular_places.hpp). Turned surfaces keep their position, which should be near their
-/// points. Where a surface's own points leave its direction more open (DetectedSurface::turn_deg), it is turned up to
-/// three standard deviations, at most three times the angle. `fixed` has one a surface, or none. O(surfaces^2).
+/// Makes nearly equal or orthogonal directions exact, nearly equal planes coplanar, axes coaxial and radii equal.
+/// Aligns a direction with a coordinate axis where that moves no surface by more than the distance tolerance; aligned
+/// parts are easier to edit. A shared value is the mean weighted by points, so a surface with more points moves less.
+/// Puts parallel axes of cylinders of equal radius into rows and grids of equal steps and circles of equal angles
+/// (regular_places.hpp). Turned surfaces keep their position, which should be near their points. Where a surface's own
+/// points leave its direction uncertain (DetectedSurface::turn_deg), it turns by up to three standard deviations, at
+/// most three times the angle. `fixed` has one entry per surface, or none. O(surfaces^2).
 [[nodiscard]] RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
                                          double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
                                          std::span<const FixedValues> fixed = {});
 
-/// Its fields: see the table.
 struct SolidOptions {
   double leaf_cost = 0.001, plane_cost = 0.2;
   std::size_t most_rules = 1024;
@@ -176,35 +170,33 @@ void option_table(OptionsOf<SolidOptions>, auto&& field) {
   field(&O::regularity, "regularity", "What of the surfaces is made regular");
 }
 
-/// A solid that is known, and the points that lie on its surface. They should not be those of detected surfaces.
+/// A known solid and the points on its surface, which should not belong to detected surfaces.
 struct KnownSolid {
   Primitive solid;
   SurfacePoints own = {};
 };
 
 struct SolidChoice {
-  /// Those that are known first, as they are; then others, with ids by type and number: "box_0", "cylinder_1"...
+  /// The known solids first, unchanged; then new ones with ids by type and number: "box_0", "cylinder_1"...
   PrimitiveSet solids = {};
   CsgTree tree = {};        ///< over the solids, simplified
-  double disagreement = 0;  ///< of the tree with the places
+  double disagreement = 0;  ///< wrong_place_share() of the tree
   LabelledPlaces places = {};
   std::vector<Snap> snaps = {};
-  std::vector<std::string> warnings = {};  ///< sentences for the user: given values that the points do not bear out
+  std::vector<std::string> warnings = {};  ///< sentences for the user: given values that the points do not support
 };
 
-/// Few solids that surfaces bound, and a tree over them: a decision list of terms (boxes, cylinders, cones, spheres,
-/// tori, polytopes, and parts that two of them have in common), each of which is in or out of the solid where none
-/// before it decides. Terms are not listed: the one that gains most is searched for, again and again, and rules are
-/// taken back or exchanged as long as that lowers disagreement plus leaves. The result does not depend on the number of
-/// threads. Stopped early, the tree is the best so far.
-/// @throws Error when the cloud has no normals, there are no surfaces or an option is out of range; Cancelled when
-/// stopped before the search.
+/// Chooses few solids bounded by the surfaces, and a tree over them. The tree is a decision list of terms: boxes,
+/// cylinders, cones, spheres, tori, polytopes, and intersections of two of them. The first term that contains a place
+/// says whether it is in the solid. Terms are not enumerated: the search repeatedly adds the term that gains most, and
+/// removes or exchanges rules while that lowers disagreement plus leaves. The result does not depend on the number of
+/// threads. When stopped early, the tree is the best so far.
+/// @throws Error without normals or surfaces, or for an option out of range; Cancelled when stopped before the search.
 [[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                         const SolidOptions& options = {}, const RunContext& run = {});
 
-/// The same beside solids that are known. These are terms as they are, of any type, and preferred to others that are as
-/// good; their faces are among those that solids may end at, and detected surfaces are made like them, not they like
-/// these. No surfaces are needed where a known solid has points.
+/// The same with known solids. They are terms of any type, and win against equally good terms. New solids may end at
+/// their faces. Detected surfaces adapt to them. No surfaces are needed where a known solid has points.
 [[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                         std::span<const KnownSolid> known, const SolidOptions& options,
                                         const RunContext& run);

@@ -16,16 +16,16 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::size_t k_least_points = 12;  // of a primitive that is refined
-constexpr double k_owner_sigmas = 4.0;      // how far from its surface a point may be
-constexpr double k_noise_floor = 1e-7;      // of the cloud's diagonal
+constexpr std::size_t k_least_points = 12;  // to refine a primitive
+constexpr double k_owner_sigmas = 4.0;      // largest distance of a point from its primitive
+constexpr double k_noise_floor = 1e-7;      // share of the cloud's diagonal
 constexpr double k_settled = 0.01;          // relative change of the noise
-constexpr double k_contradiction = 10.0;    // squares of the noise that an unknown may cost
-constexpr double k_slack = 1e-3;            // ..., and a point
+constexpr double k_contradiction = 10.0;    // allowed loss per saved unknown, in squares of the noise
+constexpr double k_slack = 1e-3;            // allowed loss per point, in squares of the noise
 constexpr double k_radians_per_degree = std::numbers::pi / 180.0;
 constexpr std::size_t k_least_sample = 20'000;
 
-/// Points that primitives are refined on: all, or some, evenly over their order.
+/// Evenly thinned points for the refinement.
 PointCloud sample_of(const PointCloud& cloud, std::size_t most) {
   const std::size_t count = std::min(cloud.size(), most);
   PointCloud sample;
@@ -37,10 +37,9 @@ PointCloud sample_of(const PointCloud& cloud, std::size_t most) {
   return sample;
 }
 
-/// Points of each primitive with their distances from it.
 struct Ownership {
   OwnedPoints points;
-  std::vector<double> distances;  ///< unsigned, of all of them
+  std::vector<double> distances;  ///< unsigned, of all points before thinning
 };
 
 class Refiner {
@@ -62,7 +61,7 @@ class Refiner {
       run_.throw_if_stopped();
       const Ownership owned = owned_points(primitives, noise);
       const double measured = noise_of(owned, noise);
-      // Each for itself: unknowns that are not shared are solved many times faster.
+      // One by one: without shared unknowns the solution is many times faster.
       Arrangement arrangement = separate(primitives, origins_of(owned.points));
       primitives = solved_apart(arrangement, primitives, owned.points, measured);
       result_.rounds = round + 1;
@@ -126,7 +125,7 @@ class Refiner {
     return origins;
   }
 
-  /// Every member of the arrangement, on the threads of the run.
+  /// Solves each member by itself, in parallel.
   [[nodiscard]] PrimitiveSet solved_apart(const Arrangement& arrangement, const PrimitiveSet& primitives,
                                           const OwnedPoints& points, double noise) const {
     PrimitiveSet result = primitives;
@@ -149,7 +148,7 @@ class Refiner {
       const PrimitiveIndex p = apart.members[m].primitive;
       uncertainties[m] = uncertainty_of(apart, apart.members[m], primitives[p], owned.points[p], noise);
     });
-    // All regularities; where the points contradict these, directions only.
+    // First all regularities; directions only if the points contradict.
     for (const bool with_values : {true, false}) {
       run_.throw_if_stopped();
       RegularArrangement regular = regularised(
@@ -226,7 +225,7 @@ class Refiner {
     return std::move(result_);
   }
 
-  /// Points are those of the refined primitive, so there are hardly any outliers among them.
+  /// The points belong to the refined primitive, so there are hardly any outliers among them.
   [[nodiscard]] static double rms_of(const Primitive& primitive, const Points& points) {
     double squares = 0;
     for (const double distance : signed_distance(primitive, points)) squares += distance * distance;
@@ -243,7 +242,7 @@ class Refiner {
       turn = std::atan2(a.cross(b).norm(), a.dot(b));
     }
     change.turn_deg = turn / k_radians_per_degree;
-    // Seen from where the primitive was, in its own axes.
+    // Relative to the old position, along the primitive's own axes.
     const LocalFrame frame{.orientation = from, .origin = before.pose.position};
     const std::vector<Slot> was = slots_of(before, frame);
     const std::vector<Slot> is = slots_of(after, frame);

@@ -11,13 +11,13 @@ namespace cloud2csg {
 namespace {
 
 constexpr double k_uncertain = 3.0;       // standard deviations
-constexpr double k_most_uncertain = 3.0;  // times the angle
+constexpr double k_most_uncertain = 3.0;  // in multiples of the angle tolerance
 
 enum class Directions {
-  three,  // a box
-  one,    // a solid of revolution
-  none,   // a sphere
-  other,  // any number, in any directions
+  three,  // box
+  one,    // solid of revolution
+  none,   // sphere
+  other,  // any number of arbitrary directions
 };
 
 Directions directions_of(const Primitive& primitive) {
@@ -30,7 +30,7 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// The axis, with its sign, that is nearest to a direction.
+/// The signed coordinate axis nearest to a direction.
 Eigen::Vector3d nearest_axis(const Eigen::Vector3d& direction) {
   Eigen::Index axis = 0;
   (void)direction.cwiseAbs().maxCoeff(&axis);
@@ -44,7 +44,7 @@ struct Snapped {
   double angle;
 };
 
-/// The rotation by multiples of 90 degrees that is nearest to one; absent where there is none in reach.
+/// The nearest rotation by multiples of 90 degrees; absent beyond `reach`.
 std::optional<Snapped> snap_box(const Eigen::Quaterniond& rotation, double reach) {
   const Eigen::Matrix3d axes = rotation.toRotationMatrix();
   Eigen::Matrix3d snapped;
@@ -56,7 +56,7 @@ std::optional<Snapped> snap_box(const Eigen::Quaterniond& rotation, double reach
   return Snapped{.in_frame = result, .angle = angle};
 }
 
-/// Brings the z axis to the nearest axis, and the others, which are anywhere, to the nearest ones as well.
+/// Snaps the z axis to the nearest axis, and the two free axes to the nearest ones as well.
 std::optional<Snapped> snap_axis(const Eigen::Quaterniond& rotation, double reach) {
   const Eigen::Matrix3d axes = rotation.toRotationMatrix();
   const Eigen::Vector3d third = nearest_axis(axes.col(2));
@@ -100,7 +100,7 @@ class Grouping {
     return points_[separate_.members[member].primitive].size();
   }
 
-  /// Boxes first, which have all three directions, then what has the most points; spheres at the end.
+  /// Boxes first, since they have all three directions, then by number of points; spheres last.
   [[nodiscard]] std::vector<std::size_t> by_importance() const {
     std::vector<std::size_t> order(separate_.members.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -139,7 +139,7 @@ class Grouping {
     return false;
   }
 
-  /// An axis across that of a group of solids of revolution gives the group its other directions.
+  /// A perpendicular axis gives a group of solids of revolution its other directions.
   void complete(DirectionGroup& group, std::size_t member, double reach) const {
     const Eigen::Vector3d axis = group.orientation * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d direction = orientation_of(member) * Eigen::Vector3d::UnitZ();
@@ -162,10 +162,9 @@ class Grouping {
   std::vector<bool> open_;  // by group: whether others may join
 };
 
-constexpr double k_same = 1e-6;  // of how loose values are: equal before
+constexpr double k_same = 1e-6;  // share of the looseness within which values were equal before
 constexpr double k_sigmas = 3.0;
 
-/// A slot as an equation could have it.
 struct Entry {
   std::size_t member, slot;
   double sign;
@@ -174,7 +173,7 @@ struct Entry {
   double loose;
 };
 
-/// Entries that can be compared: of a kind, and along one axis of one frame.
+/// Comparable entries: of one kind, along one axis of one frame.
 using Bucket = std::vector<Entry>;
 using BucketKey = std::tuple<RegularityType, std::size_t, int>;
 
@@ -217,7 +216,7 @@ class Regulariser {
     }
     const std::size_t frame = result_.arrangement.frames.size();
     result_.arrangement.frames.push_back({.orientation = group.orientation, .origin = sum / std::max(count, 1.0)});
-    // The group's directions as they were given, by its first member.
+    // The group's directions as given, from its first member.
     const DirectionGroup::Member& first = group.members.front();
     const Eigen::Quaterniond given = given_[primitive_of(first.member)].pose.orientation * first.in_frame.conjugate();
     for (const DirectionGroup::Member& of_group : group.members) add_member(of_group, frame, given);
@@ -249,7 +248,7 @@ class Regulariser {
       }
       const bool is_a_plane_anywhere = now[k].kind == RegularityType::faces && !now[k].axis;
       const bool is_radius = now[k].kind == RegularityType::radii;
-      // Planes of polytopes are each for itself.
+      // Each plane of a polytope has a bucket of its own.
       const BucketKey key = is_a_plane_anywhere ? BucketKey{now[k].kind, frame, -2 - static_cast<int>(k)}
                             : is_radius         ? BucketKey{now[k].kind, 0, -1}
                                                 : BucketKey{now[k].kind, frame, axis};
@@ -269,7 +268,7 @@ class Regulariser {
     return std::abs(a.given - b.given) <= k_same * std::min(a.loose, b.loose);
   }
 
-  /// Whether the points let two values be one.
+  /// Whether the points allow two values to be equal.
   [[nodiscard]] bool can_be_equal(const Entry& a, const Entry& b) const {
     const double difference = std::abs(a.value - b.value);
     if (were_equal(a, b)) return !is_supported(a) || !is_supported(b) || difference <= limits_.value;
@@ -277,7 +276,7 @@ class Regulariser {
     return difference <= std::min(limits_.value, k_sigmas * std::hypot(a.deviation, b.deviation));
   }
 
-  /// Equal entries; none twice of the same primitive, which would make it flat, and none of which two are contradicted.
+  /// Classes of equal entries without contradictions. A primitive appears once per class, or it would become flat.
   [[nodiscard]] std::vector<Bucket> classes_of(const Bucket& bucket) const {
     std::vector<Bucket> classes;
     for (const Entry& entry : bucket) {
@@ -296,7 +295,7 @@ class Regulariser {
   }
 
   void add_variables(RegularityType type, Bucket& bucket) {
-    // The best known first: others join these.
+    // The most certain first, so that others join them.
     std::ranges::stable_sort(bucket, {}, &Entry::deviation);
     for (const Bucket& equal : classes_of(bucket)) {
       double weights = 0;

@@ -17,14 +17,14 @@ Slot radius(double value) {
   return {RegularityType::radii, {}, value};
 }
 
-/// Values in the order of slots_of().
+/// Reads values in the order of slots_of().
 class Reader {
  public:
   Reader(std::span<const double> values, Eigen::Vector3d place) : values_(values), place_(std::move(place)) {}
 
   double next() { return values_[next_++]; }
   void centre(int axis) { place_[axis] = next(); }
-  /// Two faces across an axis; returns their distance, and puts the middle between them.
+  /// Reads two opposite faces; sets the middle between them and returns their distance.
   double faces(int axis) {
     const double low = next();
     const double high = next();
@@ -143,11 +143,11 @@ std::vector<Slot> slots_of(const Primitive& primitive, const LocalFrame& frame) 
 std::optional<Primitive> with_slots(const Primitive& original, const LocalFrame& frame,
                                     std::span<const double> values) {
   const bool keeps_its_place = std::holds_alternative<Polytope>(original.shape);
-  // What no slot tells is as before, in the primitive's own axes.
+  // Values without a slot stay, along the primitive's own axes.
   const Eigen::Vector3d before = frame.orientation.conjugate() * (original.pose.position - frame.origin);
   Reader reader(values, before);
   Primitive result = original;
-  result.evidence.reset();  // it speaks of where the primitive was
+  result.evidence.reset();  // it describes the old position
   result.shape = shape_from(original.shape, reader);
   if (!has_no_orientation(original)) result.pose.orientation = frame.orientation;
   if (!keeps_its_place) result.pose.position = frame.origin + frame.orientation * reader.place();

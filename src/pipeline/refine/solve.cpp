@@ -17,11 +17,11 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_loose = 0.02;  // of its size
+constexpr double k_loose = 0.02;  // share of the size
 
 constexpr double k_loose_turn = 0.035;  // radians
-constexpr double k_turn_step = 1e-6;    // of differences
-constexpr double k_value_step = 2e-5;   // ..., of how loose a value is
+constexpr double k_turn_step = 1e-6;    // for central differences
+constexpr double k_value_step = 2e-5;   // for central differences, as a share of a value's looseness
 constexpr int k_most_iterations = 25;
 
 using Turn = std::array<double, 3>;
@@ -30,7 +30,7 @@ Eigen::Vector3d vector_of(const double* turn) {
   return {turn[0], turn[1], turn[2]};
 }
 
-/// Where a value or turn was, as if one point said so.
+/// Residual that pulls a value or turn to its start with the weight of one point.
 class Pull : public ceres::CostFunction {
  public:
   Pull(double from, double loose, int block, int entry) : from_(from), loose_(loose), entry_(entry) {
@@ -51,8 +51,7 @@ class Pull : public ceres::CostFunction {
   int entry_;
 };
 
-/// The distances of a member's points from it. Slopes are differences: a distance costs nanoseconds, and every solid
-/// and its displacement has one.
+/// Distances of a member's points from it, with finite differences: cheap, and valid for every solid and displacement.
 class OwnDistances : public ceres::CostFunction {
  public:
   OwnDistances(const Arrangement& arrangement, const Arrangement::Member& member, const Primitive& primitive,
@@ -138,7 +137,6 @@ class OwnDistances : public ceres::CostFunction {
   double noise_;
 };
 
-/// A rotation vector's rotation.
 Eigen::Quaterniond rotation_by(const Eigen::Vector3d& turn) {
   const double angle = turn.norm();
   if (angle == 0) return Eigen::Quaterniond::Identity();
@@ -220,7 +218,7 @@ void solve(Arrangement& arrangement, const PrimitiveSet& primitives, const Owned
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = k_most_iterations;
   options.logging_type = ceres::SILENT;
-  options.num_threads = 1;  // so that sums do not depend on them
+  options.num_threads = 1;  // so that sums do not depend on threads
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable()) {

@@ -9,53 +9,50 @@
 
 namespace cloud2csg {
 
-/// Unknowns that several primitives share: a turn, and values of slots. That directions are parallel and values equal
-/// then holds exactly, whatever the unknowns are.
+/// Unknowns that primitives share: turns and slot values. So directions stay exactly parallel and values exactly equal.
 struct Arrangement {
-  /// A primitive, and where it has its unknowns.
   struct Member {
     PrimitiveIndex primitive;
     std::size_t frame;
-    Eigen::Quaterniond in_frame;         ///< its own axes in the frame's
-    std::vector<std::size_t> variables;  ///< a slot each; no two are the same
-    std::vector<double> signs;           ///< the slot's value is this times the variable: 1 or -1
+    Eigen::Quaterniond in_frame;         ///< axes of the member in the frame
+    std::vector<std::size_t> variables;  ///< one per slot, all different
+    std::vector<double> signs;           ///< slot value = sign * variable, with sign 1 or -1
   };
 
   std::vector<LocalFrame> frames;
   std::vector<Member> members;
   std::vector<double> values;  ///< by variable
-  std::vector<double> loose;   ///< by variable: how far it may be off before the points are asked
+  std::vector<double> loose;   ///< by variable: prior standard deviation, without points
 };
 
-/// Each primitive for itself; those without slots or points (absent origins) are no members.
+/// One frame per primitive; leaves out primitives without slots or points (absent origins).
 [[nodiscard]] Arrangement separate(const PrimitiveSet& primitives,
                                    const std::vector<std::optional<Eigen::Vector3d>>& origins);
 
-/// The member's own frame, with its frame turned by a rotation vector (radians, in the world).
+/// The member's frame after turning its shared frame by a rotation vector (radians, in the world).
 [[nodiscard]] LocalFrame frame_of(const Arrangement& arrangement, const Arrangement::Member& member,
                                   const Eigen::Vector3d& turn = Eigen::Vector3d::Zero());
 
-/// The primitives as the arrangement has them; others as given.
+/// The primitives with the arrangement's values; non-members as given.
 [[nodiscard]] PrimitiveSet arranged(const Arrangement& arrangement, PrimitiveSet primitives);
 
-/// How far a primitive's values may be off before its points are asked: a share of its size.
+/// Prior standard deviation of a primitive's values: a share of its size.
 [[nodiscard]] double looseness(const Primitive& primitive);
 
-/// The points that a primitive is refined on.
+/// The points that each primitive is fitted to.
 using OwnedPoints = std::vector<Points>;  // by primitive
 
-/// What the points leave uncertain of a member's unknowns: standard deviations, with what is known without points.
+/// Standard deviations of a member's unknowns from the points and the prior.
 struct MemberUncertainty {
-  double turn;  ///< of its axis, or of the whole where it has none, in the worst direction, in radians
+  double turn;  ///< worst direction, in radians: of the axis, or of the whole without an axis
   std::vector<double> slots;
 };
 
-/// Moves the unknowns to where the points' distances from their primitives, in multiples of the noise and under Tukey's
-/// loss, are least; a slight pull to where they were keeps those that no point determines. By Levenberg-Marquardt.
-/// `primitives` are what the arrangement was made from.
+/// Minimises the distances of points from their primitives, in multiples of the noise and under Tukey's loss, by
+/// Levenberg-Marquardt. A weak pull keeps undetermined unknowns. `primitives` are those of the arrangement.
 void solve(Arrangement& arrangement, const PrimitiveSet& primitives, const OwnedPoints& points, double noise);
 
-/// Of one member with a frame of its own.
+/// For one member with a frame of its own.
 [[nodiscard]] MemberUncertainty uncertainty_of(const Arrangement& arrangement, const Arrangement::Member& member,
                                                const Primitive& primitive, const Points& points, double noise);
 

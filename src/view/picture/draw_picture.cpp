@@ -23,8 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// In samples: a little more than half of the spacing that the points would have, were they spread over the surface of
-/// their bounds.
+/// Disc radius in samples: 0.6 of the point spacing for points spread over the surface of their bounding box.
 double disc_radius(const AlignedBox& box, std::size_t points, double step) {
   const Vector3d s = box.sizes();
   const double area = 2 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
@@ -33,7 +32,7 @@ double disc_radius(const AlignedBox& box, std::size_t points, double step) {
   return std::clamp(0.6 * std::sqrt(area / static_cast<double>(points)) / step, k_least, k_most);
 }
 
-/// Draws one disc with its middle at (x, y) samples, where nothing is nearer.
+/// Draws a disc around (x, y) samples, hidden by nearer samples.
 void draw_disc(Samples& samples, const View& view, double x, double y, double radius, const Sample& disc) {
   const auto first = [radius](double middle) { return std::max(0.0, std::ceil(middle - radius)); };
   for (double row = first(y); row <= y + radius && row < static_cast<double>(view.rows); ++row) {
@@ -45,8 +44,8 @@ void draw_disc(Samples& samples, const View& view, double x, double y, double ra
   }
 }
 
-/// The points as discs that hide what is behind them, so large that a surface hardly shows gaps; shaded where there are
-/// normals, and paler the farther away. Without `colours` all are of one grey. O(points x samples of a disc)
+/// Draws points as opaque discs, large enough to close most gaps. Shades them by normals, where present, and fades them
+/// with distance. Without `colours` all are grey. O(points x samples of a disc)
 Samples draw_cloud(const PointCloud& cloud, std::span<const Colour> colours, const View& view) {
   Samples samples(view.columns * view.rows);
   const AlignedBox box = bounds_of(cloud.positions);
@@ -57,8 +56,7 @@ Samples draw_cloud(const PointCloud& cloud, std::span<const Colour> colours, con
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vector3d place = cloud.positions[i] - view.corner;
     const double depth = place.dot(view.forward);
-    // Points that face away are seen from behind, through gaps or on an open surface: pale, so that both sides of the
-    // solid can be told apart.
+    // Points that face away show through gaps and on open surfaces: pale, to tell the sides of a surface apart.
     const Vector3d normal = cloud.has_normals() ? cloud.normals[i] : Vector3d(-view.forward);
     const bool is_behind = normal.dot(view.forward) > 0;
     const Vector3d facing = is_behind ? Vector3d(-normal) : normal;
@@ -72,7 +70,7 @@ Samples draw_cloud(const PointCloud& cloud, std::span<const Colour> colours, con
 }
 
 constexpr std::size_t k_oversampling = 3;
-// In all: samples and what rays meet take half a kilobyte a pixel.
+// Samples and hits take half a kilobyte per pixel.
 constexpr double k_most_pixels = 4e6;
 
 std::uint8_t byte_of(float linear) {
@@ -84,7 +82,6 @@ struct Pane {
   int begin, width;
 };
 
-/// Averages the samples of each pixel over the background.
 void fill_pane(Image& image, const Pane& pane, const Samples& samples, const PictureOptions& options,
                const RunContext& run) {
   const std::size_t columns = k_oversampling * static_cast<std::size_t>(pane.width);
@@ -104,7 +101,7 @@ void fill_pane(Image& image, const Pane& pane, const Samples& samples, const Pic
       sum /= static_cast<float>(k_oversampling * k_oversampling);
       const std::size_t pixel =
           row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(pane.begin) + column;
-      // Exactly the background, not what rounding makes of its mean.
+      // Exact background colour instead of a rounded mean.
       const std::array<std::uint8_t, 3> colour = is_empty
                                                      ? std::array{behind.red, behind.green, behind.blue}
                                                      : std::array{byte_of(sum.x()), byte_of(sum.y()), byte_of(sum.z())};
@@ -113,7 +110,7 @@ void fill_pane(Image& image, const Pane& pane, const Samples& samples, const Pic
   });
 }
 
-/// The box of what is not far off: a few outliers must not make all else small.
+/// Bounding box without outliers, which would make everything else small.
 AlignedBox main_box(const PointCloud& cloud) {
   constexpr double k_left_out = 0.002;
   AlignedBox box;

@@ -18,7 +18,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// What a ray meets.
 struct Hit {
   double depth = std::numeric_limits<double>::infinity();
   Vector3d normal = Vector3d::Zero();
@@ -40,7 +39,7 @@ std::vector<Hit> cast_rays(const TriangleMesh& mesh, const View& view, const Run
   return hits;
 }
 
-/// Whose surface is hit, and its normal there: a mesh's own are of triangles, which would show.
+/// Finds the primitive at each hit and its exact normal; normals of the mesh would show triangles.
 void find_owners(std::vector<Hit>& hits, const Model& model, const View& view, const RunContext& run) {
   PointCloud places;
   std::vector<std::size_t> sample_of;
@@ -54,7 +53,7 @@ void find_owners(std::vector<Hit>& hits, const Model& model, const View& view, c
   const PointFit fit = measure_points(model, places, near, {.with_owners = true}, run);
   std::vector<std::vector<std::size_t>> of_primitive(model.primitives.size());
   for (std::size_t k = 0; k < fit.owners.size(); ++k) {
-    // Where a solid without bounds was cut there is no primitive.
+    // A cut through an unbounded solid belongs to no primitive.
     if (fit.owners[k] == k_no_owner || std::abs(fit.signed_distances[k]) > 10 * near) continue;
     of_primitive[fit.owners[k]].push_back(k);
   }
@@ -69,8 +68,7 @@ void find_owners(std::vector<Hit>& hits, const Model& model, const View& view, c
   });
 }
 
-/// Whether a line belongs between two samples beside each other: an outline, a step in depth that the slope does not
-/// explain, an edge, or where one primitive's surface ends and another's begins.
+/// Whether a line separates two samples: an outline, depth step beyond the slope, edge, or border between primitives.
 bool is_line(const Hit& a, const Hit& b, double step) {
   if (a.is_hit() != b.is_hit()) return true;
   if (!a.is_hit()) return false;
@@ -81,7 +79,7 @@ bool is_line(const Hit& a, const Hit& b, double step) {
 
 Vector3f shade(const Hit& hit, const View& view) {
   const Vector3f own = linear_colour(hit.owner == k_no_owner ? k_no_primitive_colour : primitive_colour(hit.owner));
-  constexpr float k_white = 0.12F;  // softens colours that are made to be told apart
+  constexpr float k_white = 0.12F;  // softens colours chosen for contrast
   return brightness(hit.normal, view) * ((1 - k_white) * own + Vector3f::Constant(k_white));
 }
 
@@ -106,7 +104,7 @@ View view_of(const AlignedBox& box, double azimuth_deg, double elevation_deg, st
   const auto across = static_cast<double>(columns);
   const auto down = static_cast<double>(rows);
   view.step = k_margin * std::max(wide / across, high / down);
-  if (!(view.step > 0)) view.step = 1;  // a single point
+  if (!(view.step > 0)) view.step = 1;
   view.corner = box.center() - 0.5 * view.step * ((across - 1) * view.right - (down - 1) * view.up) -
                 (0.5 * deep + 0.01 * (wide + high + deep)) * view.forward;
   return view;

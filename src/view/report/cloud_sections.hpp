@@ -5,13 +5,13 @@
 
 namespace cloud2csg {
 
-/// The points to show, in the order of the deviation, every k-th where there are more than `most`. For each: its
-/// position in 16-bit steps, its normal in two bytes (octahedral), its distance as a 16-bit float in units of the
-/// largest, its owner plus one (0: none; in 16 bits, those beyond have none).
+/// The points to show, in the order of the deviation, thinned evenly to at most `most`. Each has its position in 16-bit
+/// steps, its normal in two bytes (octahedral), its distance as a 16-bit float in units of the largest, and its owner
+/// plus one (0: no owner, or an index beyond 16 bits).
 [[nodiscard]] Payload::Json cloud_sections(const PointCloud& cloud, const Deviation& deviation, std::size_t most,
                                            Payload& payload);
 
-/// A direction as two bytes: the octahedron |x| + |y| + |z| = 1 unfolded to a square. Off by a degree at most.
+/// A direction in two bytes: the octahedron |x| + |y| + |z| = 1 unfolded to a square. Error at most one degree.
 struct OctahedralNormal {
   std::uint8_t u, v;
 };

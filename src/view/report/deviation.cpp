@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t k_worst = 12;
 
-/// The farthest points, each away from those before it: of an outlier and its neighbours one is enough.
+/// The farthest points, at a distance from each other, so that an outlier stands for its neighbours.
 std::vector<std::uint32_t> worst_points(const PointCloud& cloud, std::span<const double> distances) {
-  constexpr double k_apart = 0.02;  // of the diagonal
+  constexpr double k_apart = 0.02;  // share of the diagonal
   constexpr std::size_t k_candidates = 4096;
   std::vector<std::uint32_t> candidates(distances.size());
   std::iota(candidates.begin(), candidates.end(), 0U);
@@ -75,7 +75,7 @@ Deviation measure_deviation(const Model& model, const PointCloud& cloud, const R
   Deviation deviation;
   const AlignedBox box = bounds_of(cloud.positions);
   deviation.order = spatial_order(cloud.positions, box, run);
-  constexpr double k_near = 0.003;  // of the diagonal: farther than most points of most scans
+  constexpr double k_near = 0.003;  // share of the diagonal: beyond most points of most scans
   deviation.fit = measure_points(model, cloud, k_near * box.diagonal().norm(),
                                  {.order = deviation.order, .with_owners = true}, run);
   const std::vector<double>& distances = deviation.fit.signed_distances;

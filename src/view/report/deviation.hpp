@@ -8,22 +8,22 @@
 
 namespace cloud2csg {
 
-/// Of the points whose nearest part of the surface is a primitive's.
+/// Deviation of the points whose nearest surface belongs to one primitive.
 struct OwnerDeviation {
   PrimitiveIndex primitive = 0;
   DeviationSummary summary = {};
 };
 
 struct Deviation {
-  std::vector<std::uint32_t> order;  ///< of the points, neighbours together
-  PointFit fit;                      ///< with owners, by point
-  DeviationSummary summary = {};     ///< of all points
+  std::vector<std::uint32_t> order;  ///< points along a space-filling curve
+  PointFit fit;                      ///< by point, with owners
+  DeviationSummary summary = {};
   std::vector<OwnerDeviation> by_primitive = {};
-  std::vector<std::uint32_t> worst = {};  ///< the points that are farthest off, the farthest first
+  std::vector<std::uint32_t> worst = {};  ///< the farthest points, farthest first
   double noise = 0;                       ///< robust standard deviation of the distances
 };
 
-/// Distances of all points to the solid, and what they come to. O(points x primitives near each). @throws Cancelled
+/// Measures all points' distances to the solid. O(points x primitives near each). @throws Cancelled
 [[nodiscard]] Deviation measure_deviation(const Model& model, const PointCloud& cloud, const RunContext& run);
 
 }  // namespace cloud2csg

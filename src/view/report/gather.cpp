@@ -40,14 +40,13 @@ Json mesh_json(const LightMesh& mesh, Payload& payload) {
           {"owners", payload.add_plain(owners, 1)}};
 }
 
-/// Makes meshes as long as the budget lasts.
 class MeshBudget {
  public:
   MeshBudget(const Model& model, const AlignedBox& extent, const ReportOptions& options, const RunContext& run,
              Payload& payload)
       : model_(model), extent_(extent), options_(options), run_(run), payload_(payload) {}
 
-  /// The number of the mesh, or none where the budget is spent.
+  /// The index of the new mesh; absent when the budget is spent.
   std::optional<std::size_t> add(const CsgTree& tree, int resolution, std::size_t most_triangles) {
     const std::size_t left = options_.most_triangles_in_all - std::min(options_.most_triangles_in_all, triangles_);
     if (meshes_.size() >= options_.most_meshes || left < k_fewest_triangles) return {};
@@ -73,7 +72,7 @@ class MeshBudget {
 
 using MeshOfNode = std::vector<std::optional<std::size_t>>;
 
-/// Of many parts each is coarser: the time that a mesh takes goes with the square of it.
+/// Lowers the resolution for many parts: the time of a mesh grows with its square.
 int resolution_of_parts(std::size_t parts, const ReportOptions& options) {
   constexpr double k_few = 40;
   constexpr int k_least = 24;
@@ -82,11 +81,10 @@ int resolution_of_parts(std::size_t parts, const ReportOptions& options) {
   return std::max(k_least, static_cast<int>(options.part_resolution * std::min(1.0, share)));
 }
 
-/// The whole solid first, then primitives, which are what a tree is read by, then inner nodes, those near the root
-/// first.
+/// Order of importance: the whole solid, primitives (by which people read a tree), inner nodes from the root down.
 MeshOfNode add_meshes(const CsgTree& tree, const std::vector<ShownNode>& nodes, const ReportOptions& options,
                       MeshBudget& budget) {
-  constexpr std::size_t k_share_of_part = 8;  // of the triangles of the whole
+  constexpr std::size_t k_share_of_part = 8;  // divisor of the whole solid's triangles
   const std::size_t most_of_part = std::max<std::size_t>(options.most_triangles / k_share_of_part, 1);
   const int part_resolution = resolution_of_parts(nodes.size(), options);
   MeshOfNode meshes(nodes.size());
@@ -110,9 +108,8 @@ MeshOfNode add_meshes(const CsgTree& tree, const std::vector<ShownNode>& nodes, 
   return meshes;
 }
 
-/// The tree as it is shown (see shown_tree.hpp) and the meshes of its nodes: {"nodes": [{"operation", "primitive",
-/// "children", "mesh"}], "meshes": [...]}. Nodes beyond the budget have the mesh null, empty solids one without
-/// triangles. A primitive that is named twice has one mesh. @throws Cancelled
+/// The shown tree and its meshes: {"nodes": [{"operation", "primitive", "children", "mesh"}], "meshes": [...]}. The
+/// mesh is null beyond the budget and empty for empty solids. Repeated primitives share a mesh. @throws Cancelled
 Json solid_sections(const Model& model, const AlignedBox& extent, const ReportOptions& options, const RunContext& run,
                     Payload& payload) {
   const std::vector<ShownNode> nodes = shown_tree(*model.tree);
@@ -165,7 +162,7 @@ Json deviation_json(const Deviation& deviation, const PointCloud& cloud, double 
 }
 
 Json overlap_json(const PrimitiveSet& primitives, double tolerance, const RunContext& run) {
-  // More than that nobody reads; and what has more is slow to list.
+  // Larger graphs are unreadable and slow to list.
   constexpr std::size_t k_most_primitives = 2000;
   constexpr std::size_t k_most_edges = 20'000;
   constexpr std::size_t k_most_cliques = 2000;
@@ -210,7 +207,7 @@ double noise_of(const Report& report, const Deviation& deviation) {
 
 std::string gather_payload(const Report& report, const ReportOptions& options, const RunContext& loud) {
   constexpr std::size_t k_steps = 3;
-  // Dozens of meshes are one step to who waits for the report.
+  // For the user, dozens of meshes are one step.
   const RunContext run{.stop = loud.stop, .on_progress = {}, .threads = loud.threads};
   loud.report("report", 0, k_steps);
   const Model& model = report.model;

@@ -6,8 +6,7 @@
 
 namespace cloud2csg {
 
-/// All that the page shows, as the bytes of a Payload. Precondition: the model has a tree; valid options.
-/// @throws Cancelled
+/// The page's data as the bytes of a Payload. Precondition: the model has a tree; valid options. @throws Cancelled
 [[nodiscard]] std::string gather_payload(const Report& report, const ReportOptions& options, const RunContext& run);
 
 }  // namespace cloud2csg

@@ -18,13 +18,13 @@ namespace {
 using Corners = std::vector<unsigned int>;
 
 struct SinglePositions {
-  std::vector<float> values;  // three a vertex
+  std::vector<float> values;  // three per vertex
   [[nodiscard]] std::size_t count() const { return values.size() / 3; }
 };
 constexpr std::size_t k_stride = 3 * sizeof(float);
 
 SinglePositions single_positions(const TriangleMesh& mesh) {
-  // Relative to a corner: single precision would lose a small part that is far from the origin.
+  // Relative to a corner, since single precision loses small parts far from the origin.
   const AlignedBox box = bounds_of(mesh.vertices);
   SinglePositions positions;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -41,13 +41,13 @@ Corners simplified(const Corners& corners, const SinglePositions& positions, std
   return result;
 }
 
-/// A mesh whose vertices stand in one patch each, that of a primitive: where patches meet there are two of them.
+/// A mesh in which every vertex belongs to one primitive's patch; borders of patches have duplicate vertices.
 struct PatchedMesh {
   TriangleMesh mesh;
   std::vector<PrimitiveIndex> owners;  // by vertex
 };
 
-/// The mesh with other triangles over some of its vertices, which are numbered in the order of their first use.
+/// Replaces the triangles, and renumbers the vertices they use in order of first use.
 PatchedMesh with_corners(const PatchedMesh& fine, Corners corners) {
   const std::size_t vertices = fine.owners.size();
   meshopt_optimizeVertexCache(corners.data(), corners.data(), corners.size(), vertices);
@@ -66,9 +66,9 @@ PatchedMesh with_corners(const PatchedMesh& fine, Corners corners) {
   return light;
 }
 
-/// Simplification keeps the lines along which patches meet.
+/// Simplification keeps the lines between patches.
 PatchedMesh simplified(const PatchedMesh& fine, std::size_t most_triangles) {
-  constexpr float k_error = 0.0008F;  // of the size
+  constexpr float k_error = 0.0008F;  // share of the size
   constexpr float k_any_error = 1.0F;
   Corners corners;
   for (const auto& triangle : fine.mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
@@ -78,9 +78,9 @@ PatchedMesh simplified(const PatchedMesh& fine, std::size_t most_triangles) {
   return with_corners(fine, std::move(light));
 }
 
-/// Whose surface each triangle is. Where the solid was cut there is no surface: the tree's value is far from zero.
+/// The primitive of each triangle. Cut surfaces have none: the tree's value there is far from zero.
 std::vector<PrimitiveIndex> triangle_owners(const TriangleMesh& mesh, const Model& model, const RunContext& run) {
-  constexpr double k_reach = 0.004;  // of the diagonal: more than the mesh is off
+  constexpr double k_reach = 0.004;  // share of the diagonal: above the error of the mesh
   constexpr double k_tie = 1e-6;
   const double diagonal = bounds_of(mesh.vertices).diagonal().norm();
   PointCloud middles;

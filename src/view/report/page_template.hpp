@@ -4,7 +4,7 @@
 
 namespace cloud2csg {
 
-/// The page of viewer/, built: one HTML file with a mark where the data goes. Empty when it was not built.
+/// The built page of viewer/: an HTML file with a mark for the data. Empty when it was not built.
 [[nodiscard]] std::string_view page_template();
 
 }  // namespace cloud2csg

@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// 0, -1, 1, -2, 2... to 0, 1, 2, 3, 4...
+/// Maps 0, -1, 1, -2, 2... to 0, 1, 2, 3, 4...
 template <class Number>
 Number zigzag(Number difference) {
   using Signed = std::make_signed_t<Number>;
@@ -80,7 +80,7 @@ Payload::Json Payload::add_bytes(std::string_view bytes) {
 }
 
 std::string Payload::bytes(const Json& text) const {
-  // Ids and names need not be UTF-8: what is not gets the sign for that.
+  // Ids and names may not be UTF-8: invalid bytes become the replacement character.
   const std::string json = text.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string all;
   all.reserve(4 + json.size() + sections_.size());
@@ -97,7 +97,7 @@ std::string compressed_base64(std::string_view bytes) {
   const int status = compress2(reinterpret_cast<Bytef*>(compressed.data()), &size,
                                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), k_level);
   if (status == Z_MEM_ERROR) throw std::bad_alloc();
-  if (status != Z_OK) throw std::runtime_error("zlib cannot compress");  // not for any input
+  if (status != Z_OK) throw std::runtime_error("zlib cannot compress");  // impossible for any input
   compressed.resize(size);
   return base64(compressed);
 }

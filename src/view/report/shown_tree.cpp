@@ -5,7 +5,7 @@
 namespace cloud2csg {
 namespace {
 
-/// What is below a chain of one operation, from left to right.
+/// Collects the operands of a chain of one operation from left to right.
 void collect_chain(const CsgTree& tree, std::size_t root, Operation operation, std::vector<std::size_t>& operands) {
   std::vector<std::size_t> open{root};
   while (!open.empty()) {

@@ -13,7 +13,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Where the page has its data; viewer/index.html has the same.
+/// Mark for the data in the page; equal to that in viewer/index.html.
 constexpr std::string_view k_mark = "@CLOUD2CSG_REPORT@";
 
 }  // namespace
