@@ -5,7 +5,6 @@
 
 namespace cloud2csg {
 
-/// For tables of cells.
 struct CellHash {
   std::size_t operator()(const Cell& cell) const {
     std::uint64_t hash = cell.size();

@@ -14,7 +14,7 @@
 namespace cloud2csg {
 namespace {
 
-/// What is to be counted: points of surfaces, or the lines of sight that places are on.
+/// What to count: points on surfaces, or the lines of sight that places are on.
 enum class Counted : std::uint8_t { points, lines };
 
 template <class Real>
@@ -24,7 +24,7 @@ struct Input {
   std::span<const std::uint32_t> order;
   AlignedBox box;
   PrimitiveSet primitives;        // in the frame of the blocks
-  std::vector<AlignedBox> reach;  // where points may be on each, in the frame of the blocks
+  std::vector<AlignedBox> reach;  // by primitive: where points may be on it, in the frame of the blocks
   SegmentationTolerances tolerances;
 };
 
@@ -56,7 +56,7 @@ class CrossingCounter {
   [[nodiscard]] Crossings& crossings() { return crossings_; }
 
  private:
-  /// Distances of a primitive at the middle of each block of the chunk.
+  /// A primitive's distances at the middle of each block of the chunk.
   struct NearPrimitive {
     PrimitiveIndex primitive = 0;
     std::vector<double> at_middle;  // empty where they say nothing of the rest of the block
@@ -76,7 +76,7 @@ class CrossingCounter {
       if (!input_.reach[p].intersects(box)) continue;
       NearPrimitive& near = near_.emplace_back();
       near.primitive = p;
-      // Only where the distance changes by no more than one moves may a block be told to be far from one point of it.
+      // The distance at one point can rule out a block only where its Lipschitz constant is 1.
       if (!is_plain(input_.primitives[p])) continue;
       near.at_middle.resize(middles.size());
       evaluate_distance(input_.primitives[p], middles, near.at_middle);
@@ -110,8 +110,7 @@ class CrossingCounter {
 
   [[nodiscard]] std::span<ActivePrimitive<Real>> active() { return std::span(actives_).first(active_count_); }
 
-  /// Points on several surfaces are on the nearest, and on those that coincide with it but for the noise. Of a thin
-  /// wall they see the one side.
+  /// Keeps points to the nearest surface and those that coincide with it. Of a thin wall they then see one side.
   void keep_to_nearest() {
     BlockMask on_any{};
     BlockMask on_several{};
@@ -138,7 +137,7 @@ class CrossingCounter {
     }
   }
 
-  /// Counts the points of a block of which each active primitive tells something.
+  /// Counts the points on some surface for which no active primitive leaves the side open.
   void tally(std::size_t points) {
     const BlockMask all = first_points(points);
     BlockMask on_any{};
@@ -159,14 +158,14 @@ class CrossingCounter {
     split(0, without(on_any, open));
   }
 
-  /// Counts the lines of a block by the cells that they pass through clearly.
+  /// Counts the lines of a block by the cells that they clearly pass through.
   void tally_places(std::size_t places) {
     BlockMask near{};
     for (const ActivePrimitive<Real>& one : active()) near = either(near, one.sides.near);
     split(0, without(first_points(places), near));
   }
 
-  /// Takes apart points by the side of one active primitive after the other.
+  /// Divides points by their side of one active primitive after the other.
   void split(std::size_t next, const BlockMask& points) {
     if (is_empty(points)) return;
     if (next == active_count_) return add(points);
@@ -183,7 +182,7 @@ class CrossingCounter {
     follow(Side::outside, without(clear, sides.inside));
   }
 
-  /// Points that are all on the sides of the path.
+  /// Adds points that are all on the sides in path_.
   void add(const BlockMask& points) {
     inner_ = around_;
     outer_ = around_;
@@ -211,16 +210,16 @@ class CrossingCounter {
   PointBlocks<Real> blocks_;
   std::vector<AlignedBox> boxes_;  // by block of the chunk
   std::vector<NearPrimitive> near_;
-  std::vector<ActivePrimitive<Real>> actives_;  // the first active_count_ of them
+  std::vector<ActivePrimitive<Real>> actives_;  // the first active_count_ are in use
   std::size_t active_count_ = 0;
-  Cell around_;  // holds all of the block
+  Cell around_;  // primitives that hold all of the block
   BlockMask unsure_{};
   std::vector<Side> path_;
   Cell inner_, outer_;
   Crossings crossings_;
 };
 
-/// A share of the chunks a thread.
+/// One share of the chunks for each thread.
 template <class Real>
 std::vector<Crossings> count_in(Counted counted, const PointCloud& cloud, std::span<const std::uint32_t> order,
                                 const AlignedBox& box, const ReachingPrimitives& reaching,
@@ -236,7 +235,7 @@ std::vector<Crossings> count_in(Counted counted, const PointCloud& cloud, std::s
     CrossingCounter<Real> counter(input);
     for (std::size_t chunk = chunks * k / parts; chunk < chunks * (k + 1) / parts; ++chunk) {
       run.throw_if_stopped();
-      // The first share speaks for all: they are of one size and advance together.
+      // The first share stands for all: they have one size and advance together.
       if (k == 0) run.report("segment", cloud.size() * chunk / (chunks / parts), cloud.size(), "points");
       counter.process(chunk);
     }
@@ -255,7 +254,6 @@ std::vector<Crossings> count(Counted counted, const PointCloud& cloud, std::span
 
 using Eigen::Vector3d;
 
-/// By point: whether it is near a primitive's surface.
 std::vector<char> are_near(const Points& points, const ReachingPrimitives& reaching, double tolerance,
                            const RunContext& run) {
   std::vector<std::vector<std::uint32_t>> near(reaching.primitives.size());
@@ -277,7 +275,7 @@ std::vector<char> are_near(const Points& points, const ReachingPrimitives& reach
   return is_near;
 }
 
-/// How much of the way from a to b is before the box.
+/// The share of the way from a to b that is before the box.
 double share_before(const AlignedBox& box, const Vector3d& a, const Vector3d& b) {
   double entry = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -293,7 +291,7 @@ void add_places(const AlignedBox& box, const Vector3d& sensor, const Vector3d& p
   for (std::size_t k = 0; k < k_places_a_line; ++k) {
     const double along = first + (1 - first) * (static_cast<double>(k) + 0.5) / k_places_a_line;
     places.positions.push_back(sensor + along * (point - sensor));
-    places.normals.push_back(Vector3d::Zero());  // of no surface
+    places.normals.push_back(Vector3d::Zero());  // a place is on no surface
   }
 }
 
@@ -307,7 +305,7 @@ CellIndex CellSet::find_or_insert(const Cell& cell) {
 
 ReachingPrimitives reaching_primitives(const PrimitiveSet& primitives, const AlignedBox& points,
                                        const CellOptions& options) {
-  // Room for what rounding does.
+  // Room for rounding.
   const double distance =
       1.01 * options.tolerances.distance + 1e-9 * (points.diagonal().norm() + points.center().norm());
   std::vector<AlignedBox> boxes;
@@ -342,7 +340,7 @@ SightLines find_sight_lines(const PointCloud& cloud, std::span<const std::uint32
   const std::vector<char> is_near = are_near(ends, reaching, options.tolerances.distance, run);
   std::size_t k = 0;
   std::erase_if(seen, [&](std::uint32_t) { return is_near[k++] == 0; });
-  // Lines from one sensor to neighbours are near each other all along.
+  // Lines from one sensor to neighbouring points are near each other all along.
   std::ranges::stable_sort(seen, {}, [&](std::uint32_t i) {
     const Vector3d sensor = cloud.sensor_positions[i];
     return std::tuple(sensor.x(), sensor.y(), sensor.z());

@@ -6,11 +6,10 @@
 #include "cells/cell_hash.hpp"
 #include "cloud2csg/advanced/cells.hpp"
 
-/// What points say of the cells on either side of the surface that they are on, and lines of sight of those that they
-/// pass through.
+/// Counts of points by the two cells at their surface, and of lines of sight by the cells that they pass through.
 namespace cloud2csg {
 
-/// Cells by number, in the order in which they were met.
+/// Cells, numbered in the order of arrival.
 class CellSet {
  public:
   CellIndex find_or_insert(const Cell& cell);
@@ -19,10 +18,10 @@ class CellSet {
 
  private:
   std::unordered_map<Cell, CellIndex, CellHash> index_;
-  std::vector<const Cell*> cells_;  // keys of index_, which stay where they are
+  std::vector<const Cell*> cells_;  // keys of index_, whose addresses are stable
 };
 
-/// A point counts so many units; one where it is not sure on which side of some primitive it is.
+/// Units of a point that is sure of its side of every primitive. Other points count one unit.
 inline constexpr std::uint64_t k_sure_units = 4;
 
 struct Crossings {
@@ -38,7 +37,7 @@ struct Crossings {
   [[nodiscard]] static CellIndex outer(std::uint64_t pair) { return static_cast<CellIndex>(pair); }
 };
 
-/// Primitives and what is worked out of them once for several sets of points.
+/// Primitives, with data that several sets of points share.
 struct ReachingPrimitives {
   const PrimitiveSet& primitives;  ///< must outlive this
   std::vector<AlignedBox> reach;   ///< by primitive: where points may be on it
@@ -47,31 +46,29 @@ struct ReachingPrimitives {
 [[nodiscard]] ReachingPrimitives reaching_primitives(const PrimitiveSet& primitives, const AlignedBox& points,
                                                      const CellOptions& options);
 
-/// Shares of the points, each with numbers of cells of its own, to be summed: how many there are depends on the
-/// threads, the sums do not. There is at least one. `order`: see spatial_order(). @throws Cancelled
+/// Counts points in shares, each with its own numbers of cells, to be summed. The number of shares depends on the
+/// threads, the sums do not. There is at least one share. `order`: see spatial_order(). @throws Cancelled
 [[nodiscard]] std::vector<Crossings> count_crossings(const PointCloud& cloud, std::span<const std::uint32_t> order,
                                                      const ReachingPrimitives& reaching,
                                                      const SegmentationTolerances& tolerances, const RunContext& run);
 
 struct SightLines;
-/// The same of lines of sight: `units` has lines, by the cell that they pass through, twice. Places near a surface,
-/// where it is not clear which cell they are in, say nothing.
+/// As above, but `units` has lines by (cell, cell). Places near a surface, where the cell is not clear, do not count.
 [[nodiscard]] std::vector<Crossings> count_lines(const SightLines& lines, const ReachingPrimitives& reaching,
                                                  const SegmentationTolerances& tolerances, const RunContext& run);
 
-/// Places on a line of sight; they fill a byte of a BlockMask.
+/// Places on a line of sight, which fill a byte of a BlockMask.
 inline constexpr std::size_t k_places_a_line = 8;
 
 /// Lines from sensors to points on a primitive.
 struct SightLines {
-  PointCloud places =
-      {};  ///< k_places_a_line of a line, evenly along it within the bounds of the cloud; neighbours first
-  std::size_t count = 0;   ///< lines
-  double points_each = 0;  ///< for how many points of the cloud a line stands
+  PointCloud places = {};  ///< k_places_a_line of each line, evenly within the bounds of the cloud; near lines together
+  std::size_t count = 0;   ///< number of lines
+  double points_each = 0;  ///< points of the cloud for each line
 };
 
-/// At most CellOptions::sight_lines of them, to points all over the cloud; none where it has no sensor positions.
-/// Points on no primitive, outliers among them, are left out. `order`: see spatial_order(). O(lines x primitives)
+/// At most CellOptions::sight_lines lines, to points all over the cloud; none without sensor positions. Leaves out
+/// points on no primitive, outliers among them. `order`: see spatial_order(). O(lines x primitives)
 [[nodiscard]] SightLines find_sight_lines(const PointCloud& cloud, std::span<const std::uint32_t> order,
                                           const ReachingPrimitives& reaching, const CellOptions& options,
                                           const RunContext& run);

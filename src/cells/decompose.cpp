@@ -35,7 +35,6 @@ bool has(const Assignments& sorted, Assignment row) {
   return std::ranges::binary_search(sorted, row);
 }
 
-/// Whether no row is in both.
 bool are_disjoint(const Assignments& a, const Assignments& b) {
   return std::ranges::none_of(a, [&b](Assignment row) { return has(b, row); });
 }
@@ -46,7 +45,6 @@ Assignments united(const Assignments& a, const Assignments& b) {
   return result;
 }
 
-/// The rows in which a variable is true, or false.
 Assignments rows_with(const Assignments& rows, std::size_t variable, bool value) {
   Assignments result;
   std::ranges::copy_if(rows, std::back_inserter(result),
@@ -67,7 +65,7 @@ Assignment variables_of(const KnownRows& rows) {
       all &= row;
     }
   }
-  return any & ~all;  // one that is always true says nothing
+  return any & ~all;  // a variable that is always true says nothing
 }
 
 template <class Visit>
@@ -75,7 +73,7 @@ void for_each_variable(Assignment variables, const Visit& visit) {
   for (; variables != 0; variables &= variables - 1) visit(static_cast<std::size_t>(std::countr_zero(variables)));
 }
 
-/// Leaves out variables as long as no two rows of different value become equal; of several, the last ones.
+/// Leaves out variables, the last ones first, as long as no two rows of different value become equal.
 KnownRows without_needless(KnownRows rows) {
   rows = projected(rows, variables_of(rows));
   const Assignment all = variables_of(rows);
@@ -87,14 +85,13 @@ KnownRows without_needless(KnownRows rows) {
   return rows;
 }
 
-/// A formula's value at an assignment.
 bool is_true(const CsgTree& formula, Assignment row) {
   std::vector<bool> values(k_most_variables);
   for_each_variable(row, [&values](std::size_t variable) { values[variable] = true; });
   return contains(formula, values);
 }
 
-/// Disjoint sets of variables such that the function is a union of functions of one each.
+/// Disjoint sets of variables such that the function is a union of functions of one set each.
 class UnionBlocks {
  public:
   explicit UnionBlocks(const KnownRows& rows) : rows_(rows) {
@@ -106,8 +103,7 @@ class UnionBlocks {
   [[nodiscard]] const Assignments& blocks() const { return blocks_; }
 
  private:
-  /// Two variables that each, alone, take a row from on to off: where one part of the union is to make it true, both
-  /// must be its own.
+  /// Joins variables that each alone turn a row off: the part of the union that makes the row true needs them all.
   void join_neighbours() {
     const Assignment variables = variables_of(rows_);
     for (const Assignment row : rows_.on) {
@@ -130,7 +126,7 @@ class UnionBlocks {
     blocks_.push_back(joined);
   }
 
-  /// Each row that is on must be on by one of the blocks: no row that is off may look like it there.
+  /// Joins blocks until each row that is on differs from all rows that are off within some block.
   void join_until_covered() {
     while (blocks_.size() > 1) {
       std::vector<Assignments> off;
@@ -146,7 +142,7 @@ class UnionBlocks {
     }
   }
 
-  /// Two blocks that cover the row together, or else all.
+  /// The smallest two blocks that cover the row together, or else all blocks.
   [[nodiscard]] Assignment cheapest_cover(Assignment row) const {
     Assignment best = 0;
     for (std::size_t a = 0; a < blocks_.size(); ++a) {
@@ -183,7 +179,6 @@ class Decomposer {
   }
 
  private:
-  /// Splits off a variable that decides alone.
   std::optional<CsgTree> split_variable(const KnownRows& rows) {
     std::optional<CsgTree> result;
     for_each_variable(variables_of(rows), [&](std::size_t variable) {
@@ -217,7 +212,7 @@ class Decomposer {
     return best;
   }
 
-  /// Each block must make true what no later one can, and what no earlier one did; it may make true what it can.
+  /// Each block must make true what no later one can and no earlier one did. It may make true what it can.
   CsgTree unite_blocks(const KnownRows& rows, const Assignments& blocks) {
     Assignments open = rows.on;
     std::vector<CsgTree> trees;
@@ -239,7 +234,7 @@ class Decomposer {
     return std::ranges::any_of(rows.off, [&](Assignment off) { return (off & block) == (row & block); });
   }
 
-  /// The variable whose branching gives the smallest formula.
+  /// Branches on the variable that gives the smallest formula.
   CsgTree branch(const KnownRows& rows) {
     std::optional<CsgTree> best;
     for_each_variable(variables_of(rows), [&](std::size_t variable) {
@@ -268,7 +263,7 @@ class Decomposer {
     return *best;
   }
 
-  /// base | part: the base holds for both values of the variable, the part is what is on for one of them alone.
+  /// base | part: the base holds for both values of the variable, the part is on for one of them alone.
   template <class Restrict>
   std::optional<CsgTree> add_to_common(const KnownRows& always, const KnownRows& sometimes, const Restrict& restrict) {
     if (!are_disjoint(always.on, sometimes.off)) return std::nullopt;

@@ -8,7 +8,7 @@
 namespace cloud2csg {
 namespace {
 
-/// What is united, and what is taken away from that.
+/// United trees, and the trees taken away from their union.
 struct Written {
   std::vector<CsgTree> united;
   std::vector<CsgTree> taken = {};
@@ -23,9 +23,8 @@ void append(std::vector<CsgTree>& list, std::vector<CsgTree> more) {
   list.insert(list.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// Which primitives share a cell. What two trees, each of which holds within its primitives only, have in common is
-/// where one of the first's shares a cell with one of the second's. A cell of many that was not found does not change
-/// that.
+/// Which primitives share a cell. Two trees that hold only within their primitives overlap only where a primitive of
+/// one shares a cell with one of the other. A cell of many primitives that was not found does not change that.
 class Neighbours {
  public:
   explicit Neighbours(const CellComplex& complex)
@@ -36,7 +35,7 @@ class Neighbours {
     for (std::vector<PrimitiveIndex>& neighbours : of_) sort_unique(neighbours);
   }
 
-  /// All that share a cell with one of the tree's, ascending.
+  /// All primitives that share a cell with one of the tree's, ascending.
   [[nodiscard]] std::vector<PrimitiveIndex> of(const CsgTree& tree) const {
     std::vector<PrimitiveIndex> all;
     for (const PrimitiveIndex p : primitives_of(tree)) all.insert(all.end(), of_[p].begin(), of_[p].end());
@@ -56,7 +55,7 @@ class Neighbours {
   std::vector<std::vector<PrimitiveIndex>> of_;  // by primitive
 };
 
-/// What is united, in groups that nothing which is taken away joins.
+/// The united trees in groups, such that no taken tree cuts two groups.
 class Groups {
  public:
   Groups(const Written& written, const Neighbours& neighbours)
@@ -77,7 +76,7 @@ class Groups {
     for (std::size_t t = 0; t < written.taken.size(); ++t) join_what_is_cut_by(t);
   }
 
-  /// The groups, in the order of what is united.
+  /// Trees of the groups, in the order of the united ones.
   [[nodiscard]] std::vector<CsgTree> trees() {
     std::vector<Written> groups(written_.united.size());
     for (std::size_t k = 0; k < groups.size(); ++k) groups[leader_of(k)].united.push_back(written_.united[k]);
@@ -107,7 +106,6 @@ class Groups {
     group_of_taken_[taken] = first.value_or(0);
   }
 
-  /// The first of a group leads it.
   void join(std::size_t a, std::size_t b) {
     const auto [least, most] = std::minmax({leader_of(a), leader_of(b)});
     leader_[most] = least;
@@ -118,7 +116,7 @@ class Groups {
     return k;
   }
 
-  using Owner = std::pair<PrimitiveIndex, std::size_t>;  // a primitive, and which of what is united has it
+  using Owner = std::pair<PrimitiveIndex, std::size_t>;  // a primitive, and the place of a united tree that has it
 
   const Written& written_;
   const Neighbours& neighbours_;
@@ -126,7 +124,6 @@ class Groups {
   std::vector<std::size_t> leader_, group_of_taken_;
 };
 
-/// From the leaves up.
 class Writer {
  public:
   explicit Writer(const CellComplex& complex) : neighbours_(complex) {}
@@ -177,7 +174,7 @@ class Writer {
     return Groups(written, neighbours_).trees();
   }
 
-  /// By itself, where they need not.
+  /// As a tree by itself, where groups may save no level.
   CsgTree alone(const Written& written) {
     CsgTree outermost = tree_of(written);
     if (written.taken.empty()) return outermost;

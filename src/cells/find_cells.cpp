@@ -29,8 +29,8 @@ Eigen::Vector3d any_direction(RandomStream& random) {
   }
 }
 
-/// The cells that reach to infinity, ascending: which half-spaces hold what lies far off in each of many directions.
-/// Only the cell outside of all where there are none.
+/// The cells that reach to infinity, ascending: the half-spaces that hold far-off places in each of many directions.
+/// Without half-spaces, only the outside cell.
 std::vector<Cell> cells_at_infinity(const PrimitiveSet& primitives) {
   std::vector<PrimitiveIndex> half_spaces;
   for (PrimitiveIndex p = 0; p < primitives.size(); ++p) {
@@ -52,10 +52,9 @@ std::vector<Cell> cells_at_infinity(const PrimitiveSet& primitives) {
   return cells;
 }
 
-/// Puts together what points and samples say.
 class ComplexBuilder {
  public:
-  /// Where points come from: of samples that no sensor could see, only the cells are of use.
+  /// The source of crossings. Samples that no sensor could see contribute only their cells.
   enum class Source : std::uint8_t { points, samples, hidden_samples };
 
   CellIndex add_cell(const Cell& cell) { return cells_.find_or_insert(cell); }
@@ -67,8 +66,8 @@ class ComplexBuilder {
     for (const Crossings& share : shares) add_share(share, source);
   }
 
-  /// What is known to be empty, since sensors saw through it: each line stands for so many points. Lines are summed as
-  /// whole numbers, so that the sums do not depend on the shares.
+  /// Adds cells known to be empty, since sensors saw through them. Each line stands for `points` points. Lines are
+  /// summed as integers, so that the sums do not depend on the shares.
   void add_seen_through(std::span<const Crossings> shares, double points) {
     for (const Crossings& share : shares) {
       for (const auto& [pair, lines] : share.units) {
@@ -80,7 +79,7 @@ class ComplexBuilder {
     points_a_line_ = points;
   }
 
-  /// `areas`: what a sample of each primitive stands for.
+  /// `areas`: the area that a sample of each primitive stands for.
   [[nodiscard]] CellComplex build(std::span<const double> areas, std::span<const CellIndex> unbounded) && {
     CellComplex result;
     const std::vector<CellIndex> place = sort_cells(result.cells);
@@ -123,7 +122,7 @@ class ComplexBuilder {
     }
   }
 
-  /// In lexicographic order; returns the place of each number.
+  /// Sorts lexicographically. Returns the place of each number.
   std::vector<CellIndex> sort_cells(std::vector<Cell>& sorted) const {
     std::vector<CellIndex> order(cells_.size());
     std::iota(order.begin(), order.end(), CellIndex{0});
@@ -148,8 +147,7 @@ class ComplexBuilder {
     patches.back().area += patch.area;
   }
 
-  /// What a sample stands for at a patch: where several surfaces coincide, each of them is sampled, and their densities
-  /// add up.
+  /// The area of a sample at a patch. Where surfaces coincide, each of them is sampled, and their densities add up.
   static double area_of_sample(const Cell& first, const Cell& second, std::span<const double> areas) {
     Cell between;
     std::ranges::set_symmetric_difference(first, second, std::back_inserter(between));
@@ -159,8 +157,8 @@ class ComplexBuilder {
   }
 
   CellSet cells_;
-  std::vector<Patch> patches_;               // by the numbers of cells, the inner one first; area: samples
-  std::vector<std::uint64_t> seen_through_;  // by the numbers of cells: lines
+  std::vector<Patch> patches_;               // by cell numbers, the inner one first; area: samples
+  std::vector<std::uint64_t> seen_through_;  // by cell number: lines
   double points_a_line_ = 0;
 };
 
@@ -193,7 +191,7 @@ CellComplex find_cells(const PointCloud& cloud, const PrimitiveSet& primitives, 
   ComplexBuilder builder;
   builder.add_cell({});
   builder.add(of_points, Source::points);
-  // What follows is the same stage over fewer points, of which it is not the count.
+  // The stage goes on over fewer points, which must not show as progress.
   const RunContext quiet{.stop = run.stop, .on_progress = {}, .threads = run.threads};
   const SurfaceSamples samples = sample_surfaces(primitives, reaching.reach, box, options.samples, run);
   const auto add_samples = [&](const PointCloud& points, Source source) {

@@ -14,7 +14,7 @@
 
 namespace cloud2csg {
 
-/// Some of the rows of a function, a bit each; a formula is known by the rows where it is true.
+/// A set of rows of a function. A formula is known by the rows where it is true.
 template <std::size_t Words>
 struct RowSet {
   std::array<std::uint64_t, Words> words{};
@@ -62,14 +62,12 @@ template <std::size_t Words>
 [[nodiscard]] bool are_disjoint(const RowSet<Words>& a, const RowSet<Words>& b) {
   return (a & b).is_empty();
 }
-/// Whether all of `inner` is in `outer`.
 template <std::size_t Words>
 [[nodiscard]] bool is_within(const RowSet<Words>& inner, const RowSet<Words>& outer) {
   return (inner - outer).is_empty();
 }
 
-/// A formula without complements, or the complement of one: what all formulas of unions, intersections, differences and
-/// complements can be turned into, leaf by leaf, by the rules of De Morgan.
+/// A formula without complements, or the complement of one: De Morgan's rules turn every formula into that.
 struct SignedFormula {
   CsgTree tree;
   bool is_complemented = false;
@@ -88,12 +86,12 @@ struct SignedFormula {
   return conjunction(std::move(a).negated_if(true), std::move(b).negated_if(true)).negated_if(true);
 }
 
-/// How much work may still be done: counted, so that a result does not depend on the machine, but for a stop.
+/// The work that is left. It is counted, so that a result does not depend on the machine, except after a stop.
 class WorkBudget {
  public:
   WorkBudget(std::uint64_t limit, std::stop_token stop) : left_(limit), stop_(std::move(stop)) {}
 
-  /// Takes some of the budget. False when there is not enough, and ever after.
+  /// Spends some of the budget. False once there is not enough, and from then on.
   [[nodiscard]] bool spend(std::uint64_t work) {
     if (work > left_ || stop_.stop_requested()) is_exhausted_ = true;
     if (!is_exhausted_) left_ -= work;
@@ -108,8 +106,8 @@ class WorkBudget {
   bool is_exhausted_ = false;
 };
 
-/// All functions of few leaves, by the least number of leaves. A function and its complement count as one, since a
-/// complement costs no leaf: what is kept is the one that is false in the first row. Constants are left out.
+/// All functions of few leaves, by the least number of leaves. Keeps one of a function and its complement, which costs
+/// no leaf: the one that is false in the first row. Leaves out constants.
 template <std::size_t Words>
 class FormulaTables {
  public:
@@ -117,24 +115,23 @@ class FormulaTables {
 
   explicit FormulaTables(const Rows& all) : all_(all), slots_(k_least_slots, k_no_table) {}
 
-  /// Adds a function of one leaf. Precondition: not constant, no variable before it the same or its complement, no
-  /// level was added.
+  /// Adds a function of one leaf. Precondition: no level was added; not constant, nor equal or complementary to others.
   void add_variable(PrimitiveIndex variable, const Rows& rows) {
     insert(rows, {.first = variable});
     ends_ = {0, tables_.size()};
   }
 
-  /// The most leaves of the functions that are kept.
+  /// The most leaves of listed functions.
   [[nodiscard]] std::size_t levels() const { return ends_.size() - 1; }
   [[nodiscard]] std::size_t size() const { return tables_.size(); }
-  /// The functions of so many leaves, not of fewer. Precondition: 1 <= leaves <= levels().
+  /// The functions that need exactly `leaves` leaves. Precondition: 1 <= leaves <= levels().
   [[nodiscard]] std::span<const Rows> level(std::size_t leaves) const {
     return std::span(tables_).subspan(level_begin(leaves), ends_[leaves] - ends_[leaves - 1]);
   }
-  /// The index of the first of them among all.
+  /// The index of the level's first function among all.
   [[nodiscard]] std::size_t level_begin(std::size_t leaves) const { return ends_[leaves - 1]; }
 
-  /// How many conjunctions the next level is made of, times the words of each.
+  /// The number of conjunctions for the next level, times the words of each.
   [[nodiscard]] std::uint64_t next_level_work() const {
     std::uint64_t pairs = 0;
     for (std::size_t less = 1; less <= (levels() + 1) / 2; ++less) {
@@ -143,13 +140,13 @@ class FormulaTables {
     return 4 * Words * pairs;
   }
 
-  /// Adds the functions that need one leaf more. False, and nothing is added, when the limit or the budget is too small
-  /// for all of them: no level can be added then. O(next_level_work())
+  /// Adds the functions that need one leaf more. Returns false and adds nothing when the limit or the budget is too
+  /// small for all of them. No level can be added then. O(next_level_work())
   bool add_level(std::size_t table_limit, WorkBudget& budget) {
     const std::size_t leaves = levels() + 1;
     for (std::size_t less = 1; less <= leaves / 2; ++less) {
       for (std::size_t a = level_begin(leaves - less); a < ends_[leaves - less]; ++a) {
-        // Of a level with itself, each pair once.
+        // A level with itself: each pair once.
         const std::size_t end = 2 * less == leaves ? a : ends_[less];
         if (tables_.size() > table_limit || !budget.spend(4 * Words * (end - std::min(end, level_begin(less))))) {
           tables_.resize(ends_.back());
@@ -162,7 +159,7 @@ class FormulaTables {
     return true;
   }
 
-  /// A formula of the function that is kept under the index: the leaves are as many as its level says.
+  /// A formula of the function at `index`, with as many leaves as its level says.
   [[nodiscard]] SignedFormula formula(std::size_t index) const {
     const Origin& origin = origins_[index];
     if (index < ends_[1]) return {CsgTree::leaf(origin.first), origin.is_complemented};
@@ -175,9 +172,9 @@ class FormulaTables {
   static constexpr std::size_t k_least_slots = 1024;
   static constexpr std::uint32_t k_no_table = ~std::uint32_t{0};
 
-  /// The conjunction a function is, or is the complement of.
+  /// The conjunction that a function, or its complement, is.
   struct Origin {
-    std::uint32_t first = 0;  ///< an index; of the functions of one leaf, the variable
+    std::uint32_t first = 0;  ///< an index; for functions of one leaf, the variable
     std::uint32_t second = 0;
     bool is_first_negated = false;
     bool is_second_negated = false;
@@ -212,7 +209,6 @@ class FormulaTables {
     if (2 * tables_.size() > slots_.size()) grow();
   }
 
-  /// Where the function is, or belongs.
   [[nodiscard]] std::size_t find_slot(const Rows& rows) const {
     std::size_t slot = rows.hash() >> 20 & (slots_.size() - 1);
     while (slots_[slot] != k_no_table && !(tables_[slots_[slot]] == rows)) slot = (slot + 1) & (slots_.size() - 1);
@@ -227,7 +223,7 @@ class FormulaTables {
   Rows all_;
   std::vector<Rows> tables_;  ///< level by level
   std::vector<Origin> origins_;
-  std::vector<std::size_t> ends_{0};  ///< of each level in the tables; first that of no leaves
+  std::vector<std::size_t> ends_{0};  ///< ends of the levels in the tables; the first is that of no leaves
   std::vector<std::uint32_t> slots_;  ///< a hash table of indices
 };
 

@@ -9,10 +9,10 @@
 namespace cloud2csg {
 namespace {
 
-/// Where points are sparsest: so large a share of them.
+/// Share of the points that lie where points are sparsest.
 constexpr double k_sparse_share = 0.05;
 
-/// Points per area of what is surface where it is seen badly: in clefts, and by few of the sensors.
+/// Points per area of surface where it is seen badly: in clefts, and by few of the sensors.
 double density_of(const CellComplex& complex) {
   struct Seen {
     double density, points;
@@ -34,15 +34,15 @@ double density_of(const CellComplex& complex) {
   return 0;
 }
 
-/// The least cut between two sides, of a graph that is given edge by edge.
+/// The minimum cut of a graph that is given edge by edge.
 class MinimumCut {
  public:
   explicit MinimumCut(std::size_t nodes) : to_source_(nodes), to_sink_(nodes) {}
 
-  /// What it costs to have the node on the far side of each.
+  /// The cost of having the node on the far side of the source, or of the sink.
   void add_source(CellIndex node, double cost) { to_source_[node] += cost; }
   void add_sink(CellIndex node, double cost) { to_sink_[node] += cost; }
-  /// What it costs to have two nodes on different sides.
+  /// The cost of having two nodes on different sides.
   void add_edge(CellIndex a, CellIndex b, double cost) {
     if (cost > 0) edges_.push_back({a, b, cost});
   }
@@ -81,7 +81,7 @@ class MinimumCut {
   static std::vector<bool> cut(std::size_t nodes, std::size_t source, std::size_t sink, const std::vector<Arc>& arcs) {
     using Graph = boost::compressed_sparse_row_graph<boost::directedS>;
     using ArcOfGraph = boost::graph_traits<Graph>::edge_descriptor;
-    // The graph keeps its arcs by where they start: `order` says which one comes when.
+    // The graph keeps its arcs sorted by their starts. `order` lists the arcs that way.
     std::vector<std::size_t> order(arcs.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::ranges::stable_sort(order, {}, [&arcs](std::size_t i) { return arcs[i].from; });
@@ -121,7 +121,6 @@ class MinimumCut {
   std::vector<Edge> edges_;
 };
 
-/// The labels with the least cost.
 std::vector<bool> cheapest_labels(const CellComplex& complex, const LabelCosts& costs) {
   constexpr double k_forbidden_label = 1e12;  // more than any cloud has points
   MinimumCut cut(complex.cells.size());
@@ -134,7 +133,7 @@ std::vector<bool> cheapest_labels(const CellComplex& complex, const LabelCosts& 
   return cut.solve();
 }
 
-/// What it costs to turn each cell, the others being as they are.
+/// The cost of changing each cell's label alone.
 std::vector<double> evidence_of(const CellComplex& complex, const LabelCosts& costs, const std::vector<bool>& is_in) {
   std::vector<double> change(is_in.size());
   for (CellIndex cell = 0; cell < is_in.size(); ++cell) {

@@ -8,10 +8,10 @@
 
 namespace cloud2csg {
 
-/// What each choice of labels costs, in points: see cost_of().
+/// The costs of labels, in points: see cost_of().
 class LabelCosts {
  public:
-  /// Two cells that meet where nothing was seen, and what it costs that only one of them is in the solid.
+  /// Two cells that meet where nothing was seen, and the cost when only one of them is in the solid.
   struct Border {
     CellIndex first, second;
     double cost;
@@ -33,7 +33,7 @@ class LabelCosts {
     }
   }
 
-  /// Of some cells, by their places in `cells`, the others being as they are: all that depends on those.
+  /// The costs of some cells, by their places in `cells`, for fixed labels of the others.
   [[nodiscard]] LabelCosts of_part(std::span<const CellIndex> cells, const std::vector<bool>& is_in) const {
     constexpr auto k_none = static_cast<CellIndex>(-1);
     std::vector<CellIndex> place(if_in_.size(), k_none);
@@ -57,22 +57,21 @@ class LabelCosts {
     return part;
   }
 
-  /// One more cell, of which nothing is known; its index.
+  /// Adds a cell of which nothing is known. Returns its index.
   CellIndex add_cell() {
     if_out_.push_back(0);
     if_in_.push_back(0);
     return static_cast<CellIndex>(if_in_.size() - 1);
   }
-  /// What it costs more to have it in the solid, or out of it.
+  /// Adds to the cost of the cell in the solid, or out of it.
   void add(CellIndex cell, bool is_in, double cost) { (is_in ? if_in_ : if_out_)[cell] += cost; }
 
-  /// What points have against a cell's being in the solid, and out of it.
   [[nodiscard]] double if_in(CellIndex cell) const { return if_in_[cell]; }
   [[nodiscard]] double if_out(CellIndex cell) const { return if_out_[cell]; }
   [[nodiscard]] std::size_t cells() const { return if_in_.size(); }
   [[nodiscard]] const std::vector<Border>& borders() const { return borders_; }
 
-  /// `is_in(cell)`: whether it is in the solid. O(cells + borders)
+  /// The cost of all labels. `is_in(cell)`: whether it is in the solid. O(cells + borders)
   template <class IsIn>
   [[nodiscard]] double of(const IsIn& is_in) const {
     double sum = 0;

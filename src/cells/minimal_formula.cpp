@@ -16,11 +16,11 @@
 namespace cloud2csg {
 namespace {
 
-/// A partial function without what says nothing: each assignment once, no variable that is the same in all rows, and of
-/// variables that are equal, or each other's complement, in all rows the first.
+/// A partial function without redundancy: each assignment once, no variable that is constant, and only the first of
+/// variables that are equal or complementary in all rows.
 struct ReducedFunction {
   std::vector<PrimitiveIndex> variables;       ///< ascending
-  std::vector<std::vector<bool>> assignments;  ///< by row: whether each of the variables is true; different, ascending
+  std::vector<std::vector<bool>> assignments;  ///< by row: whether each of the variables is true; distinct, ascending
   std::vector<bool> values;                    ///< by row
 };
 
@@ -30,7 +30,7 @@ struct RowPair {
   std::size_t row_with;
 };
 
-/// Whether two variables are equal in all rows, or each other's complement in all rows.
+/// Whether two variables are equal in all rows, or complementary in all rows.
 bool are_interchangeable(const PartialFunction& function, PrimitiveIndex a, PrimitiveIndex b) {
   const bool differ = function.is_true(0, a) != function.is_true(0, b);
   for (std::size_t row = 1; row < function.rows(); ++row) {
@@ -67,8 +67,8 @@ ReducedFunction reduce(const PartialFunction& function) {
   return reduced;
 }
 
-/// All such pairs, by variable. Where the values of a pair differ, each formula has the variable: plain when the value
-/// rises with it, complemented when it falls, and so twice when there are both. O(rows x log rows x variables^2)
+/// All row pairs, by variable. Where the values of a pair differ, each formula has the variable: plain when the value
+/// rises with it, complemented when it falls, twice when there are both. O(rows x log rows x variables^2)
 std::vector<std::vector<RowPair>> neighbours(const ReducedFunction& function) {
   std::vector<std::vector<RowPair>> pairs(function.variables.size());
   for (std::size_t row = 0; row < function.assignments.size(); ++row) {
@@ -86,12 +86,10 @@ std::vector<std::vector<RowPair>> neighbours(const ReducedFunction& function) {
 }
 
 /// Formulas of as few leaves as possible, for a reduced function of at most 64 x Words rows that is not constant.
-///
-/// Functions of few leaves are listed, bottom up. Larger formulas are taken apart from the top: a function, or its
-/// complement, is a conjunction of two; each is true wherever the function is, which most of the listed ones are not.
-/// Of two listed ones no row may be true in both but not in the function. Where the larger one is not listed, the
-/// smaller is, and the larger is searched for in the same way: it may do what it likes in the rows where the smaller
-/// one is false.
+/// Functions of few leaves are listed bottom up. Larger formulas are split top down: a function, or its complement, is
+/// a conjunction of two functions. Both are true wherever the function is, which most listed ones are not, and no row
+/// may be true in both but not in the function. Where the larger one is not listed, the smaller one is. The larger is
+/// then searched for in the same way, free in the rows where the smaller is false.
 template <std::size_t Words>
 class FormulaSearch {
  public:
@@ -112,7 +110,7 @@ class FormulaSearch {
     }
   }
 
-  /// Numbers of leaves are tried upwards, so that the first formula found is a smallest one.
+  /// Tries numbers of leaves upwards, so that the first formula found is a smallest one.
   MinimalFormula solve() {
     for (std::size_t leaves = least_leaves(target_);; ++leaves) {
       list_functions(leaves);
@@ -123,7 +121,7 @@ class FormulaSearch {
   }
 
  private:
-  /// What a formula is to be: true in the rows `on`, false in the other rows of `care`.
+  /// What a formula must be: true in the rows `on`, false in the other rows of `care`.
   struct Target {
     Rows care;
     Rows on;
@@ -136,12 +134,11 @@ class FormulaSearch {
       return target.care.hash() + 0x9e3779b97f4a7c15ULL * target.on.hash();
     }
   };
-  /// A function that is listed, or its complement.
   struct Listed {
     std::size_t index;
     bool is_negated;
   };
-  /// Functions that are true wherever a target is, and for each the rows where it is but the target is not.
+  /// Functions that are true wherever a target is. Excess: rows where a function is true and the target is not.
   struct Candidates {
     std::vector<Listed> functions;
     std::vector<Rows> excess;
@@ -151,7 +148,7 @@ class FormulaSearch {
   struct Settling {
     Listed function{};
     Rows excess{};
-    std::size_t rows = 0;  ///< that the target is false in, and the function too
+    std::size_t rows = 0;  ///< rows where both the target and the function are false
     std::size_t leaves = 1;
 
     [[nodiscard]] bool settles_more_than(const Settling& other) const {
@@ -178,7 +175,7 @@ class FormulaSearch {
     return tables_.formula(function.index).negated_if(function.is_negated);
   }
 
-  /// For when not all formulas of `least` leaves could be looked at. The search may still find one that is small.
+  /// For when not all formulas of `least` leaves were looked at. The search may still find a small one.
   MinimalFormula solve_without_proof(std::size_t least) {
     CsgTree tree = tree_of(approximate(target_));
     for (std::size_t leaves = least + 1; leaves < leaf_count(tree) && !budget_.is_exhausted(); ++leaves) {
@@ -189,7 +186,7 @@ class FormulaSearch {
     return {.tree = std::move(tree), .is_minimal = is_minimal, .least_leaves = least};
   }
 
-  /// As far as it takes to find any formula of so many leaves, and on as long as that is cheap: it shortens the search.
+  /// Lists what a search for `leaves` leaves needs, and more as long as that is cheap: it shortens the search.
   void list_functions(std::size_t leaves) {
     while (can_list_ && tables_.levels() + 1 < leaves &&
            (leaves > most_leaves() || tables_.next_level_work() <= k_cheap_work)) {
@@ -197,7 +194,7 @@ class FormulaSearch {
     }
   }
 
-  /// Up to so many leaves the search looks at all formulas: the smaller part of one must be listed.
+  /// Up to this many leaves the search is complete: the smaller part of a formula is listed.
   [[nodiscard]] std::size_t most_leaves() const { return 2 * tables_.levels() + 1; }
 
   /// A lower bound, from rows that differ in one variable only.
@@ -216,8 +213,8 @@ class FormulaSearch {
     return std::max<std::size_t>(leaves, 1);
   }
 
-  /// A formula of so many leaves. Precondition, here and below: none of fewer will do, or nothing is to be proved. None
-  /// also when the budget ends.
+  /// A formula of so many leaves. Precondition, here and below: none of fewer will do, or nothing is to be proved.
+  /// Absent also when the budget ends.
   std::optional<SignedFormula> find(const Target& target, std::size_t leaves) {
     if (leaves == 1) return find_listed(target, 1);
     if (!spend(k_target_work) || least_leaves(target) > leaves) return {};
@@ -273,7 +270,6 @@ class FormulaSearch {
     return {};
   }
 
-  /// A conjunction of a listed function and another.
   std::optional<SignedFormula> find_with_listed(const Target& target, std::size_t more, std::size_t less) {
     if (!spend(tables_.level(less).size())) return {};
     const Candidates first = candidates(target, less);
@@ -286,7 +282,7 @@ class FormulaSearch {
     return {};
   }
 
-  /// Among the listed functions of so many leaves and their complements.
+  /// Candidates among the listed functions of `leaves` leaves and their complements.
   [[nodiscard]] Candidates candidates(const Target& target, std::size_t leaves) const {
     Candidates chosen;
     const std::span<const Rows> level = tables_.level(leaves);
@@ -300,8 +296,8 @@ class FormulaSearch {
     return chosen;
   }
 
-  /// Some formula, mostly small: what is listed if it will do, else joined to what is listed and settles most rows for
-  /// each of its leaves, else split by a variable. Precondition: on and off are not empty.
+  /// Some formula, mostly small: a listed one if it will do, else a conjunction with the listed function that settles
+  /// most rows for each of its leaves, else a split by a variable. Precondition: on and off are not empty.
   [[nodiscard]] SignedFormula approximate(const Target& target) const {
     for (std::size_t leaves = 1; leaves <= tables_.levels(); ++leaves) {
       std::optional<SignedFormula> found = find_listed(target, leaves);
@@ -329,8 +325,8 @@ class FormulaSearch {
     return best;
   }
 
-  /// By the variable that leaves least to do. Precondition: none settles anything, so that each that differs within
-  /// the rows does so in those on and in those off.
+  /// Splits by the variable that leaves least to do. Precondition: no listed function settles anything, so each
+  /// variable that varies within the rows does so in those on and in those off.
   [[nodiscard]] SignedFormula split(const Target& target) const {
     const auto with = [&target](const Rows& rows) { return Target{target.care & rows, target.on & rows}; };
     const auto without = [&target](const Rows& rows) { return Target{target.care - rows, target.on - rows}; };
@@ -349,9 +345,9 @@ class FormulaSearch {
     return disjunction(where_true, where_false);
   }
 
-  /// A level that takes no more, a tenth of a millisecond, is listed even if the search could do without.
+  /// A level that takes no more, a tenth of a millisecond, is listed even if the search could do without it.
   static constexpr std::uint64_t k_cheap_work = std::uint64_t{1} << 16;
-  /// What a target costs beside combinations, in time and memory.
+  /// The cost of a target beside its combinations, in time and memory.
   static constexpr std::size_t k_target_work = 1024;
 
   MinimalFormulaOptions options_;
@@ -360,7 +356,7 @@ class FormulaSearch {
   Target target_;
   FormulaTables<Words> tables_;
   bool can_list_ = true;
-  /// Targets with the number of leaves that was shown to be too small.
+  /// Targets with a number of leaves that is proved to be too small.
   std::unordered_map<Target, std::size_t, TargetHash> refuted_;
 };
 

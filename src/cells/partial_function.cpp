@@ -7,7 +7,6 @@ namespace {
 
 using Column = std::vector<std::uint64_t>;
 
-/// All rows there are.
 Column full_column(const PartialFunction& function) {
   Column column(function.words(), ~std::uint64_t{0});
   if (function.rows() % 64 != 0) column.back() = (std::uint64_t{1} << (function.rows() % 64)) - 1;

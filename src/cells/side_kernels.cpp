@@ -12,7 +12,7 @@ namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-/// Lanes that fit two bytes of bits.
+/// As many lanes as fit two bytes of bits.
 template <class Real>
 using Lanes = hn::CappedTag<Real, 16>;
 
@@ -36,7 +36,7 @@ void sides_of_block(const BlockField<Real>& field, const BlockNormals<Real>& nor
       const auto dot =
           gx * hn::Load(d, normals.x + i) + gy * hn::Load(d, normals.y + i) + gz * hn::Load(d, normals.z + i);
       const auto is_near = hn::Abs(f) <= farthest;
-      // Without a gradient there is no surface.
+      // Where the gradient is zero there is no surface.
       const auto square = gx * gx + gy * gy + gz * gz;
       const auto agrees = hn::And(dot * dot >= least_square * square, square > zero);
       const auto is_on = hn::And(is_near, agrees);

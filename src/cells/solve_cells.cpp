@@ -18,7 +18,7 @@
 namespace cloud2csg {
 namespace {
 
-/// A solid's cores with their trees, and how many leaves each needs at least.
+/// A solid's cores with their trees and the fewest leaves that each needs.
 struct SolvedCores {
   TakenApart parts;
   std::vector<CsgTree> trees = {};
@@ -32,15 +32,15 @@ bool is_set(std::span<const std::uint64_t> column, CellIndex cell) {
   return (column[cell / 64] >> (cell % 64) & 1U) != 0;
 }
 
-/// A part of the solid whose tree is looked for while the rest stays as it is.
+/// A part of the solid whose tree is searched for while the rest stays.
 struct ClimbedPart {
-  std::vector<PrimitiveIndex> primitives;  // of its tree, ascending
-  std::vector<CellIndex> cells;            // that are in the solid just where they are in the part, or just where not
-  bool is_inverted = false;                // just where not
-  bool is_bounded = false;                 // its tree must be out of all that none of its primitives holds
+  std::vector<PrimitiveIndex> primitives;  // those of its tree, ascending
+  std::vector<CellIndex> cells;  // in the solid exactly where they are in the part, or exactly where they are not
+  bool is_inverted = false;      // exactly where they are not
+  bool is_bounded = false;       // its tree must leave out cells without its primitives
 };
 
-/// What the cells of a tree of a part cost, over the places in part.primitives.
+/// The cost of the cells of a part's tree, which is over the places in part.primitives.
 class PartObjective {
  public:
   PartObjective(const CellComplex& complex, const CellLabels& labels, LabelCosts costs, const ClimbedPart& part,
@@ -66,7 +66,7 @@ class PartObjective {
   [[nodiscard]] double work_per_node() const { return static_cast<double>(rows_.words()); }
 
  private:
-  /// Of those of `primitives` that a cell is inside of.
+  /// Places of those of `primitives` that hold the cell.
   static std::vector<PrimitiveIndex> places(const Cell& cell, std::span<const PrimitiveIndex> primitives) {
     std::vector<PrimitiveIndex> result;
     for (PrimitiveIndex place = 0; place < primitives.size(); ++place) {
@@ -77,19 +77,19 @@ class PartObjective {
 
   bool is_inverted_;
   LabelCosts costs_;
-  PartialFunction rows_;  // a row a cell
+  PartialFunction rows_;  // a row for each cell
 };
 
-/// A tree over the set's indices as one over the places in `primitives`, which has all of its own.
+/// Renames the tree's primitives to their places in `primitives`, which has all of them.
 CsgTree over_places(const CsgTree& tree, std::span<const PrimitiveIndex> primitives) {
   std::vector<PrimitiveIndex> place(primitives.back() + std::size_t{1});
   for (PrimitiveIndex k = 0; k < primitives.size(); ++k) place[primitives[k]] = k;
   return renumber(tree, place);
 }
 
-/// A local search for a tree whose cells and leaves cost less, on the cells instead of points. Labels that are sure at
+/// A local search, on the cells instead of points, for a tree whose cells and leaves cost less. Labels that are sure at
 /// every limit of options.least_evidence stay, and so do the cells that reach to infinity. Deterministic; a triggered
-/// run.stop ends it soon. `costs`: of the part's cells.
+/// run.stop ends it soon. `costs`: those of the part's cells.
 CsgTree climb(const CellComplex& complex, const CellLabels& labels, LabelCosts costs, const ClimbedPart& part,
               std::span<const CsgTree> starts, const CellSolveOptions& options, const RunContext& run) {
   const PartObjective cost(complex, labels, std::move(costs), part, std::ranges::max(options.least_evidence));
@@ -125,7 +125,7 @@ class CoreCells {
     }
   }
 
-  /// Where no other core's tree holds.
+  /// The part of a core: the cells where no other core's tree holds.
   [[nodiscard]] ClimbedPart part(std::size_t core, std::span<const CsgTree> trees) const {
     ClimbedPart part{.primitives = parts_.cores[core].primitives,
                      .cells = {},
@@ -148,7 +148,7 @@ class CoreCells {
  private:
   static constexpr std::size_t k_none = static_cast<std::size_t>(-1), k_peeled = k_none - 1;
 
-  /// Of which a cell has primitives: none where one that was split off decides it.
+  /// The cores with primitives of a cell; none where a peeled primitive decides the cell.
   [[nodiscard]] std::vector<std::size_t> cores_at(CellIndex cell) const {
     std::vector<std::size_t> cores;
     for (const PrimitiveIndex p : complex_.cells[cell]) {
@@ -164,7 +164,7 @@ class CoreCells {
   std::vector<std::vector<CellIndex>> cells_of_;
 };
 
-/// The best of the searches from each of `starts`, of which there is one, over all cells.
+/// The best of the searches over all cells from each of `starts`. Precondition: there is a start.
 /// O(size x cells / 64 + cells + patches) an evaluation.
 CsgTree climb_as_whole(const CellComplex& complex, const CellLabels& labels, std::span<const CsgTree> starts,
                        const CellSolveOptions& options, const RunContext& run) {
@@ -176,8 +176,8 @@ CsgTree climb_as_whole(const CellComplex& complex, const CellLabels& labels, std
   return climb(complex, labels, LabelCosts(complex, labels.density, labels.options), part, starts, options, run);
 }
 
-/// Climbs core by core, the rest being what it is, over the cells that the core decides: from its own tree, and what
-/// `others`, trees of the whole, are over its primitives alone. Not where a core's tree is as small as it can be.
+/// Climbs core by core over the cells that the core decides, while the rest stays: from the core's tree, and from
+/// `others`, trees of the whole, restricted to its primitives. Skips cores whose tree is as small as it can be.
 /// O(size x cells of the core / 64 + its cells and patches) an evaluation.
 CsgTree climb_core_by_core(const CellComplex& complex, const CellLabels& labels, SolvedCores cores,
                            std::span<const CsgTree> others, const CellSolveOptions& options, const RunContext& run) {
@@ -213,13 +213,12 @@ PartialFunction function_of(const KnownRows& rows, std::size_t variables) {
   return function;
 }
 
-/// A tree, and what it is made of.
 struct Solution {
   CellSolution of_all;
   SolvedCores cores;
 };
 
-/// `minimal`: how much work to spend on a formula that is smaller than what decompose() finds.
+/// `minimal`: how much work to spend on a formula smaller than that of decompose(); null for none.
 void solve_core(const Core& core, const MinimalFormulaOptions* minimal, SolvedCores& cores, const RunContext& run) {
   CsgTree tree = decompose(core.rows, {}, run);
   auto least_leaves = static_cast<std::size_t>(std::popcount(essential_variables(core.rows)));
@@ -242,14 +241,14 @@ Solution solve_sure_cells(TakenApart parts, double least_evidence, const Minimal
     all.cores.push_back(core.primitives.size());
   }
   for (const PeeledRound& round : cores.parts.rounds) all.peeled += round.primitives.size();
-  // Each core needs its leaves, and what was split off one each; but other choices of what to leave out may need fewer.
+  // Each core needs its leaves, each peeled primitive one. But other choices of what to leave out may need fewer.
   all.least_leaves = std::accumulate(cores.least_leaves.begin(), cores.least_leaves.end(), all.peeled);
   if (!cores.parts.needs_its_parts()) all.least_leaves = cores.parts.least_leaves();
   all.tree = put_together(cores.parts, cores.trees);
   return solution;
 }
 
-/// Whether all cells that are sure are as labelled.
+/// Whether all sure cells are as labelled.
 bool has_labels(const std::vector<bool>& is_in, const CellLabels& labels, double least_evidence) {
   for (std::size_t cell = 0; cell < is_in.size(); ++cell) {
     if (labels.evidence[cell] >= least_evidence && is_in[cell] != labels.is_in[cell]) return false;
@@ -257,7 +256,6 @@ bool has_labels(const std::vector<bool>& is_in, const CellLabels& labels, double
   return true;
 }
 
-/// Tries what there is to try, and keeps the best.
 class CellSolver {
  public:
   CellSolver(const CellComplex& complex, const CellLabels& labels, const CellSolveOptions& options,
@@ -269,7 +267,7 @@ class CellSolver {
     if (!best_) return std::nullopt;
     note("decomposition");
     const double least_evidence = best_->of_all.least_evidence;
-    // Without cores there is nothing that a minimal formula could replace.
+    // Without cores a minimal formula has nothing to replace.
     if (!is_as_small_as_can_be() && !best_->of_all.cores.empty()) {
       try_with(least_evidence, &options_.minimal);
       note("minimal formulas");
@@ -299,7 +297,7 @@ class CellSolver {
       sure = as_sure;
       try_with(least_evidence, nullptr);
       if (!best_) continue;
-      // More cells that are sure need no fewer leaves, and no labels cost less than those of the cut.
+      // More sure cells need no fewer leaves, and no labels cost less than those of the cut.
       const double bound = labels_.cost + price_of(best_->of_all.least_leaves.value());
       if (total(best_->of_all) <= bound + 1e-9) break;
     }
@@ -312,7 +310,7 @@ class CellSolver {
     if (!best_ || total(solution.of_all) <= total(best_->of_all)) best_ = std::move(solution);
   }
 
-  /// With what it costs.
+  /// solve_sure_cells(), with the cost of the tree.
   Solution solve(TakenApart parts, double least_evidence, const MinimalFormulaOptions* minimal) {
     Solution solution = solve_sure_cells(std::move(parts), least_evidence, minimal, run_);
     CellSolution& all = solution.of_all;
@@ -321,26 +319,26 @@ class CellSolver {
     return solution;
   }
 
-  /// Where primitives were left out, others might have been: only what all cells over all primitives need is proved.
+  /// Other primitives might have been left out: only what all cells over all primitives need is proved.
   void prove_without_choices(double least_evidence) {
     std::optional<TakenApart> parts = take_apart_only(complex_, labels_, least_evidence);
     if (!parts || !parts->needs_its_parts() || !std::ranges::all_of(parts->cores, is_small)) return;
     Solution solution = solve(std::move(*parts), least_evidence, &options_.minimal);
     const std::optional<std::size_t> least = solution.of_all.least_leaves;
-    // As good is not enough: what it makes of the cells that are open is as arbitrary.
+    // Equal is not enough: its choice for the open cells is as arbitrary.
     if (total(solution.of_all) < total(best_->of_all)) best_ = std::move(solution);
     CellSolution& best = best_->of_all;
     if (best.least_evidence == least_evidence) best.least_leaves = std::max(best.least_leaves, least);
     note("minimal formulas over all");
   }
 
-  /// For the search of a minimal formula, which has no bound to give otherwise.
+  /// For the search of a minimal formula, which gives no bound for larger cores.
   static bool is_small(const Core& core) {
     constexpr std::size_t k_most_rows = 512;
     return core.rows.on.size() + core.rows.off.size() <= k_most_rows;
   }
 
-  /// Over all primitives at once where they are few; where they are not, no move from core to core is tried.
+  /// Climbs over all primitives at once if they are few; else core by core, without moves between cores.
   void climb() {
     const bool is_small = complex_.points_of_primitive.size() <= k_most_variables;
     CellSolution climbed = best_->of_all;
@@ -356,7 +354,7 @@ class CellSolver {
   [[nodiscard]] bool is_as_small_as_can_be() const {
     return is_constant(best_->of_all.tree) || best_->of_all.is_minimal();
   }
-  /// But for less than a leaf: no labels cost less than those of the cut.
+  /// Whether the best is within a leaf of the least cost: no labels cost less than those of the cut.
   [[nodiscard]] bool is_as_cheap_as_can_be() const {
     const CellSolution& best = best_->of_all;
     return is_constant(best.tree) || (best.is_minimal() && best.cost < labels_.cost + options_.leaf_cost);

@@ -16,14 +16,13 @@ namespace {
 
 constexpr std::uint64_t k_sample_stream = 0x63656c6c73'00;
 
-/// The points that get onto the surface, with their normals.
+/// The points that reach the surface, with their normals.
 PointCloud settled(const Primitive& primitive, Points points, double scale) {
   PointCloud near{.positions = std::move(points), .normals = {}};
   near.normals.resize(near.size());
   return select_points(near, places_where(move_onto_surface(primitive, scale, near)));
 }
 
-/// Samples of one surface, and what each stands for.
 struct Drawn {
   PointCloud points;
   double area_of_one = 0;
@@ -41,13 +40,13 @@ Drawn draw_plain(const Primitive& primitive, const AlignedBox& region, std::size
   return drawn;
 }
 
-/// Places in a box near a surface, of which only the field is known.
+/// Places near a surface of which only the field is known.
 struct Layer {
   Points points;
   double volume;  ///< estimated
 };
 
-/// Draws places until so many are within `depth` of the surface, or there is hardly any.
+/// Draws places until `samples` of them are within `depth` of the surface, for a few rounds at most.
 Layer draw_layer(const Primitive& primitive, const AlignedBox& box, double depth, std::size_t samples,
                  RandomStream& random) {
   constexpr std::size_t k_places_a_sample = 16;
@@ -68,10 +67,9 @@ Layer draw_layer(const Primitive& primitive, const AlignedBox& box, double depth
   return {.points = std::move(near), .volume = share * box.volume()};
 }
 
-/// Where only the field is known: places in a thin layer around the surface, moved onto it. The layer is as much of the
-/// bounds as chance says.
+/// Moves places in a thin layer onto a surface of which only the field is known. Chance estimates the layer's volume.
 Drawn draw_from_field(const Primitive& primitive, const AlignedBox& box, std::size_t samples, RandomStream& random) {
-  constexpr double k_layer = 0.01;  // half its thickness, of the diagonal
+  constexpr double k_layer = 0.01;  // half its thickness, as a share of the diagonal
   const double scale = box.diagonal().norm();
   Layer layer = draw_layer(primitive, box, k_layer * scale, samples, random);
   layer.points.resize(std::min(layer.points.size(), samples));
@@ -81,7 +79,7 @@ Drawn draw_from_field(const Primitive& primitive, const AlignedBox& box, std::si
   return drawn;
 }
 
-/// A box that may be infinite, cut down to what the index can hold.
+/// A box that may be infinite, cut down to a range that the index can hold.
 IndexBox finite(const AlignedBox& box, const AlignedBox& region) {
   const AlignedBox all = grown(region, 1e3 * region.diagonal().norm());
   const auto within = [&all](const Eigen::Vector3d& corner) {
@@ -112,7 +110,7 @@ SurfaceSamples sample_surfaces(const PrimitiveSet& primitives, std::span<const A
     const std::size_t neighbours = std::max<std::size_t>(count_meeting(index, boxes[p], region), 1) - 1;
     const std::size_t samples = std::min(counts.base + counts.a_neighbour * neighbours, counts.most);
     RandomStream random(0, k_sample_stream, p);
-    // Expressions reach anywhere, and half-spaces are without end.
+    // Expressions reach anywhere, and half-spaces have no end.
     const bool is_formula = std::holds_alternative<Expression>(primitives[p].shape);
     const AlignedBox box =
         (is_formula ? bounds(primitives[p]) : boxes[p]).intersection(grown(region, region.diagonal().norm()));

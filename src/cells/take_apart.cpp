@@ -21,7 +21,7 @@ Cell without(const Cell& cell, PrimitiveIndex primitive) {
   return rest;
 }
 
-/// By the points on the patches between a cell that they hold and one that they do not.
+/// Primitives by the points on patches between a cell that they hold and one that they do not, fewest first.
 std::vector<PrimitiveIndex> least_seen_first(const CellComplex& complex) {
   std::vector<double> seen(complex.points_of_primitive.size());
   Cell between;
@@ -37,15 +37,14 @@ std::vector<PrimitiveIndex> least_seen_first(const CellComplex& complex) {
   return order;
 }
 
-/// A cell of which it is sure whether it is in the solid.
 struct KnownCell {
   Cell cell;
   bool is_in = false;
-  bool is_open = true;  ///< no primitive that was split off decides it
+  bool is_open = true;  ///< no peeled primitive decides it
 };
 
-/// The sure cells and the one outside of all, without primitives on which no label depends. Where the cell outside of
-/// all is in the solid, all labels are taken for their opposite.
+/// The sure cells and the outside cell, without primitives that no label depends on. Inverts all labels where the
+/// outside cell is in the solid.
 class KnownCells {
  public:
   KnownCells(const KnownCells&) = delete;
@@ -57,7 +56,7 @@ class KnownCells {
   KnownCells(const CellComplex& complex, const CellLabels& labels, double least_evidence)
       : cells_of_(complex.points_of_primitive.size()), index_(complex.cells.size(), Hash{this}, Equal{this}) {
     for (CellIndex c = 0; c < complex.cells.size(); ++c) {
-      // What is outside of all is as labelled in any case: it is what the rest is split off from.
+      // The outside cell keeps its label in any case: the rest is split off from it.
       if (c > 0 && labels.evidence[c] < least_evidence) continue;
       for (const PrimitiveIndex p : complex.cells[c]) cells_of_[p].push_back(cells_.size());
       cells_.push_back({complex.cells[c], labels.is_in[c] != labels.is_in.front()});
@@ -66,26 +65,26 @@ class KnownCells {
     std::vector<bool> is_essential(cells_of_.size());
     for (PrimitiveIndex p = 0; p < cells_of_.size(); ++p) is_essential[p] = is_needed(p);
     essential_ = static_cast<std::size_t>(std::ranges::count(is_essential, true));
-    // Those stay so, whatever else is left out.
+    // Essential primitives stay so, whatever else is left out.
     for (const PrimitiveIndex p : least_seen_first(complex)) {
       if (!is_essential[p] && !is_needed(p)) leave_out(p);
     }
   }
 
-  /// Leaves none behind.
+  /// Leaves the object without cells.
   [[nodiscard]] std::vector<KnownCell> take_sorted() {
     std::erase_if(cells_, [](const KnownCell& known) { return !known.is_open; });
     std::ranges::sort(cells_, {}, &KnownCell::cell);
     return std::move(cells_);
   }
 
-  /// How many primitives any tree needs, if the cell outside of all is sure.
+  /// How many primitives any tree needs, if the outside cell is sure.
   [[nodiscard]] std::size_t essential() const { return essential_; }
-  /// Whether that is all that have cells.
+  /// Whether all primitives with cells are essential.
   [[nodiscard]] bool are_all_essential() const { return left_out_ == 0; }
 
  private:
-  /// The index holds places in cells_, and is asked for cells.
+  /// The index holds places in cells_ and is searched for cells.
   struct Hash {
     using is_transparent = void;
     const KnownCells* known;
@@ -100,7 +99,7 @@ class KnownCells {
     bool operator()(const Cell& cell, std::size_t place) const { return known->cells_[place].cell == cell; }
   };
 
-  /// Whether two cells differ in nothing but the primitive, and in their label.
+  /// Whether two cells differ only in the primitive and in their labels.
   [[nodiscard]] bool is_needed(PrimitiveIndex p) const {
     return std::ranges::any_of(cells_of_[p], [&](std::size_t c) {
       if (!cells_[c].is_open) return false;
@@ -115,7 +114,7 @@ class KnownCells {
       if (!cells_[c].is_open) continue;
       index_.erase(index_.find(c));
       std::erase(cells_[c].cell, p);
-      // Not open: it has become the same as another.
+      // Not open if it has become equal to another cell.
       cells_[c].is_open = index_.insert(c).second;
     }
   }
@@ -126,7 +125,7 @@ class KnownCells {
   std::size_t essential_ = 0, left_out_ = 0;
 };
 
-/// Splits off what is wholly in, or wholly out.
+/// Splits off primitives that are wholly in or wholly out.
 class Peeler {
  public:
   Peeler(std::vector<KnownCell> cells, std::size_t primitives)
@@ -139,14 +138,14 @@ class Peeler {
     }
   }
 
-  /// What is split off first stands outermost. Differences first.
+  /// The first round stands outermost. Starts with differences.
   [[nodiscard]] std::vector<PeeledRound> peel() {
     std::vector<PeeledRound> rounds;
     bool are_in = false;
     for (int idle = 0; idle < 2; are_in = !are_in) {
       PeeledRound round{.are_in = are_in, .primitives = {}};
       for (const PrimitiveIndex p : candidates(are_in)) {
-        // One whose cells have all been decided meanwhile is not needed.
+        // Not needed if all of its cells have been decided meanwhile.
         if ((are_in ? in_ : out_)[p] == 0) continue;
         round.primitives.push_back(p);
         close_cells_of(p);
@@ -161,7 +160,7 @@ class Peeler {
   [[nodiscard]] const std::vector<KnownCell>& cells() const { return cells_; }
 
  private:
-  /// Those with most cells first: they may decide those of others.
+  /// Primitives with the most cells first, since they may decide the cells of others.
   [[nodiscard]] std::vector<PrimitiveIndex> candidates(bool are_in) const {
     const std::vector<std::size_t>& right = are_in ? in_ : out_;
     const std::vector<std::size_t>& wrong = are_in ? out_ : in_;
@@ -187,7 +186,6 @@ class Peeler {
   std::vector<std::size_t> in_, out_;               // by primitive: open cells with it
 };
 
-/// The primitives of a core that a cell is inside of.
 Assignment assignment_of(const Cell& cell, std::span<const PrimitiveIndex> primitives) {
   Assignment row = 0;
   for (std::size_t place = 0; place < primitives.size(); ++place) {
@@ -196,7 +194,7 @@ Assignment assignment_of(const Cell& cell, std::span<const PrimitiveIndex> primi
   return row;
 }
 
-/// The open cells over the primitives of a core.
+/// Finds the cores of the open cells.
 class CoreFinder {
  public:
   CoreFinder(const std::vector<KnownCell>& cells, std::size_t primitives) : cells_(cells), leader_(primitives) {
@@ -206,7 +204,7 @@ class CoreFinder {
     });
   }
 
-  /// Ascending by their first primitives; those of too many have no rows.
+  /// Ascending by their first primitives. Cores of too many primitives have no rows.
   [[nodiscard]] std::vector<Core> cores() {
     std::vector<bool> is_used(leader_.size(), false);
     for_each_open([&](const KnownCell& known) {

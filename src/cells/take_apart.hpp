@@ -10,38 +10,38 @@
 
 namespace cloud2csg {
 
-/// Primitives that were split off at once: all united with the rest, or all taken from it.
+/// Primitives that were split off at once: all united with the rest, or all subtracted from it.
 struct PeeledRound {
   bool are_in;
   std::vector<PrimitiveIndex> primitives;  ///< ascending
 };
 
-/// Primitives that share sure cells which nothing that was split off decides.
+/// Primitives that share sure cells which no peeled primitive decides.
 struct Core {
   std::vector<PrimitiveIndex> primitives;  ///< ascending
-  KnownRows rows;                          ///< of these cells, over the places in `primitives`; none is off, too
+  KnownRows rows;                          ///< these cells over the places in `primitives`; the empty row is off
 };
 
-/// A solid as what is split off from the union of its cores. What no sure label depends on is in none of these.
+/// A solid as primitives split off from the union of its cores. Primitives that no sure label depends on are left out.
 struct TakenApart {
-  bool is_inverted = false;              ///< it is the complement of that
-  std::vector<PeeledRound> rounds = {};  ///< the outermost first
+  bool is_inverted = false;              ///< the solid is the complement of that
+  std::vector<PeeledRound> rounds = {};  ///< outermost first
   std::vector<Core> cores = {};          ///< no primitive is in two of them
-  std::size_t essential = 0;             ///< so many primitives are in any tree with these labels
-  bool are_all_essential = true;         ///< that is all that have sure cells: none was left out
-  bool is_outside_sure = true;           ///< the cell outside of all primitives, which is taken to be off
+  std::size_t essential = 0;             ///< number of primitives that any tree with these labels has
+  bool are_all_essential = true;         ///< all primitives with sure cells are essential: none was left out
+  bool is_outside_sure = true;           ///< the cell outside of all primitives is sure; it is taken to be off
 
-  /// Whether any tree with the sure labels has the leaves that each core needs, and one of each that was split off.
+  /// Whether any tree with the sure labels has the leaves that each core needs, and one for each peeled primitive.
   [[nodiscard]] bool needs_its_parts() const { return are_all_essential && is_outside_sure; }
-  /// How many any tree needs in any case.
+  /// The number of leaves that any tree needs in any case.
   [[nodiscard]] std::size_t least_leaves() const { return is_outside_sure ? essential : 0; }
 };
 
-/// From the cells that are sure. Absent when a core has more than k_most_variables primitives. O(size of all cells)
+/// Takes the sure cells. Absent when a core has more than k_most_variables primitives. O(size of all cells)
 [[nodiscard]] std::optional<TakenApart> take_apart(const CellComplex& complex, const CellLabels& labels,
                                                    double least_evidence);
 
-/// The same without leaving out or splitting off anything: cores that any tree must be right on. Absent as above.
+/// As take_apart(), but leaves out and splits off nothing: any tree must be right on the cores. Absent as above.
 [[nodiscard]] std::optional<TakenApart> take_apart_only(const CellComplex& complex, const CellLabels& labels,
                                                         double least_evidence);
 

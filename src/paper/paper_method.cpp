@@ -16,7 +16,7 @@
 namespace cloud2csg {
 namespace {
 
-/// S: the points that belong to one at least of some primitives, ascending.
+/// S: the points that belong to at least one of some primitives, ascending.
 std::vector<std::uint32_t> points_of(const Clique& partition, const Segmentation& segmentation) {
   std::vector<std::uint32_t> points;
   for (const PrimitiveIndex p : partition) {
@@ -119,8 +119,7 @@ class PaperMethod {
     for (const Evolution& evolution : evolutions_) statistics_.complete = statistics_.complete && evolution.complete;
   }
 
-  /// All trees over one or two primitives are listed; over more, the genetic algorithm looks for the one with the
-  /// highest E(t).
+  /// Lists all trees over one or two primitives. Over more, the genetic algorithm looks for the highest E(t).
   void solve(std::size_t k) {
     const Clique& partition = partitions_.sets[k];
     PrimitiveSet members;
@@ -144,7 +143,7 @@ class PaperMethod {
                                  .score = evolutions_[k].score};
   }
 
-  /// The trees of the partitions become one tree a component; trees that the merge leaves apart are united.
+  /// Merges the trees of the partitions into one a component, and unites trees that the merge leaves apart.
   CsgTree merge() {
     std::vector<CsgTree> components;
     for (std::size_t c = 0; c < partitions_.components.size(); ++c) {

@@ -7,20 +7,19 @@
 
 namespace cloud2csg {
 
-/// Things from 0 on, in sets that are joined: at first each is alone.
+/// Disjoint sets of the numbers 0 .. count - 1 (union-find). At first each number is alone.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {
     std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   }
 
-  /// The one that stands for the set of a thing: its smallest. Nearly O(1)
+  /// The representative of the set that holds `thing`: its smallest member. Nearly O(1)
   [[nodiscard]] std::size_t root(std::size_t thing) {
     while (parent_[thing] != thing) thing = parent_[thing] = parent_[parent_[thing]];
     return thing;
   }
 
-  /// Joins the set of one with that of another; the smaller of their roots stands for both.
   void join(std::size_t one, std::size_t other) {
     const std::size_t a = root(one);
     const std::size_t b = root(other);

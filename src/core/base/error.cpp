@@ -8,10 +8,10 @@
 namespace cloud2csg {
 namespace {
 
-/// Beside the name of the file.
+/// Limit of a message's bytes. The name of the file does not count.
 constexpr std::size_t k_longest_message = 200;
 
-/// A path of a field may be as long as the file is deep: its middle is left out.
+/// Leaves out the middle of a long path: the path of a field may be as long as the file is deep.
 std::string brief_place(const std::string& where) {
   constexpr std::size_t k_longest = 60;
   constexpr std::size_t k_end = 28;
@@ -23,7 +23,7 @@ std::string brief_place(const std::string& where) {
 std::string one_line(const Error::Parts& parts) {
   const std::string where = brief_place(parts.where);
   const std::string end = parts.remedy.empty() ? "" : "; " + visible_text(parts.remedy);
-  // Words of the file that are quoted may be of any length.
+  // `expected` may quote words of the file, which may have any length.
   const std::size_t taken = std::min(where.size() + end.size() + 7, k_longest_message);
   std::string line;
   for (const std::string& part :

@@ -21,20 +21,19 @@ namespace {
 
 constexpr int k_most_trials = 100;
 
-// A signal handler has no argument: this is the one way to tell it what to remove. Few files are written at once; one
-// that finds no free entry is only not removed by a signal.
+// Global for the signal handler. Few files live at once. A signal does not remove a file without an entry.
 constexpr std::size_t k_entries = 64;
 std::array<std::atomic<const char*>, k_entries> live_paths = {};  // NOLINT(readability-identifier-naming)
 static_assert(std::atomic<const char*>::is_always_lock_free, "only lock-free atomics may be used in a signal handler");
 
-/// Stands in all entries once the handler has been there.
+/// Stands in all entries after the handler has run.
 constexpr char k_closed = '\0';
 
 [[noreturn]] void wait_for_the_end() {
   for (;;) ::pause();
 }
 
-/// Puts each of two files in the place of the other, in one step. False when one is missing or the file system cannot.
+/// Exchanges two files in one step. False when one is missing or the file system cannot exchange files.
 bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
 #ifdef RENAME_EXCHANGE
   return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
@@ -48,7 +47,7 @@ bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
 TemporaryFile::TemporaryFile(const std::filesystem::path& destination, std::string_view ending) {
   for (int trial = 0;; ++trial) {
     path_ = fmt::format("{}.{}.{}.part{}", destination.string(), ::getpid(), trial, ending);
-    // First, so that no signal finds a file that is not in the register.
+    // Enter first, so that no signal finds a file that is not in the register.
     enter_register();
     const int file = ::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (file >= 0) {
@@ -143,7 +142,7 @@ void AtomicFile::write(std::string_view bytes) {
 void AtomicFile::commit() {
   const int flushed = std::fflush(file_);
   const int synced = flushed == 0 ? ::fsync(::fileno(file_)) : flushed;
-  // Pipes, terminals and some network file systems cannot be synced; that is no loss of data.
+  // Pipes, terminals and some network file systems cannot be synced. No data is lost.
   if (flushed != 0 || (synced != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)) fail("cannot be written");
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot be written");
   if (!temporary_) return;
@@ -183,7 +182,7 @@ struct OutputSet::Entry {
   Entry(std::filesystem::path given, std::filesystem::path resolved)
       : target(std::move(given)), place(std::move(resolved)), staged(place, target.extension().string()) {}
 
-  /// An older file is exchanged with the new one, so that it can come back.
+  /// Exchanges an older file with the new one, so that take_back() can restore the older one.
   void put_in_place() {
     is_exchanged = exchange(staged.path(), place);
     if (!is_exchanged && std::rename(staged.path().c_str(), place.c_str()) != 0) {
@@ -200,7 +199,7 @@ struct OutputSet::Entry {
   }
 
   std::filesystem::path target;  ///< as the caller names it
-  std::filesystem::path place;   ///< the same with links followed
+  std::filesystem::path place;   ///< `target` with links followed
   TemporaryFile staged;
   bool is_exchanged = false;
 };

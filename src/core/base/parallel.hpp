@@ -27,16 +27,16 @@
 
 namespace cloud2csg {
 
-/// The threads that a run asks for, no more than the machine has: TBB would warn about more on the standard error.
+/// The number of threads for a run, at most the machine's: TBB warns on standard error about more.
 inline int usable_threads(const RunContext& run) {
   const int cores = oneapi::tbb::info::default_concurrency();
   return run.threads > 0 ? std::min(run.threads, cores) : cores;
 }
 
 #ifdef CLOUD2CSG_THREAD_SANITIZER
-/// The loop of for_each_index() without TBB, for builds with the thread sanitizer: it cannot see how a TBB that was not
-/// built with it synchronises, and would either report every loop or, with those reports suppressed, see no race of
-/// ours. Iterations are handed out without ordering one after the other, so that races between them show.
+/// for_each_index() without TBB, for builds with the thread sanitizer. The sanitizer cannot see how a TBB built without
+/// it synchronises: it would report every loop or, with these reports suppressed, miss races of our own. Iterations are
+/// handed out in relaxed memory order, so that races between them show.
 template <typename Work>
 void run_on_plain_threads(std::size_t count, int threads, const Work& work) {
   std::atomic<std::size_t> next = 0;
@@ -64,8 +64,7 @@ void run_on_plain_threads(std::size_t count, int threads, const Work& work) {
 }
 #endif
 
-/// Calls work(i) for i = 0 .. count - 1 on the threads of the arena that the caller is in, for loops within loops. The
-/// same rules as for for_each_index().
+/// for_each_index() on the threads of the caller's arena, for nested loops.
 template <typename Work>
 void for_each_index_in_arena(std::size_t count, const RunContext& run, const Work& work) {
   if (run.threads == 1) {
@@ -79,9 +78,8 @@ void for_each_index_in_arena(std::size_t count, const RunContext& run, const Wor
 #endif
 }
 
-/// Calls work(i) for i = 0 .. count - 1 on the threads of the run. Each call must write only what belongs to its i, so
-/// that the result does not depend on the schedule. An exception of a call is passed on.
-/// @throws Cancelled
+/// Calls work(i) for i = 0 .. count - 1 on the threads of the run. Each call writes only data of its own i, so that the
+/// result does not depend on the schedule. Passes on exceptions. @throws Cancelled
 template <typename Work>
 void for_each_index(std::size_t count, const RunContext& run, const Work& work) {
   const auto one = [&](std::size_t i) {
@@ -96,8 +94,7 @@ void for_each_index(std::size_t count, const RunContext& run, const Work& work) 
   arena.execute([&] { for_each_index_in_arena(count, run, one); });
 }
 
-/// The same for calls that are so short that handing them out one by one would take longer: `chunk` of them at a time.
-/// Reports how far it is as `share` of a stage, from one thread at a time.
+/// for_each_index() for short calls, `chunk` at a time. Reports progress as `share`, from one thread at a time.
 template <typename Work>
 void for_each_index_by_chunks(std::size_t count, std::size_t chunk, const RunContext& run, const StageShare& share,
                               const Work& work) {

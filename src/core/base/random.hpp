@@ -9,9 +9,8 @@
 
 namespace cloud2csg {
 
-/// A stream of random numbers that is a pure function of (seed, stage, item, step), never of a thread or of the
-/// order in which streams are made. xoshiro256** (Blackman, Vigna 2018) seeded by splitmix64; distributions of its own,
-/// because those of the standard library differ between implementations.
+/// Random numbers as a pure function of (seed, stage, item, step): xoshiro256** (Blackman, Vigna 2018) seeded by
+/// splitmix64. The distributions are our own, because the standard library's differ between implementations.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed, std::uint64_t stage = 0, std::uint64_t item = 0, std::uint64_t step = 0) {
@@ -37,8 +36,7 @@ class RandomStream {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   bool chance(double probability) { return uniform() < probability; }
 
-  /// Uniform in 0 .. count - 1. Precondition: 0 < count < 2^32. Multiply-shift; its bias of 2^-32 is far below what
-  /// any use here can see.
+  /// Uniform in 0 .. count - 1. Precondition: 0 < count < 2^32. Multiply-shift; its bias of 2^-32 matters nowhere.
   std::uint32_t below(std::size_t count) {
     return static_cast<std::uint32_t>(((next() >> 32U) * static_cast<std::uint64_t>(count)) >> 32U);
   }

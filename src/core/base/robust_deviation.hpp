@@ -7,7 +7,7 @@
 
 namespace cloud2csg {
 
-/// The middle one in ascending order, the upper one of two. Reorders them. O(n) Precondition: not empty.
+/// The median, the upper one for an even count. Reorders the values. O(n) Precondition: not empty.
 inline double median_of(std::vector<double>& values) {
   assert(!values.empty());
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -15,8 +15,7 @@ inline double median_of(std::vector<double>& values) {
   return *middle;
 }
 
-/// Standard deviation of a normal distribution around zero from the median of absolute values. Reorders them. O(n)
-/// Precondition: not empty.
+/// Standard deviation of a normal distribution around zero, from the median. Reorders. O(n) Precondition: not empty.
 inline double robust_deviation(std::vector<double>& absolute_values) {
   return 1.4826 * median_of(absolute_values);
 }

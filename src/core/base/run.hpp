@@ -12,10 +12,10 @@ namespace cloud2csg {
 /// Wall-clock time.
 class Stopwatch {
  public:
-  /// Since it was made or last lapped.
+  /// Seconds since construction or the last lap().
   [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-  /// The same, and starts again at zero.
+  /// As seconds(); then starts again at zero.
   double lap() {
     const auto now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - start_).count();
@@ -29,23 +29,22 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// For short work that an interrupted search needs as well: its tree has a fit, too, and what searches after it sees
-/// the stop.
+/// For short work that an interrupted search still needs, such as the fit of its tree.
 [[nodiscard]] inline RunContext without_stop(RunContext run) {
   run.stop = {};
   return run;
 }
 
-/// What a loop is of a stage: reported as if the stage's things were done one after the other, all by its loops.
+/// A loop's share of a stage. Progress counts as if the stage's loops ran one after the other.
 class StageShare {
  public:
-  /// Of no stage: nothing is reported.
+  /// Reports nothing.
   StageShare() = default;
   /// A whole stage of `total` things.
   StageShare(std::string_view stage, std::size_t total, std::string_view unit)
       : stage_(stage), total_(total), unit_(unit) {}
 
-  /// A part of this share, from 0 to 1.
+  /// The part of this share between two fractions of it, each from 0 to 1.
   [[nodiscard]] StageShare part(double from, double to) const {
     StageShare result = *this;
     result.from_ = from_ + from * (to_ - from_);
@@ -53,7 +52,7 @@ class StageShare {
     return result;
   }
 
-  /// `done` of this share, from 0 to 1. Reporting all of a whole stage ends it.
+  /// Reports that the fraction `done` of this share is done. Reporting 1 for a whole stage ends the stage.
   void report(const RunContext& run, double done) const {
     if (stage_.empty()) return;
     const double things = static_cast<double>(total_) * (from_ + done * (to_ - from_));

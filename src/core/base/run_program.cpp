@@ -16,7 +16,7 @@
 namespace cloud2csg {
 namespace {
 
-/// 0, or an errno.
+/// Returns 0 or an errno.
 int start(pid_t& process, std::vector<std::string>& command, const std::filesystem::path& output,
           const std::filesystem::path& complaints) {
   std::vector<char*> words;

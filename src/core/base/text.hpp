@@ -11,14 +11,13 @@
 
 namespace cloud2csg {
 
-/// The code of a text's first character.
 struct Utf8Character {
   std::uint32_t code = 0;
   std::size_t bytes = 0;
 };
 
-/// Absent where the first byte begins no character of UTF-8: one that is cut off, longer than it need be, beyond
-/// Unicode or half of a pair. Precondition: the text is not empty.
+/// The first character. Absent where the first byte begins no valid UTF-8 character: cut off, overlong, beyond Unicode
+/// or a surrogate. Precondition: the text is not empty.
 [[nodiscard]] inline std::optional<Utf8Character> first_character(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
   const std::uint32_t lead = byte(0);
@@ -36,15 +35,14 @@ struct Utf8Character {
   return Utf8Character{.code = code, .bytes = bytes};
 }
 
-/// Whether a character only takes its place in a line: no control, no end of a line, nothing that turns the direction
-/// of reading, by which code can look like a comment.
+/// Whether a character only takes its place in a line: no control, line end or change of direction (Trojan Source).
 [[nodiscard]] inline bool is_plain_character(std::uint32_t code) {
   const auto between = [code](std::uint32_t first, std::uint32_t last) { return code >= first && code <= last; };
   return code >= 0x20 && !between(0x7F, 0x9F) && code != 0x61C && !between(0x200E, 0x200F) &&
          !between(0x2028, 0x202E) && !between(0x2066, 0x2069);
 }
 
-/// ASCII letters of a text as small ones.
+/// The text with its ASCII letters in lower case.
 [[nodiscard]] inline std::string lower_case(std::string_view text) {
   std::string lower(text);
   std::ranges::transform(lower, lower.begin(),
@@ -52,13 +50,12 @@ struct Utf8Character {
   return lower;
 }
 
-/// A text of somebody else (an id, a description, the name of a file) for one line on a terminal: letters of UTF-8 stay
-/// as they are; controls, ends of lines, what turns the direction of reading and bytes that are no UTF-8 are written as
-/// \x1b or \u202e. What has been made so stays as it is. Longer than `longest` bytes, it ends in "...".
+/// Foreign text (an id, a description, a file name) as one line for a terminal. Controls, line ends, changes of reading
+/// direction and invalid UTF-8 become \x1b or \u202e. Idempotent. Longer than `longest` bytes, it ends in "...".
 [[nodiscard]] std::string visible_text(std::string_view text,
                                        std::size_t longest = std::numeric_limits<std::size_t>::max());
 
-/// Of words that messages quote from a file.
+/// Limit of bytes for words that messages quote from a file.
 constexpr std::size_t k_longest_quote = 24;
 
 }  // namespace cloud2csg

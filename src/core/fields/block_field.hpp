@@ -8,13 +8,13 @@
 
 #include "cloud2csg/primitive.hpp"
 
-/// Sets of points of a block, and what is computed of a block of points at once. `Real` is double or float.
+/// Blocks of points: sets of their points and values computed for a whole block. `Real` is double or float.
 namespace cloud2csg {
 
-/// Points a block. A multiple of 64; its columns for some 20 primitives stay in the second-level cache.
+/// Points a block. A multiple of 64. The columns of some 20 primitives stay in the second-level cache.
 inline constexpr std::size_t k_block_points = 256;
 
-/// One bit a point of a block.
+/// One bit for each point of a block.
 using BlockMask = std::array<std::uint64_t, k_block_points / 64>;
 
 template <class Operation>
@@ -29,7 +29,7 @@ template <class Operation>
 [[nodiscard]] inline BlockMask either(const BlockMask& a, const BlockMask& b) {
   return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x | y; });
 }
-/// The points of the first that are not in the second.
+/// The points of `a` that are not in `b`.
 [[nodiscard]] inline BlockMask without(const BlockMask& a, const BlockMask& b) {
   return combine(a, b, [](std::uint64_t x, std::uint64_t y) { return x & ~y; });
 }
@@ -43,7 +43,7 @@ template <class Operation>
   return count;
 }
 
-/// How many groups of eight neighbours, starting with points 0 to 7, have a point in the set.
+/// How many aligned groups of eight points have a point in the set.
 [[nodiscard]] inline std::size_t byte_count(const BlockMask& mask) {
   std::size_t count = 0;
   for (std::uint64_t word : mask) {
@@ -73,13 +73,12 @@ inline void remove_point(BlockMask& mask, std::size_t i) {
   return mask;
 }
 
-/// The unit normals of a block of points; entries past the block's end may be anything finite.
+/// The unit normals of a block. Entries past the block's end may be anything finite.
 template <class Real>
 struct BlockNormals {
   const Real *x, *y, *z;  ///< k_block_points each, aligned to 64 bytes
 };
 
-/// A primitive's field at a block of points.
 template <class Real>
 struct BlockField {
   alignas(64) std::array<Real, k_block_points> distance{}, gradient_x{}, gradient_y{}, gradient_z{};

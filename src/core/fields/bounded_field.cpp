@@ -9,7 +9,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Bounds of a solid and of all that is not in it.
+/// Bounds of a solid and of its complement.
 struct Bounds {
   AlignedBox inside;
   AlignedBox outside;
@@ -44,7 +44,7 @@ Model bounded_field(const Model& solid) {
     const OrientedBox box = oriented_bounds(solid.primitives[index]);
     field.primitives.push_back({.id = {}, .shape = Box{.size = 2 * box.half_size}, .pose = box.pose});
     const CsgTree boxed = intersect(CsgTree::leaf(index), CsgTree::leaf(cutter));
-    // From the root down, so that the nodes that are still to come keep their places.
+    // Start at the root, so that the nodes still to come keep their places.
     for (std::size_t node = field.tree->size(); node-- > 0;) {
       if (field.tree->nodes()[node] == CsgNode::leaf(index)) field.tree->replace(node, boxed.nodes());
     }

@@ -10,7 +10,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Of the part of an expression that is in its bounds, its displacement included.
+/// The steepest sampled slope of an expression within its bounds, with its displacement.
 double sampled_slope(const Primitive& primitive, const Expression& expression) {
   constexpr int k_samples = 9;  // along each axis
   Points samples = lattice(expression.bounds, Eigen::Vector3i::Constant(k_samples)).centres;
@@ -35,10 +35,10 @@ double steepest_of(const CsgTree& tree, const PrimitiveSet& primitives, const Bo
 
 double lipschitz_bound(const Primitive& primitive) {
   if (std::holds_alternative<Expression>(primitive.shape)) return std::numeric_limits<double>::infinity();
-  // A distance has slope 1, that of a polytope is the largest of some with slope 1. The square of the slope of
-  // sin(kx) sin(ky) sin(kz) is k^2 (bc + ac + ab - 3 abc), where a, b and c are the squares of the sines: multilinear,
-  // so largest where each is 0 or 1, and there it is 0 or k^2. It is k^2 where one sine vanishes and two do not, and
-  // where the distance grows in the same direction both slopes add up.
+  // A distance has slope 1, and so has the maximum of distances of a polytope. The squared slope of sin(kx) sin(ky)
+  // sin(kz) is k^2 (bc + ac + ab - 3 abc), where a, b and c are the squared sines. It is multilinear, so it is largest
+  // where each square is 0 or 1, and there it is 0 or k^2. It is k^2 where one square is 0 and two are 1. Both slopes
+  // add up where the distance grows in the same direction.
   return primitive.displacement ? 1.0 + std::abs(primitive.displacement->frequency) : 1.0;
 }
 
@@ -51,7 +51,7 @@ double lipschitz_estimate(const Primitive& primitive) {
   const auto* expression = std::get_if<Expression>(&primitive.shape);
   if (expression == nullptr) return lipschitz_bound(primitive);
   const double steepest = sampled_slope(primitive, *expression);
-  // A field that is flat wherever it was sampled says nothing: take it for a distance.
+  // A field that is flat at all samples says nothing. Take it for a distance.
   return steepest > 0 ? k_safety * steepest : 1.0;
 }
 

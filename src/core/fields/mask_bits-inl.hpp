@@ -11,12 +11,12 @@
 #include <array>
 #include <cstdint>
 
-/// From comparisons of vectors to the words of a BlockMask.
+/// Turns comparisons of vectors into words of a BlockMask.
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of at most 16 lanes. Read back byte by byte: a wider load would have to wait for the store.
+/// The bits of at most 16 lanes. Reads them byte by byte, because a wider load would have to wait for the store.
 template <class Tag, class Mask>
 HWY_INLINE std::uint64_t bits_of(Tag tag, Mask mask) {
   static_assert(hn::MaxLanes(Tag()) <= 16);

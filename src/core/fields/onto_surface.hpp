@@ -7,12 +7,10 @@
 
 namespace cloud2csg {
 
-/// Moves points that are near the surface of a primitive onto it, f = 0, by Newton steps along the gradient, and makes
-/// its direction their normals. Returns for each whether it got there without moving farther than `reach`; others are
-/// to be left out. O(points)
-///
-/// Meshes and scans step to the surface of a whole solid in ways of their own: vertices within their cells, hits along
-/// their rays. Precondition: the cloud has normals, of any value.
+/// Moves points near a primitive's surface onto it, f = 0, by Newton steps along the gradient, and sets their normals
+/// to its direction. Returns for each point whether it arrived without moving farther than `reach`; leave out the
+/// others. Precondition: the cloud has normals, of any value. O(points) Meshes and scans have their own steps onto the
+/// surface of a whole solid: vertices within cells, hits along rays.
 [[nodiscard]] std::vector<bool> move_onto_surface(const Primitive& primitive, double reach, PointCloud& cloud);
 
 }  // namespace cloud2csg

@@ -6,10 +6,10 @@
 namespace cloud2csg {
 namespace {
 
-/// Rounding of single precision is 6e-8 of the largest length involved: a five-thousandth of this.
+/// Single precision rounds to 6e-8 of the largest length involved: a five-thousandth of this.
 constexpr double k_single_precision_noise = 3e-4;
 
-/// Whether its pose may be moved along its plane, which says nothing of the solid but is rounded.
+/// Whether its pose may move along its plane, which changes rounding but not the solid.
 bool is_plain_half_space(const Primitive& primitive) {
   return std::holds_alternative<HalfSpace>(primitive.shape) && !primitive.displacement;
 }
@@ -19,19 +19,19 @@ Eigen::Vector3d foot_of_origin(const Pose& pose) {
   return normal * normal.dot(pose.position);
 }
 
-/// The largest length that goes into a primitive's distances, seen from a point.
+/// The largest length in the computation of a primitive's distances, seen from `centre`.
 double reach_from(const Eigen::Vector3d& centre, const Primitive& primitive) {
   Pose pose = primitive.pose;
   pose.position -= centre;
   if (is_plain_half_space(primitive)) return foot_of_origin(pose).norm();
-  // Of a displaced solid its own size will do: to search for how far it really reaches takes longer than the rest.
+  // For a displaced solid its plain size will do: the search for its real reach takes longer than the rest.
   Primitive plain = primitive;
   plain.displacement.reset();
   const Eigen::Vector3d half_size = oriented_bounds(plain).half_size;
   return pose.position.norm() + (half_size.allFinite() ? 2 * half_size.norm() : 0.0);
 }
 
-/// Of some rows of columns x, y and z.
+/// Bounds of rows `begin` to `end` of columns x, y and z.
 template <class Columns>
 AlignedBox bounds_of_rows(const Columns& columns, std::size_t begin, std::size_t end) {
   AlignedBox box;

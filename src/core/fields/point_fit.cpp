@@ -11,8 +11,8 @@
 namespace cloud2csg {
 namespace {
 
-/// Measures a tree at points, a block of neighbours at a time. Far from a primitive a tree is as without it: where the
-/// tree without all primitives farther than r has a value below r, the whole tree has the same.
+/// Measures a tree at points, one block of neighbours at a time. Far primitives do not matter: where the tree without
+/// all primitives farther than r has a value below r, the whole tree has the same value.
 class FitMeasure {
  public:
   FitMeasure(const Model& model, const PointCloud& cloud, double noise, const PointFitOptions& options,
@@ -48,11 +48,11 @@ class FitMeasure {
 
  private:
   static constexpr std::size_t k_block = 1024;
-  static constexpr std::size_t k_few_primitives = 4;  // are evaluated everywhere
-  static constexpr double k_first_radius = 4;         // of the noise
+  static constexpr std::size_t k_few_primitives = 4;  // up to this many are evaluated everywhere
+  static constexpr double k_first_radius = 4;         // multiple of the noise
   static constexpr double k_growth = 8;
 
-  /// All primitives of the tree, and where they are nearer than a radius.
+  /// The tree's primitives and the boxes in which each is nearer than `radius`.
   struct Level {
     double radius;
     std::vector<PrimitiveIndex> primitives;
@@ -79,7 +79,7 @@ class FitMeasure {
     measure_with(tree_, points);
   }
 
-  /// Returns the points that the level's radius is too small for.
+  /// Returns the points for which the level's radius is too small.
   std::vector<std::uint32_t> measure_near(const Level& level, const std::vector<std::uint32_t>& points) {
     AlignedBox box;
     for (const std::uint32_t i : points) box.extend(cloud_.positions[i]);
@@ -121,7 +121,7 @@ class FitMeasure {
   const RunContext& run_;
   std::span<const std::uint32_t> order_;
   double tie_ = 0;             // values that differ by less count as equal
-  std::vector<Level> levels_;  // by radius; none where the whole tree is evaluated everywhere
+  std::vector<Level> levels_;  // by radius; empty when the whole tree is evaluated everywhere
   PointFit fit_;
 };
 
@@ -152,7 +152,6 @@ double root_mean_square(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// What 95 % are below. Reorders them.
 double quantile_95(std::vector<double>& values) {
   const auto at_95 = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 95 / 100);
   std::nth_element(values.begin(), at_95, values.end());

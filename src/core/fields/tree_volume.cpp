@@ -14,7 +14,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Which points are drawn is no choice of the user's: the error says how much it matters.
+/// The user does not choose the seed, because the error says how much the choice of points matters.
 constexpr std::uint64_t k_seed = 1;
 constexpr int k_most_levels_of_expressions = 6;
 constexpr std::size_t k_chunk = 1024;
@@ -33,7 +33,7 @@ class Sampler {
       if (is_known) drop_decided(cells);
     }
     const auto [hits, deviants] = judge_octants(cells);
-    // Two points an octant: their mean varies by a quarter of the square of their difference.
+    // With two points an octant, their mean varies by a quarter of their squared difference.
     const double volume = cells.volume() / 8;
     return {.volume = whole_ + 0.5 * volume * static_cast<double>(hits),
             .error = 0.5 * volume * std::sqrt(static_cast<double>(deviants))};
@@ -42,10 +42,10 @@ class Sampler {
  private:
   struct Counts {
     std::size_t hits = 0;      ///< points inside
-    std::size_t deviants = 0;  ///< octants of which one point is inside
+    std::size_t deviants = 0;  ///< octants with one of their two points inside
   };
 
-  /// Leaves the cells whose middle is so near to the surface that it may pass through them; counts the others.
+  /// Keeps the cells whose middle is so near to the surface that it may pass through them. Counts the others.
   void drop_decided(OctreeLevel& cells) {
     std::vector<double> values(cells.centres.size());
     for_each_chunk(values.size(), [&](std::size_t first, std::size_t count) {
@@ -66,7 +66,7 @@ class Sampler {
     cells.centres = std::move(left);
   }
 
-  /// The last level, of which there are most, is only made chunk by chunk.
+  /// Makes the last and largest level chunk by chunk.
   [[nodiscard]] Counts judge_octants(const OctreeLevel& cells) const {
     std::vector<Counts> counts(cells.centres.size() / k_chunk + 1);
     for_each_chunk(cells.centres.size(), [&](std::size_t first, std::size_t count) {

@@ -12,7 +12,7 @@ namespace cloud2csg {
   return {-corner, corner};
 }
 
-/// By so much on each side. Precondition: it is not empty.
+/// The box with `margin` added on each side. Precondition: the box is not empty.
 [[nodiscard]] inline AlignedBox grown(const AlignedBox& box, double margin) {
   return {box.min().array() - margin, box.max().array() + margin};
 }
@@ -22,7 +22,7 @@ namespace cloud2csg {
   return box.min().allFinite() && box.max().allFinite();
 }
 
-/// Each coordinate between those of the corners, x first.
+/// A place whose coordinates are uniform between those of the corners. Draws x first.
 [[nodiscard]] inline Eigen::Vector3d random_between(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                                                     RandomStream& random) {
   Eigen::Vector3d result;

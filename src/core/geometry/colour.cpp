@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-// As viewer/src/colours.ts: what is shown in two places has one colour.
+// As viewer/src/colours.ts, so that both show a primitive in the same colour.
 namespace cloud2csg {
 namespace {
 

@@ -24,8 +24,7 @@ AlignedBox enclosing_box(const OrientedBox& box) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       const double weight = std::abs(rotation(row, column));
-      // An infinite axis counts only where it is not across the row: 0 * infinity is no extent, and neither is the
-      // rounding error of a zero times infinity.
+      // An infinite axis across the row has no extent: 0 * infinity, or a rounding error of 0 times infinity.
       const bool is_across = weight <= std::numeric_limits<double>::epsilon();
       if (!(is_across && std::isinf(box.half_size[column]))) half[row] += weight * box.half_size[column];
     }
@@ -35,8 +34,7 @@ AlignedBox enclosing_box(const OrientedBox& box) {
 
 namespace {
 
-/// Lowest and highest of some numbers. Several at a time, which a compiler does not find by itself for a minimum of
-/// doubles.
+/// Lowest and highest of some numbers. Works in lanes, because compilers do not vectorise a minimum of doubles.
 std::pair<double, double> range_of(std::span<const double> numbers) {
   constexpr std::size_t k_lanes = 8;
   std::array<double, k_lanes> low;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t k_leaf_points = 20;  ///< the fastest for 12 to 50 neighbours
 
-/// What nanoflann wants to know about points.
+/// nanoflann's interface to the points.
 struct PointsAdaptor {
   const Points& points;
 
@@ -19,7 +19,7 @@ struct PointsAdaptor {
   }
   template <typename BoundingBox>
   bool kdtree_get_bbox(BoundingBox& /*box*/) const {
-    return false;  // nanoflann then finds it
+    return false;  // nanoflann then computes the box
   }
 };
 

@@ -10,8 +10,7 @@
 
 namespace cloud2csg {
 
-/// Finds the nearest among points that must outlive it. Build O(n log n), query O(k log n); queries are safe from
-/// several threads.
+/// A kd-tree of points, which must outlive it. Build O(n log n), query O(k log n). Queries are thread-safe.
 class NeighbourTree {
  public:
   explicit NeighbourTree(const Points& points);
@@ -22,8 +21,7 @@ class NeighbourTree {
   NeighbourTree& operator=(NeighbourTree&&) = delete;
 
   /// Fills `indices` and `squares` (of equal length) with the nearest points and their squared distances, nearest
-  /// first.
-  /// @returns how many there are: fewer than wanted when the cloud has fewer.
+  /// first. Returns how many it found: fewer than wanted when the cloud has fewer.
   std::size_t find(const Eigen::Vector3d& place, std::span<std::uint32_t> indices, std::span<double> squares) const;
 
   struct Neighbour {
@@ -32,9 +30,9 @@ class NeighbourTree {
   };
   /// Precondition: there are points.
   [[nodiscard]] Neighbour nearest(const Eigen::Vector3d& place) const;
-  /// Points nearer than this, nearest first.
+  /// Points nearer than `distance`, nearest first.
   [[nodiscard]] std::vector<std::uint32_t> within(const Eigen::Vector3d& place, double distance) const;
-  /// All points, such that those that follow each other are mostly near each other.
+  /// All points, in an order that keeps successive points mostly near each other.
   [[nodiscard]] std::span<const std::uint32_t> order() const;
 
  private:

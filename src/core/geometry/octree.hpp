@@ -2,26 +2,24 @@
 
 #include "cloud2csg/geometry.hpp"
 
-/// Searches of a region that halve what they cannot tell about.
 namespace cloud2csg {
 
-/// Boxes of equal size, side by side.
+/// Cells of equal size, for searches that divide undecided cells.
 struct OctreeLevel {
   Points centres;
   Eigen::Vector3d half_size;
 
-  /// From a centre to the corners.
+  /// Distance from a cell's centre to its corners.
   [[nodiscard]] double radius() const { return half_size.norm(); }
-  /// Of one.
   [[nodiscard]] double volume() const { return 8 * half_size.prod(); }
 };
 
-/// The box in so many cells along each axis, z first.
+/// The box cut into `counts` cells along the axes; z varies fastest.
 [[nodiscard]] OctreeLevel lattice(const AlignedBox& box, const Eigen::Vector3i& counts);
 
-/// Each cell in two along the axis, one after the other.
+/// Each cell cut in two along the axis, its halves one after the other.
 [[nodiscard]] OctreeLevel halved(const OctreeLevel& cells, int axis);
-/// Each cell in eight, x first.
+/// Each cell cut in eight; x varies fastest.
 [[nodiscard]] OctreeLevel octants(const OctreeLevel& cells);
 
 }  // namespace cloud2csg

@@ -20,9 +20,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint64_t k_view_stream = 0x7669'6577;
-constexpr double k_near_sensors = 0.05;  ///< of the diagonal of the cloud: sensors as near as this see the same
+constexpr double k_near_sensors = 0.05;  ///< share of the cloud's diagonal: sensors as close as this see the same
 constexpr std::size_t k_most_views = 256;
-constexpr double k_points_a_cell = 3;  ///< at least, on average over the cells with points
+constexpr double k_points_a_cell = 3;  ///< minimum of the average over the cells with points
 constexpr int k_finest = 512;
 constexpr double k_grazing = 0.2;  ///< cosine of incidence below which returns are lost
 constexpr std::size_t k_reference_points = 2000;
@@ -49,7 +49,7 @@ GridCell cell_of(const Vector3d& direction, int resolution) {
   return {.row = step(v), .column = step(u)};
 }
 
-/// Points by where their sensors stood, those with the most points first.
+/// Points grouped by sensor position, the largest groups first.
 std::vector<std::vector<std::uint32_t>> by_sensor(const PointCloud& cloud) {
   const double edge = std::max(k_near_sensors * bounds_of(cloud.positions).diagonal().norm(), 1e-300);
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> groups;
@@ -128,7 +128,7 @@ double SensorViews::usual_density(const PointCloud& cloud, std::span<const std::
 
 double SensorViews::share_that_sees(const View& view, const Vector3d& way, double range, double cosine) {
   const GridCell middle = cell_of(way, view.resolution);
-  // So much nearer may the surface itself be within the cell.
+  // The surface itself may be nearer by this much within the cell.
   const double tangent = std::sqrt(std::max(0.0, 1 - cosine * cosine)) / std::max(cosine, 0.1);
   const auto at_least = static_cast<float>(range * (1 - view.width * tangent));
   const auto share_of = [&](int distance) {
@@ -147,7 +147,7 @@ double SensorViews::share_that_sees(const View& view, const Vector3d& way, doubl
     }
     return all == 0 ? std::nullopt : std::optional(1 - static_cast<double>(nearer) / static_cast<double>(all));
   };
-  // A cell may have none by chance, but hardly all around it.
+  // A cell may have no returns by chance, but hardly all cells around it.
   const std::optional<double> share = share_of(0);
   return share ? *share : share_of(1).value_or(1);
 }

@@ -7,36 +7,36 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/run_context.hpp"
 
-/// What the sensors could see: where they could not, the absence of points says nothing.
+/// Visibility from the sensors: where no sensor could see, missing points say nothing.
 namespace cloud2csg {
 
-/// How far each sensor saw in each direction. Sensors that stood near each other, as of a scanner that moves, are one.
+/// How far each sensor saw in each direction. Sensors close to each other, as of a moving scanner, count as one.
 class SensorViews {
  public:
   /// Precondition: the cloud has points and sensor positions. O(points log points)
   explicit SensorViews(const PointCloud& cloud);
 
-  /// Points per area that a surface at this place, with this normal or the opposite one, would have: 0 where what is
-  /// nearer hides it from all sensors, or these graze it. Where a sensor saw nothing at all, it would have seen the
-  /// surface. O(views)
+  /// Points per area that a surface with this normal or its opposite would have at `place`. 0 where nearer surfaces
+  /// hide it from all sensors, or these graze it. A sensor that saw nothing in that direction would have seen it.
+  /// O(views)
   [[nodiscard]] double density_at(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 
-  /// The median of what the points of the cloud have, by some of them, evenly along `order`, which holds all. The cloud
-  /// has normals. O(views) @throws Cancelled
+  /// The median density at some of the cloud's points, taken evenly along `order`, which holds all points.
+  /// Precondition: the cloud has normals. O(views) @throws Cancelled
   [[nodiscard]] double usual_density(const PointCloud& cloud, std::span<const std::uint32_t> order,
                                      const RunContext& run) const;
 
  private:
-  /// Directions are told apart by a grid on an octahedron (Meyer et al. 2010) around the sensor.
+  /// The ranges of one sensor. A grid on an octahedron around the sensor bins the directions (Meyer et al. 2010).
   struct View {
     Eigen::Vector3d sensor;
-    int resolution = 0;                ///< of the grid, which is square
-    double width = 0;                  ///< of a cell of it, an angle in radians
-    double points_a_steradian = 0;     ///< where there are points
-    std::vector<float> ranges;         ///< how far the sensor saw, cell by cell, ascending
-    std::vector<std::uint32_t> first;  ///< by cell: where its ranges begin; and where the last one's end
+    int resolution = 0;                ///< cells along a side of the square grid
+    double width = 0;                  ///< angle that a cell spans, in radians
+    double points_a_steradian = 0;     ///< mean over the cells with points
+    std::vector<float> ranges;         ///< ranges cell by cell, ascending within each cell
+    std::vector<std::uint32_t> first;  ///< by cell: where its ranges begin; one entry more for the end
   };
-  /// Of what is seen in a direction, the share that is no nearer than a surface there.
+  /// The share of a sensor's returns in a direction that are no nearer than a surface at `range`.
   [[nodiscard]] static double share_that_sees(const View& view, const Eigen::Vector3d& way, double range,
                                               double cosine);
   [[nodiscard]] static View make_view(const PointCloud& cloud, std::span<const std::uint32_t> points);
@@ -44,9 +44,8 @@ class SensorViews {
   std::vector<View> views_;
 };
 
-/// Of points on surfaces, those that stand for what sensors see: all where a surface would have as many points as those
-/// of the cloud have at the median, the fewer the less it would have, and none where it is hidden. All where the cloud
-/// has no sensor positions. The same always. `order`: see spatial_order().
+/// Which points on surfaces sensors would see: all where the density is at least the cloud's median, fewer the lower it
+/// is, none where hidden. All if the cloud has no sensor positions. Deterministic. `order`: see spatial_order().
 [[nodiscard]] std::vector<bool> are_seen(const PointCloud& points, const PointCloud& cloud,
                                          std::span<const std::uint32_t> order, const RunContext& run);
 

@@ -11,21 +11,21 @@
 namespace cloud2csg {
 namespace {
 
-/// So many bits of a cell are sorted by at once.
+/// Bits of a cell's number that one pass sorts by.
 constexpr int k_digit_bits = 11;
-/// A part of the points is the work of one thread.
+/// The fewest points for a thread of their own.
 constexpr std::size_t k_least_part = 65'536;
 
-/// Bits along each axis: with points on a surface, some in each cell.
+/// Bits along each axis that leave some points of a surface in each cell.
 int bits_for(std::size_t count) {
   const double side = std::sqrt(static_cast<double>(count));
   return std::clamp(static_cast<int>(std::bit_width(static_cast<std::size_t>(side))) - 2, 1, MortonCurve::k_most_bits);
 }
 
-/// Sorts points by cell, the lowest digit first, which keeps the order of equal ones.
+/// Stable radix sort of points by cell, the lowest digit first.
 class CellSort {
  public:
-  /// Cells are below 2^(digits * k_digit_bits).
+  /// Precondition: cells are below 2^(digits * k_digit_bits).
   CellSort(std::size_t count, int digits, const RunContext& run)
       : run_(run),
         count_(count),
@@ -99,7 +99,7 @@ class CellSort {
   std::size_t count_;
   int digits_;
   std::size_t parts_;
-  std::vector<std::vector<std::uint32_t>> places_;  // by part and digit: counts, then where the next one goes
+  std::vector<std::vector<std::uint32_t>> places_;  // by part and digit: counts, then where the next key goes
   std::vector<Key> keys_, sorted_;
 };
 

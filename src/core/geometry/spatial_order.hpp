@@ -10,18 +10,18 @@
 
 namespace cloud2csg {
 
-/// A cube in 2^bits cells along each axis, numbered along Morton's space-filling curve. Cells of an octree are runs of
-/// numbers: those of one that is 2^k cells wide differ in their lowest 3 k bits only.
+/// A cube of 2^bits cells along each axis, numbered along Morton's space-filling curve. An octree cell is a run of
+/// numbers: cells within one that is 2^k wide differ only in their lowest 3 k bits.
 class MortonCurve {
  public:
-  /// Along each axis at most: the numbers fit 32 bits.
+  /// Most bits along each axis, so that the numbers fit 32 bits.
   static constexpr int k_most_bits = 10;
 
   /// Precondition: 1 <= bits <= k_most_bits.
   MortonCurve(Eigen::Vector3d corner, double edge, int bits);
 
   [[nodiscard]] int bits() const { return bits_; }
-  /// Points outside of the cube count to the cells at its border.
+  /// Points outside of the cube belong to the cells at its border.
   [[nodiscard]] std::uint32_t cell_of(double x, double y, double z) const {
     return step(x - corner_.x()) | step(y - corner_.y()) << 1U | step(z - corner_.z()) << 2U;
   }
@@ -29,7 +29,7 @@ class MortonCurve {
  private:
   /// The cell along one axis, its bits spread three apart.
   [[nodiscard]] std::uint32_t step(double offset) const {
-    // The lower bound first: whatever the number, the result is an index.
+    // Take the lower bound first: it turns NaN into 0, so the result is always an index.
     const double cell = std::min(std::max(0.0, offset * cells_a_unit_), last_step_);
     return spread_[static_cast<std::size_t>(static_cast<std::int32_t>(cell))];
   }
@@ -40,13 +40,11 @@ class MortonCurve {
   std::array<std::uint32_t, 1U << k_most_bits> spread_{};
 };
 
-/// The indices of all points along the curve; within a cell, points stay in their order. O(n). Does not depend on the
-/// number of threads.
+/// The indices of all points along the curve, stable within a cell. O(n). Does not depend on the number of threads.
 [[nodiscard]] std::vector<std::uint32_t> spatial_order(PointsView positions, const MortonCurve& curve,
                                                        const RunContext& run = {});
 
-/// The same along a curve through `box`, which holds the points: neighbours in this order are near each other. There
-/// are as many cells as suit points on a surface.
+/// The order along a curve through `box`, which holds the points, with as many cells as suit points on a surface.
 [[nodiscard]] std::vector<std::uint32_t> spatial_order(PointsView positions, const AlignedBox& box,
                                                        const RunContext& run = {});
 

@@ -9,10 +9,9 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "core/base/random.hpp"
 
-/// Some points of many, and clouds put together.
 namespace cloud2csg {
 
-/// At most so many entries, evenly along the list: all where there are no more. O(most)
+/// At most `most` entries, evenly along the list: all where there are no more. O(most)
 template <std::ranges::random_access_range List>
 [[nodiscard]] std::vector<std::ranges::range_value_t<List>> some_of(const List& list, std::size_t most) {
   const std::size_t size = std::ranges::size(list);
@@ -32,11 +31,11 @@ template <std::ranges::sized_range Indices>
   return selected;
 }
 
-/// Where `chosen` says so, ascending.
+/// The indices where `chosen` equals `says`, ascending.
 [[nodiscard]] std::vector<std::uint32_t> places_where(const std::vector<bool>& chosen, bool says = true);
 
-/// One of 0 .. count - 1 out of every few, `most` at most, ascending. Chance says which one: scans come in rows, and a
-/// fixed step may follow a column of them. Precondition: most > 0. O(most)
+/// A sample of 0 .. count - 1: a random one out of every few, `most` at most, ascending. The choice is random because
+/// scans come in rows, and a fixed step may follow a column of them. Precondition: most > 0. O(most)
 [[nodiscard]] std::vector<std::uint32_t> one_of_every_few(std::size_t count, std::size_t most, RandomStream random);
 
 inline void append(Points& points, const Points& more) {
@@ -45,7 +44,7 @@ inline void append(Points& points, const Points& more) {
   points.z.insert(points.z.end(), more.z.begin(), more.z.end());
 }
 
-/// Precondition: both know the same of their points, or `cloud` is empty. O(more)
+/// Precondition: both clouds have the same columns, or `cloud` is empty. O(more)
 inline void append(PointCloud& cloud, const PointCloud& more) {
   append(cloud.positions, more.positions);
   append(cloud.normals, more.normals);

@@ -15,9 +15,9 @@
 namespace cloud2csg {
 namespace {
 
-/// Halvings of a side of the start box down to the smallest cells: 1/256.
+/// How often the search halves a side of the start box: the smallest cells are 1/256 of it.
 constexpr int k_levels = 8;
-/// Cells to divide per side of the bounds before the search settles for what it has.
+/// Cells that the search divides for one side of the bounds before it settles for a looser bound.
 constexpr int k_cell_budget = 256;
 
 struct Interval {
@@ -29,7 +29,6 @@ Interval product(const Interval& a, const Interval& b) {
   return {low, high};
 }
 
-/// All values of the sine between two angles.
 Interval sine_range(double from, double to) {
   const auto has_turn_at = [&](double angle) {
     const double turns = std::ceil((from - angle) / (2 * std::numbers::pi));
@@ -39,14 +38,14 @@ Interval sine_range(double from, double to) {
   return {has_turn_at(-0.5 * std::numbers::pi) ? -1 : low, has_turn_at(0.5 * std::numbers::pi) ? 1 : high};
 }
 
-/// A part of the start box, as far as `level` halvings led; `reach` is how far it extends in the search's direction.
+/// A part of the start box after `level` halvings. `reach` is how far it extends in the search's direction.
 struct Cell {
   Eigen::Vector3d centre;
   int level;
   double reach;
-  double least_distance;  ///< of the displaced solid in the cell, or below
+  double least_distance;  ///< lower bound of the displaced solid's distance in the cell
 
-  /// The farther first; among equals the one that is most likely to hold a point of the solid.
+  /// The farther first; among equals the cell that more likely holds a point of the solid.
   friend bool operator<(const Cell& a, const Cell& b) {
     return a.reach != b.reach ? a.reach < b.reach : a.least_distance > b.least_distance;
   }
@@ -68,7 +67,7 @@ class BoundsSearch {
     cells.push({start_.center(), 0, reach(start_.center(), 0, axis, sign), -1});
     for (int divided = 0; !cells.empty(); ++divided) {
       const Cell cell = cells.top();
-      // Whatever else is left reaches less far.
+      // No other cell reaches farther.
       if (cell.level == k_levels || divided == k_cell_budget) return cell.reach;
       cells.pop();
       for (const Cell& child : children(cell, axis, sign)) {
@@ -100,7 +99,7 @@ class BoundsSearch {
     return result;
   }
 
-  /// The least value of the product of sines in the solid's own box around a cell of the world.
+  /// The least product of sines in a box along the solid's axes around a cell of the world.
   [[nodiscard]] double least_displacement(const Eigen::Vector3d& centre, const Eigen::Vector3d& half) const {
     const Eigen::Vector3d angle = frequency_ * undisplaced_.pose.to_local(centre);
     const Eigen::Vector3d change = frequency_ * (spread_ * half);
@@ -113,13 +112,13 @@ class BoundsSearch {
 
   Primitive undisplaced_;
   double frequency_;
-  Eigen::Matrix3d spread_;  ///< from half sizes in the world to half sizes in the solid's frame
+  Eigen::Matrix3d spread_;  ///< turns half sizes in the world into half sizes in the solid's frame
   AlignedBox start_;
 };
 
-/// Bounds of a displaced solid that lies within `start`, by branch and bound over `start` for each of the six sides.
-/// Encloses for sure; each side is tight to a two-hundredth of `start`, or looser where the search would take too long.
-/// Precondition: the undisplaced distance changes no faster than the point, as with every shape but an Expression.
+/// Bounds of a displaced solid that lies within `start`, by branch and bound for each of the six sides. They always
+/// enclose the solid. Each side is tight to a two-hundredth of `start`, or looser where the search would take too long.
+/// Precondition: the undisplaced distance has the Lipschitz constant 1, as with every shape but an Expression.
 AlignedBox displaced_bounds(const Primitive& primitive, const AlignedBox& start) {
   assert(primitive.displacement);
   const BoundsSearch search(primitive, start);
@@ -141,7 +140,7 @@ AlignedBox box_of_corners(const Polytope& polytope, const Pose& pose) {
   return box;
 }
 
-/// Half the extent, along each axis of the world, of a disk whose unit normal is `axis`.
+/// Half the extent of a disk with unit normal `axis`, along each axis of the world.
 Eigen::Vector3d disk_extent(const Eigen::Vector3d& axis, double radius) {
   return radius * (1.0 - axis.array().square()).max(0.0).sqrt();
 }
@@ -155,7 +154,6 @@ AlignedBox cone_bounds(const Cone& cone, const Pose& pose) {
   return box.extend(pose.position + arm - top).extend(pose.position + arm + top);
 }
 
-/// The bounds of the undisplaced shape, in the world.
 AlignedBox shape_bounds(const Shape& shape, const Pose& pose) {
   const auto enclosing = [&pose](const AlignedBox& local) {
     const Pose centre{.position = pose.to_world(local.center()), .orientation = pose.orientation};
@@ -182,18 +180,18 @@ AlignedBox shape_bounds(const Shape& shape, const Pose& pose) {
                     shape);
 }
 
-/// Bounds of where the undisplaced distance is at most so much.
+/// Bounds of the region where the undisplaced distance is at most `distance`.
 AlignedBox reach_of_shape(const Shape& shape, const Pose& pose, double distance) {
   if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Expression>(shape)) return everywhere();
-  // Outside, near edges and corners, its distance is below the Euclidean one.
+  // Outside, near edges and corners, a polytope's distance is below the Euclidean one.
   if (const auto* polytope = std::get_if<Polytope>(&shape)) return box_of_corners(grown(*polytope, distance), pose);
   return grown(shape_bounds(shape, pose), distance);
 }
 
-/// The most that a displacement adds to a distance or takes from it.
+/// The largest change of a distance by a displacement.
 constexpr double k_amplitude = 1.0;
 
-/// The point of a disk across local z that is farthest in `direction`; any where all are alike.
+/// The point of a disk across local z that is farthest in `direction`; any where all are equally far.
 Eigen::Vector3d disk_support(double radius, double z, const Eigen::Vector3d& direction) {
   const double across = std::hypot(direction.x(), direction.y());
   if (across == 0) return {radius, 0, z};
@@ -218,7 +216,7 @@ Eigen::Vector3d polytope_support(const Polytope& polytope, const Eigen::Vector3d
 }  // namespace
 
 AlignedBox bounds(const Primitive& primitive) {
-  // The bounds of an expression are its author's word on the displaced solid.
+  // The bounds of an expression are its author's claim about the displaced solid.
   if (!primitive.displacement || std::holds_alternative<HalfSpace>(primitive.shape) ||
       std::holds_alternative<Expression>(primitive.shape)) {
     return shape_bounds(primitive.shape, primitive.pose);

@@ -13,10 +13,9 @@ namespace cloud2csg {
 using IndexPoint = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
 using IndexBox = boost::geometry::model::box<IndexPoint>;
 using IndexEntry = std::pair<IndexBox, PrimitiveIndex>;
-/// Made from a range of entries, it is packed: O(n log n).
+/// Construction from a range of entries packs the tree: O(n log n).
 using BoundsIndex = boost::geometry::index::rtree<IndexEntry, boost::geometry::index::quadratic<16>>;
 
-/// The box, grown by a margin on every side.
 [[nodiscard]] inline IndexBox to_index_box(const AlignedBox& box, double margin) {
   const auto corner = [margin](const Eigen::Vector3d& p, double sign) {
     return IndexPoint(p.x() + sign * margin, p.y() + sign * margin, p.z() + sign * margin);

@@ -8,8 +8,7 @@
 
 #include "core/primitive/solids-inl.hpp"
 
-/// The sine term that some solids add to their distance, with sine and cosine of our own: those of the C library
-/// differ between machines and take one number at a time.
+/// The sine term of displaced solids, with our own sine and cosine: the C library's differ by machine and are scalar.
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 
@@ -18,8 +17,7 @@ struct SineCosine {
   V sine, cosine;
 };
 
-/// Sine and cosine at once. Within 1e-15 for |x| < 1e4; beyond about 1e6 the angle is no longer reduced exactly, but
-/// the values stay within [-1, 1].
+/// Within 1e-15 for |x| < 1e4. Beyond about 1e6 the reduction is no longer exact, but values stay within [-1, 1].
 template <class Tag>
 class SineCosineFormula {
  public:
@@ -28,8 +26,8 @@ class SineCosineFormula {
   explicit HWY_INLINE SineCosineFormula(Tag tag) : tag_(tag), one_(all(1.0)) {}
 
   HWY_INLINE SineCosine<V> at(V x) const {
-    // x = quarters * pi / 2 + rest, |rest| <= pi / 4, with pi / 2 in three parts whose products with a count below
-    // 2^20 are exact (Cody and Waite; the parts are those of fdlibm).
+    // x = quarters * pi / 2 + rest, |rest| <= pi / 4 (Cody and Waite). pi / 2 is in three parts, those of fdlibm, whose
+    // products with a count below 2^20 are exact.
     const V quarters = rounded(x * all(0.63661977236758134308));
     const V high = x - quarters * all(1.57079632673412561417e+00);
     const V middle = high - quarters * all(6.07710050630396597660e-11);
@@ -52,7 +50,7 @@ class SineCosineFormula {
  private:
   HWY_INLINE V all(double value) const { return broadcast(tag_, value); }
 
-  /// To the nearest integer, for magnitudes below 2^51: adding 1.5 * 2^52 leaves no room for a fraction.
+  /// Rounds to the nearest integer, for magnitudes below 2^51: adding 1.5 * 2^52 leaves no room for a fraction.
   HWY_INLINE V rounded(V x) const {
     const V shift = all(6755399441055744.0);
     return (x + shift) - shift;
@@ -85,8 +83,7 @@ class SineCosineFormula {
   V one_;
 };
 
-/// sin(kx) sin(ky) sin(kz) in the solid's frame, added to a field. Where the sum of the gradients vanishes the
-/// gradient of the undisplaced solid is kept, so that it can always be normalised.
+/// Adds sin(kx) sin(ky) sin(kz) in the solid's frame. Keeps the undisplaced gradient where the sum vanishes.
 template <class Tag>
 class DisplacementFormula {
  public:

@@ -100,7 +100,7 @@ void validate_formula(const std::string& formula) {
 }
 
 void evaluate_expression(const Primitive& primitive, PointsView points, const FieldSpans& out) {
-  // A parser of its own for each batch: parsers are not shared between threads.
+  // Each batch has its own parser, because threads cannot share one.
   ExpressionEvaluator evaluator(std::get<Expression>(primitive.shape));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d local = primitive.pose.to_local(points[i]);

@@ -8,11 +8,10 @@
 
 namespace cloud2csg {
 
-/// What a formula without a value at a point counts as there: far outside. Finite, so that what is computed from it is.
+/// The distance where a formula has no value: far outside. It is finite, so that values computed from it are finite.
 inline constexpr double k_no_distance = 1e30;
 
-/// A parsed formula of x, y and z. It holds the variables that its parser reads, so it stays where it was made and
-/// serves one thread.
+/// A parsed formula of x, y and z. Its parser reads its variables by address, so it cannot move. It serves one thread.
 class ExpressionEvaluator {
  public:
   /// @throws Error (where = "distance") when the formula does not parse.
@@ -23,7 +22,7 @@ class ExpressionEvaluator {
   ExpressionEvaluator(ExpressionEvaluator&&) = delete;
   ExpressionEvaluator& operator=(ExpressionEvaluator&&) = delete;
 
-  /// Within +-k_no_distance; that itself where the formula is not a number.
+  /// Clamped to +-k_no_distance; k_no_distance where the formula is not a number.
   [[nodiscard]] double value(const Eigen::Vector3d& local);
 
   /// Central differences; local z where they vanish or are not finite.
@@ -39,9 +38,9 @@ class ExpressionEvaluator {
 /// gives more than one value.
 void validate_formula(const std::string& formula);
 
-/// The fields of an Expression, without displacement, a point at a time. Spans have the size of `points`; an empty
-/// gradient is not computed. Shared by the plain and the fast path: a formula that is only known as text has no
-/// vectors. Precondition: the shape is an Expression. @throws Error when the formula does not parse.
+/// Evaluates an Expression without displacement, one point at a time. Spans have the size of `points`; empty ones are
+/// not computed. The plain and the fast path share this, because a formula that is only known as text has no vectors.
+/// Precondition: the shape is an Expression. @throws Error when the formula does not parse.
 void evaluate_expression(const Primitive& primitive, PointsView points, const FieldSpans& out);
 
 }  // namespace cloud2csg

@@ -42,7 +42,7 @@ HWY_INLINE void store_field(const Field<FastLanes<Real>>& field, const BasicFiel
   hn::StoreU(field.gradient.z, tag, &out.gradient_z[i]);
 }
 
-/// A partial vector of points and fields, filled up with zeros.
+/// A partial vector of points and fields, padded with zeros.
 template <class Real>
 class Padded {
  public:
@@ -74,7 +74,7 @@ class Padded {
   std::array<std::array<Real, k_most_lanes>, k_rows> rows_ = {};
 };
 
-/// Applies `kernel` to whole vectors of points, the last and partial one by way of a padded copy.
+/// Applies `kernel` to whole vectors of points. The last, partial one goes through a padded copy.
 template <class Real, class Kernel>
 HWY_INLINE void for_each_vector(BasicPointsView<Real> points, const BasicFieldSpans<Real>& out, const Kernel& kernel) {
   const std::size_t lanes = hn::Lanes(FastTag<Real>());
@@ -203,7 +203,7 @@ void evaluate_distance(const Primitive& primitive, PointsView points, std::span<
 
 namespace {
 
-/// For what has no formula in single precision.
+/// For primitives that have no formula in single precision.
 void evaluate_in_double(const Primitive& primitive, BasicPointsView<float> points, const BasicFieldSpans<float>& out) {
   Points wide;
   wide.x.assign(points.x.begin(), points.x.end());

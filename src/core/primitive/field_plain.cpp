@@ -4,7 +4,7 @@
 #include "core/primitive/expression.hpp"
 #include "core/primitive/formulas-inl.hpp"
 
-// The plain reference: the formulas for one double at a time, without any vector instructions of ours.
+// The plain reference: the formulas for one double at a time, without vector instructions of our own.
 namespace cloud2csg {
 namespace {
 

@@ -12,7 +12,6 @@
 #include "core/primitive/revolved-inl.hpp"
 #include "core/primitive/solids-inl.hpp"
 
-/// From a primitive to its formula.
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 
@@ -25,8 +24,7 @@ void run_placed(Tag tag, const Solid& solid, const Placement& placement, const L
   }
 }
 
-/// Calls loop.run(tag, formula) with the formula of the primitive's shape, without its displacement.
-/// Precondition: the shape is not an Expression.
+/// Calls loop.run(tag, formula) with the formula of the undisplaced shape. Precondition: it is not an Expression.
 template <class Tag, class Loop>
 void run_formula(Tag tag, const Primitive& primitive, const Placement& placement, const Loop& loop) {
   const Shape& shape = primitive.shape;

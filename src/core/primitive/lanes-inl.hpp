@@ -10,10 +10,9 @@
 
 #include <cmath>
 
-/// The few operations in which the formulas are written, for one double (tag PlainTag) and for a Highway vector of
-/// doubles or floats (tag hn::ScalableTag<double>, <float>). All are exact in the sense of IEEE 754 and choose alike
-/// between equal operands and between zeros of either sign, so that one formula gives the same bits in every
-/// instruction set.
+/// The operations that the formulas use, for one double (tag PlainTag) and for a Highway vector of doubles or floats
+/// (tag hn::ScalableTag<double>, <float>). All are exact in the sense of IEEE 754 and choose alike between equal
+/// operands and between zeros of either sign, so that a formula gives the same bits in every instruction set.
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -71,7 +70,7 @@ HWY_INLINE V absolute(V a) {
   return hn::Abs(a);
 }
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
-// x86's minpd and maxpd are just the comparison below: the second operand where both are equal.
+// x86's minpd and maxpd are exactly the comparison below: the second operand where both are equal.
 template <class V>
 HWY_INLINE V smaller(V a, V b) {
   return hn::Min(a, b);
@@ -128,14 +127,14 @@ struct Vector {
   V x, y, z;
 };
 
-/// Signed distance and its gradient, each in one value per lane.
+/// Signed distance and its gradient, one point per lane.
 template <class V>
 struct Field {
   V distance;
   Vector<V> gradient;
 };
 
-/// Squares below this count as zero. Their roots still have room to be multiplied and inverted without overflow.
+/// Squares below this count as zero. Roots of larger squares can be multiplied and inverted without overflow.
 HWY_INLINE double tiny_square(PlainTag /*tag*/) {
   return 1e-280;
 }

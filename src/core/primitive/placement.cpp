@@ -10,7 +10,7 @@ std::array<double, 3> to_array(const Eigen::Vector3d& v) {
 }  // namespace
 
 Placement placement_of(const Pose& pose) {
-  // Poses read from files are of unit length to about six digits only.
+  // Poses from files have unit length to about six digits only.
   const Eigen::Matrix3d rotation = pose.orientation.normalized().toRotationMatrix();
   return {.x_axis = to_array(rotation.col(0)),
           .y_axis = to_array(rotation.col(1)),

@@ -7,16 +7,16 @@
 
 namespace cloud2csg {
 
-/// A pose in the form that the kernels read: the solid's own axes as unit vectors of the world.
-/// Plain arrays, because the kernels are compiled once per instruction set and Eigen is not.
+/// A pose as the kernels read it: the solid's own axes as unit vectors of the world. Plain arrays, because the kernels
+/// are compiled once per instruction set and Eigen is not.
 struct Placement {
   std::array<double, 3> x_axis, y_axis, z_axis, position;
-  bool is_unrotated;  ///< the axes are exactly those of the world: kernels skip the rotation
+  bool is_unrotated;  ///< the axes are exactly the world's: kernels skip the rotation
 };
 
 [[nodiscard]] Placement placement_of(const Pose& pose);
 
-/// normal . x <= offset in the world, in the form that the kernels read.
+/// The half-space normal . x <= offset in the world, as the kernels read it.
 struct WorldPlane {
   double normal_x, normal_y, normal_z, offset;
 };

@@ -11,14 +11,14 @@
 namespace cloud2csg {
 namespace {
 
-/// Planes whose normals span a smaller volume than this meet too far away, or not at all.
+/// Three planes whose normals span a smaller volume meet too far away, or not at all.
 constexpr double k_parallel = 1e-9;
 
 [[noreturn]] void refuse(std::string where, std::string expected, std::string remedy) {
   throw Error({.where = std::move(where), .expected = std::move(expected), .remedy = std::move(remedy)});
 }
 
-/// How exactly a point can be said to lie on a plane.
+/// The distance from a plane up to which a point lies on it.
 double tolerance_of(const Polytope& polytope) {
   double largest = 0;
   for (const Plane& plane : polytope.planes) largest = std::max(largest, std::abs(plane.offset));
@@ -30,8 +30,7 @@ bool is_within(const Polytope& polytope, const Eigen::Vector3d& point, double to
                              [&](const Plane& plane) { return plane.normal.dot(point) <= plane.offset + tolerance; });
 }
 
-/// Whether some direction leads away without ever meeting a plane. If so, one that lies in two of the planes does, or
-/// the normals do not span space.
+/// Whether some direction never meets a plane: one along two of the planes, unless the normals do not span space.
 bool is_unbounded(const Polytope& polytope) {
   const std::vector<Plane>& planes = polytope.planes;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -95,7 +94,7 @@ std::vector<Eigen::Vector3d> corners(const Polytope& polytope) {
             (planes[a].offset * planes[b].normal.cross(planes[c].normal) +
              planes[b].offset * planes[c].normal.cross(planes[a].normal) + planes[c].offset * edge) /
             volume;
-        // Where more than three planes meet, each three of them give the same corner.
+        // Where more than three planes meet, every three of them give the same corner.
         const bool is_known = std::ranges::any_of(found, [&](const Eigen::Vector3d& other) {
           return (other - corner).squaredNorm() <= tolerance * tolerance;
         });
@@ -122,14 +121,14 @@ void validate_polytope(const Polytope& polytope) {
   const std::vector<Eigen::Vector3d> points = corners(polytope);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& corner : points) middle += corner / static_cast<double>(points.size());
-  // The corners' mean is strictly inside exactly when the solid has volume.
+  // The mean of the corners is strictly inside exactly when the solid has volume.
   if (points.size() < 4 || !is_within(polytope, middle, -tolerance_of(polytope))) {
     refuse("planes", "planes whose half-spaces have a common volume", "check the signs of normals and offsets");
   }
 }
 
 PolytopeFaces faces_of(const Polytope& polytope) {
-  constexpr double k_on_plane = 1e-9;  // as a part of the size
+  constexpr double k_on_plane = 1e-9;  // as a share of the size
   PolytopeFaces result{.corners = corners(polytope), .faces = {}};
   AlignedBox box;
   for (const Eigen::Vector3d& corner : result.corners) box.extend(corner);

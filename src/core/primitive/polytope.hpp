@@ -11,7 +11,7 @@ namespace cloud2csg {
 /// planes' half-spaces have no bounded intersection with volume. O(planes^4).
 void validate_polytope(const Polytope& polytope);
 
-/// The polytope with every plane moved outward by `distance`: where the largest of the planes' distances is below it.
+/// The polytope with every plane moved outward: where the largest distance from a plane is below `distance`.
 [[nodiscard]] Polytope grown(const Polytope& polytope, double distance);
 
 /// The surface of a polytope, in its own frame.
@@ -20,7 +20,7 @@ struct PolytopeFaces {
   std::vector<std::vector<std::size_t>> faces;  ///< corner numbers counter-clockwise seen from outside
 };
 
-/// Planes that only touch the solid have no face; of those that are given twice, one has.
+/// Planes that only touch the solid have no face. A plane that is given twice has one face.
 [[nodiscard]] PolytopeFaces faces_of(const Polytope& polytope);
 
 }  // namespace cloud2csg

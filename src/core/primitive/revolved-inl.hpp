@@ -10,17 +10,16 @@
 
 #include "core/primitive/solids-inl.hpp"
 
-/// Solids of revolution about local z: a formula in the half plane (r, z), r >= 0, turned into one in space.
+/// Solids of revolution about local z, each from a formula in the half plane (r, z), r >= 0.
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 
-/// What a profile says at a point of the half plane. The gradient is direction / length: the division is left to the
-/// caller, who needs one by r as well and does both at once.
+/// The gradient is direction / length. The caller divides, because it also divides by r and does both at once.
 template <class V>
 struct ProfileField {
   V distance;
   V direction_r, direction_z;
-  V length;  ///< of the direction, never zero
+  V length;  ///< length of the direction, never zero
 };
 
 /// The rectangle r <= radius, |z| <= height / 2.
@@ -54,7 +53,7 @@ class CylinderProfile {
   V radius_, half_height_, zero_, one_, tiny_;
 };
 
-/// A trapezoid with one side on the axis: the nearer of the cap on the point's side and the slanted edge.
+/// A trapezoid with one side on the axis: the nearer of the slanted edge and the cap on the point's side.
 template <class Tag>
 class ConeProfile {
  public:
@@ -84,7 +83,7 @@ class ConeProfile {
     const V outward = select(is_inside, minus_one_, one_);
     const V distance = select_or_zero(is_regular, length);
 
-    // From the nearest point of the edge to the point, turned outward; on the edge, the edge's normal.
+    // From the nearest point of the edge to the point, turned outward. On the edge, the edge's normal.
     const V across_or_unit = select(is_regular, across * outward, one_);
     const V beyond_outward = select_or_zero(is_regular, beyond * outward);
     const V slant_r = beyond_outward * tangent_r_ + across_or_unit * tangent_z_;
@@ -135,7 +134,7 @@ class TorusProfile {
   V major_radius_, minor_radius_, one_, tiny_;
 };
 
-/// The solid that a profile makes when turned about local z. On the axis the radial direction is taken as local x.
+/// The solid of revolution of a profile about local z. On the axis the radial direction is local x.
 template <class Tag, class Profile>
 class Revolved {
  public:

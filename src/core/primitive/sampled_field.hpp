@@ -6,13 +6,11 @@
 
 namespace cloud2csg {
 
-/// A primitive's field at some points.
 struct SampledField {
   std::vector<double> distances;
   Points slopes;
 
-  /// From the surface to the point, were the field linear: what a step of Newton's takes from it. Precondition: there
-  /// is a slope.
+  /// The vector from the surface if the field were linear (Newton's step). Precondition: the slope is not zero.
   [[nodiscard]] Eigen::Vector3d offset(std::size_t point) const {
     const Eigen::Vector3d slope = slopes[point];
     return distances[point] / slope.squaredNorm() * slope;

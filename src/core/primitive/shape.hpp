@@ -14,8 +14,7 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
-/// The lengths that make a solid of a kind, in the order of its struct: sizes, radii, heights. None for the kinds that
-/// are not made by a fixed number of lengths.
+/// Sizes, radii and heights in the order of the struct. Empty for shapes without a fixed number of lengths.
 [[nodiscard]] std::vector<double> lengths_of(const Shape& shape);
 
 }  // namespace cloud2csg

@@ -12,9 +12,9 @@
 #include "core/primitive/lanes-inl.hpp"
 #include "core/primitive/placement.hpp"
 
-/// Distance formulas of the solids that are not solids of revolution, and the frames that place a solid.
-/// A formula is built once per batch of points (it holds its parameters in all lanes) and applied to each vector of
-/// points; it has no branches, and gives a unit gradient where the distance is not differentiable.
+/// Distance formulas of the solids that are not solids of revolution, and the frames that place a solid. A formula is
+/// built once per batch of points, holds its parameters in all lanes and applies to each vector of points. It has no
+/// branches, and gives a unit gradient where the distance is not differentiable.
 HWY_BEFORE_NAMESPACE();
 namespace cloud2csg::HWY_NAMESPACE {
 
@@ -33,7 +33,6 @@ HWY_INLINE Vector<V> difference(const Vector<V>& a, const Vector<V>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// The frame of a solid with any orientation.
 template <class Tag>
 class RotatedFrame {
  public:
@@ -60,7 +59,7 @@ class RotatedFrame {
   Vector<V> x_axis_, y_axis_, z_axis_, position_;
 };
 
-/// The frame of a solid that is only shifted: a third of the arithmetic of a box.
+/// The frame of a solid that is only shifted. Skipping the rotation saves a third of the arithmetic of a box.
 template <class Tag>
 class ShiftedFrame {
  public:
@@ -75,7 +74,7 @@ class ShiftedFrame {
   Vector<V> position_;
 };
 
-/// A solid, given by a formula in its own frame, in the world.
+/// Places a solid, which a formula gives in its own frame, in the world.
 template <class Frame, class Solid>
 class Placed {
  public:
@@ -93,7 +92,7 @@ class Placed {
   Solid solid_;
 };
 
-/// Length of the part outside, or the nearest face's plane from inside; gradient of the same.
+/// Outside, the length of the excess beyond the faces. Inside, the distance from the nearest face's plane.
 template <class Tag>
 class BoxFormula {
  public:
@@ -132,7 +131,7 @@ class BoxFormula {
   V zero_, one_, tiny_;
 };
 
-/// Needs no orientation, so it is written in the world. The gradient at the centre points along z.
+/// Works in the world, since a sphere needs no orientation. The gradient at the centre points along z.
 template <class Tag>
 class SphereFormula {
  public:
@@ -172,8 +171,8 @@ class HalfSpaceFormula {
   Vector<V> normal_, position_;
 };
 
-/// The largest of the planes' distances: exact inside and before a face, a lower bound elsewhere. The planes are those
-/// of the world and must outlive the formula.
+/// The largest of the planes' distances: exact inside and before a face, a lower bound elsewhere. The planes are in the
+/// world and must outlive the formula.
 template <class Tag>
 class PolytopeFormula {
  public:

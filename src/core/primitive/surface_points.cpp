@@ -35,7 +35,7 @@ Vector3d on_disc(double radius, double z, RandomStream& random) {
   return {distance * std::cos(angle), distance * std::sin(angle), z};
 }
 
-/// Makes surfaces in the primitive's own frame; the caller places them in the world.
+/// Makes surfaces in the primitive's own frame. The caller places them in the world.
 class LocalSurface {
  public:
   LocalSurface(const Pose& pose, const AlignedBox& region) : pose_(pose), region_(region) {}
@@ -93,7 +93,7 @@ class LocalSurface {
     const double major = torus.major_radius;
     const double minor = torus.minor_radius;
     const auto draw = [major, minor](RandomStream& random) {
-      // The ring at angle `around` of the tube is the longer the farther it is from the axis: keep by its length.
+      // A ring of the tube is longer the farther it is from the axis: accept `around` in proportion to its length.
       double around = random_angle(random);
       while (!random.chance((major + minor * std::cos(around)) / (major + minor))) around = random_angle(random);
       const double angle = random_angle(random);
@@ -105,7 +105,7 @@ class LocalSurface {
   }
 
   PrimitiveSurface operator()(const HalfSpace& /*half_space*/) const {
-    // The disc in which the plane cuts the ball around the region.
+    // The plane cuts the ball around the region in this disc.
     const Vector3d centre = pose_.to_local(region_.center());
     const double square = 0.25 * region_.diagonal().squaredNorm() - centre.z() * centre.z();
     if (square <= 0.0) return {};
@@ -131,11 +131,11 @@ class LocalSurface {
 
  private:
   static SurfacePoint on_side(const Cone& cone, double slant, RandomStream& random) {
-    // The ring at a height is as long as its radius: the square of the radius is uniform.
+    // A ring is as long as its radius, so the square of the radius is uniform.
     const double bottom = cone.radius_bottom;
     const double top = cone.radius_top;
     const double radius = std::sqrt(bottom * bottom + random.uniform() * (top * top - bottom * bottom));
-    // Near a cylinder the quotient loses its digits; there the height is as good as uniform.
+    // Near a cylinder the quotient loses its digits. The height is practically uniform then.
     constexpr double k_nearly_equal = 1e-6;
     const bool is_cylinder = std::abs(top - bottom) < k_nearly_equal * (top + bottom);
     const double share = is_cylinder ? random.uniform() : (radius - bottom) / (top - bottom);
@@ -196,7 +196,7 @@ TriangleSampler::TriangleSampler(const Points& vertices, std::span<const std::ar
 
 TriangleSampler::Draw TriangleSampler::draw(RandomStream& random) const {
   const double target = random.uniform() * area();
-  // The rounding of the product may reach the end of the last triangle: step back to one with area.
+  // Rounding of the product may reach the end of the last triangle: step back to one with area.
   auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(), target);
   if (found == cumulative_area_.end()) found = std::lower_bound(cumulative_area_.begin(), found, area());
   const auto index = static_cast<std::size_t>(found - cumulative_area_.begin());

@@ -19,7 +19,7 @@ using Triangle = std::array<Eigen::Vector3d, 3>;
 class TriangleSampler {
  public:
   explicit TriangleSampler(std::vector<Triangle> triangles);
-  /// Of a mesh: `corners` are places in `vertices`.
+  /// Samples a mesh. `corners` are indices of `vertices`.
   TriangleSampler(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners);
 
   struct Draw {
@@ -30,7 +30,7 @@ class TriangleSampler {
   [[nodiscard]] Draw draw(RandomStream& random) const;
 
   [[nodiscard]] double area() const { return cumulative_area_.empty() ? 0.0 : cumulative_area_.back(); }
-  /// By the winding; zero for a triangle without area, which is never drawn.
+  /// By the winding. Zero for a triangle without area, which is never drawn.
   [[nodiscard]] Eigen::Vector3d normal(std::size_t triangle) const;
 
  private:
@@ -38,7 +38,7 @@ class TriangleSampler {
   std::vector<double> cumulative_area_;
 };
 
-/// A point of a primitive's own surface and the outward normal of that primitive there, in the world.
+/// A point on a primitive's own surface and the primitive's outward normal there, in the world.
 struct SurfacePoint {
   Eigen::Vector3d position;
   Eigen::Vector3d normal;
@@ -48,13 +48,12 @@ struct SurfacePoint {
 struct PrimitiveSurface {
   double area = 0.0;  ///< 0 when no part of it lies in the region
   std::function<SurfacePoint(RandomStream&)> draw = {};
-  /// Drawn points are no farther from the surface. 0: they are on it; else they are to be moved onto it, see
-  /// move_onto_surface().
+  /// Upper bound of the drawn points' distance from the surface. If not 0, move them by move_onto_surface().
   double reach = 0.0;
 };
 
-/// Closed forms, of the shape without its displacement; a half-space gives the part of its plane around `region`
-/// (finite). No area for expressions.
+/// The surface of the shape without its displacement, in closed form. A half-space gives the part of its plane around
+/// `region` (finite). Expressions have no area.
 [[nodiscard]] PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region);
 
 }  // namespace cloud2csg

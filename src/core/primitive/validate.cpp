@@ -54,7 +54,7 @@ void validate_expression(const Expression& expression) {
   }
   validate_formula(expression.distance);
   ExpressionEvaluator evaluator(expression);
-  // A formula that has no value somewhere inside its own bounds is better refused now than found in a result.
+  // Refuse now a formula that has no value somewhere in its bounds, rather than find it in a result.
   const Eigen::Vector3d step = 0.25 * box.sizes();
   for (int x = 0; x <= 4; ++x) {
     for (int y = 0; y <= 4; ++y) {

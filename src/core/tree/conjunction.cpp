@@ -6,7 +6,7 @@
 namespace cloud2csg {
 namespace {
 
-/// What is still to be written while a tree is taken apart: a node, plain or complemented, or a closing token.
+/// Work left while a tree is taken apart: a node, plain or complemented, or a closing token.
 struct Pending {
   std::size_t node;
   bool is_complemented;
@@ -54,7 +54,7 @@ class FormulaWriter {
   }
 
   void write_binary(std::size_t index, Operation operation, bool is_complemented) {
-    // ~(x | y) = ~x & ~y, x & y and x - y = x & ~y join the open conjunction; their complements are one of their own.
+    // ~(x | y) = ~x & ~y, x & y and x - y = x & ~y join the open conjunction. Their complements open their own.
     const bool joins = (operation == Operation::union_of) == is_complemented;
     if (!joins) {
       formula_.tokens.push_back(k_open);
@@ -71,10 +71,9 @@ class FormulaWriter {
   std::vector<Pending> pending_;
 };
 
-/// Writes every conjunction, or its complement, as a bounded solid: one that leaves out the points outside of all
-/// primitives. Bounded members are intersected, the complements of unbounded ones united and subtracted; where all are
-/// unbounded, so is the conjunction, and its complement is the union of theirs. So complements are needed at the root
-/// only.
+/// Writes every conjunction, or its complement, as a bounded solid, which leaves out the points outside of all
+/// primitives. Intersects the bounded members and subtracts the union of the unbounded members' complements. Where all
+/// members are unbounded, so is the conjunction, and its complement is that union. So only the root needs a complement.
 class TreeWriter {
  public:
   explicit TreeWriter(const Formula& formula) : formula_(formula), tokens_(formula.tokens) {}
@@ -94,9 +93,9 @@ class TreeWriter {
   struct Frame {
     std::uint32_t open;
     std::uint32_t at;         ///< next member to look at
-    Phase phase;              ///< bounded members are written first, then the others
+    Phase phase;              ///< bounded members come first, then the others
     std::size_t begin;        ///< where this conjunction's nodes begin
-    std::size_t chain_begin;  ///< where the nodes of the chain in the making begin
+    std::size_t chain_begin;  ///< where the nodes of the current chain begin
   };
 
   void measure() {
@@ -146,7 +145,7 @@ class TreeWriter {
     }
   }
 
-  /// Joins the member written last to the chain before it, if there are both.
+  /// Joins the last member to the chain before it, if there are both.
   void join_chain(const Frame& frame, Operation chain) {
     const std::size_t length = nodes_.size() - frame.chain_begin;
     if (length < 2 || nodes_.back().length() == length) return;

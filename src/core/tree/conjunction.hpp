@@ -9,15 +9,15 @@
 #include "cloud2csg/csg_tree.hpp"
 #include "core/tree/interner.hpp"
 
-/// The n-ary form that simplify() works on: a conjunction of literals and of negated conjunctions of the same kind.
-/// Every formula of unions, intersections, differences and complements is one: a & b = [a b], a - b = [a ~b],
-/// a | b = [~[~a ~b]], so each rule of set algebra and its dual are one rule here.
+/// The n-ary form that simplify() works on: a conjunction of literals and of negated conjunctions of the same kind. It
+/// expresses unions, intersections, differences and complements: a & b = [a b], a - b = [a ~b], a | b = [~[~a ~b]]. So
+/// each rule of set algebra and its dual are one rule here.
 ///
-/// It is kept as a flat sequence of tokens: `k_open`, what the conjunction holds, `k_close`. The outermost conjunction
-/// is the formula itself; every inner one counts as negated. [] is all of space, [[]] is empty.
+/// A formula is a flat sequence of tokens: `k_open`, the conjunction's members, `k_close`. The outermost conjunction is
+/// the formula itself; every inner one counts as negated. [] is all of space, [[]] is empty.
 namespace cloud2csg {
 
-/// An index or a count that is known to fit, as it is kept.
+/// Narrows an index or a count that is known to fit.
 [[nodiscard]] constexpr std::uint32_t narrow(std::size_t n) {
   return static_cast<std::uint32_t>(n);
 }
@@ -26,7 +26,7 @@ using Token = std::uint32_t;
 constexpr Token k_open = 0xffffffffU;
 constexpr Token k_close = 0xfffffffeU;
 
-/// 2 * primitive for the primitive, plus 1 for its complement. Primitives are numbered densely within a formula.
+/// 2 * primitive, plus 1 for its complement. Primitives are numbered densely within a formula.
 using Literal = Token;
 [[nodiscard]] constexpr Literal negated(Literal literal) {
   return literal ^ 1U;
@@ -45,29 +45,29 @@ struct Formula {
 
 /// O(size log size).
 [[nodiscard]] Formula to_formula(const CsgTree& tree);
-/// The smallest tree that says the same literals in the same order: 2 * literals - 1 nodes, one more (a complement at
-/// the root) when the solid is unbounded, that is, holds the points outside of all primitives. O(size). Precondition:
-/// every inner conjunction holds two members or more, or the formula is [[]].
+/// The smallest tree with the same literals in the same order: 2 * literals - 1 nodes, and a complement at the root
+/// when the solid is unbounded, that is, holds the points outside of all primitives. O(size). Precondition: every inner
+/// conjunction holds two members or more, or the formula is [[]].
 [[nodiscard]] CsgTree to_tree(const Formula& formula);
 
-/// Where conjunctions end and which are equal up to order. Members are told apart by **codes**: that of a literal is
-/// itself, that of an inner conjunction follows from its class.
+/// Where conjunctions end and which are equal up to order. Each member has a **code**: a literal is its own code, and
+/// the code of an inner conjunction follows from its class.
 class FormulaIndex {
  public:
-  /// Reads a formula anew, reusing the memory. O(size log size).
+  /// Indexes a formula, reusing the memory. O(size log size).
   void build(const Formula& formula);
 
-  /// The token after a member: after a literal, or after the closing token of the conjunction that opens here.
+  /// The token after a literal, or after the closing token of the conjunction that opens at `member`.
   [[nodiscard]] std::uint32_t next(std::uint32_t member) const { return next_[member]; }
   [[nodiscard]] std::uint32_t code(std::uint32_t member) const { return code_[member]; }
   [[nodiscard]] std::uint32_t class_of(std::uint32_t open) const { return code_[open] - first_class_code_; }
   /// Codes are below this.
   [[nodiscard]] std::size_t code_count() const { return first_class_code_ + classes_.size(); }
-  /// The members' codes of a class of conjunctions, ascending, each once.
+  /// The codes of the members of a class of conjunctions, ascending, each once.
   [[nodiscard]] std::span<const std::uint32_t> members(std::uint32_t class_of_node) const {
     return classes_.key(class_of_node);
   }
-  /// Literals below a member.
+  /// How many literals a member holds.
   [[nodiscard]] std::uint32_t literals(std::uint32_t member_code) const {
     return member_code < first_class_code_ ? 1 : literals_[member_code - first_class_code_];
   }

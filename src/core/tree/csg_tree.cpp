@@ -16,7 +16,6 @@ void append(std::vector<CsgNode>& nodes, std::span<const CsgNode> more) {
   nodes.insert(nodes.end(), more.begin(), more.end());
 }
 
-/// The tree with each primitive p renamed to new_name(p).
 template <typename NewName>
 CsgTree renamed(const CsgTree& tree, const NewName& new_name) {
   std::vector<CsgNode> nodes(tree.nodes().begin(), tree.nodes().end());
@@ -127,7 +126,7 @@ std::size_t levels(const CsgTree& tree) {
     for (int child = arity(operation); child > 0; --child) {
       const Subtree operand = stack.back();
       stack.pop_back();
-      // What is taken away at once is a union, and what is left of a difference may lose more.
+      // Subtracted solids are listed together as a union, and the first operand may be a difference itself.
       const Operation same = operation == Operation::difference && child == 2 ? Operation::union_of : operation;
       const bool is_listed = operand.operation == same && operation != Operation::complement;
       joined.levels = std::max(joined.levels, operand.levels + (is_listed ? 0 : 1));

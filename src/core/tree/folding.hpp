@@ -9,7 +9,7 @@
 
 namespace cloud2csg {
 
-/// Builds a tree in postfix order, with constants folded away as they come. Constants take no nodes until the end.
+/// Builds a tree in postfix order and folds constants as they come. Constants take no nodes until the end.
 class FoldingTree {
  public:
   void leaf(PrimitiveIndex primitive) {
@@ -19,7 +19,7 @@ class FoldingTree {
 
   void constant(bool is_full) { stack_.push_back({is_full ? Kind::full : Kind::empty, nodes_.size()}); }
 
-  /// Of the operation's last operands; an operation with an arity above 0.
+  /// Applies an operation with an arity above 0 to the last operands.
   void apply(Operation operation) {
     if (operation == Operation::complement) {
       invert(stack_.back());
@@ -49,7 +49,7 @@ class FoldingTree {
   enum class Kind : std::uint8_t { empty, full, tree };
   struct Value {
     Kind kind;
-    std::size_t begin;  ///< of its nodes, which reach up to those of the next value
+    std::size_t begin;  ///< where its nodes begin; they end where those of the next value begin
   };
 
   void invert(Value& value) {
@@ -63,7 +63,7 @@ class FoldingTree {
     }
   }
 
-  /// Of two operands one at least of which is constant; the result takes the place of the first.
+  /// Folds two operands, at least one of them constant. The result takes the place of the first.
   void fold(Operation operation, Value& first, const Value& second) {
     const auto becomes = [this, &first](Kind kind) {
       nodes_.erase(nodes_.begin() + static_cast<std::ptrdiff_t>(first.begin), nodes_.end());
@@ -80,7 +80,7 @@ class FoldingTree {
     } else if (first.kind == absorbing || second.kind == absorbing) {
       becomes(absorbing);
     } else if (first.kind != Kind::tree) {
-      first.kind = second.kind;  // the constant had no nodes: the second's begin where the first would
+      first.kind = second.kind;  // the constant had no nodes, so the second's begin where the first's would
     }
   }
 
@@ -88,8 +88,8 @@ class FoldingTree {
   std::vector<Value> stack_;
 };
 
-/// The tree with some primitives taken for constants, and what follows from that. `constant_of(primitive)` gives an
-/// optional bool: whether the primitive is all of space, or nothing where it stays. O(size).
+/// Replaces some primitives of a tree by constants and folds it. `constant_of(primitive)` is true for all of space,
+/// false for empty and absent for a primitive that stays. O(size).
 template <typename ConstantOf>
 [[nodiscard]] CsgTree fold_primitives(const CsgTree& tree, const ConstantOf& constant_of) {
   FoldingTree result;

@@ -10,13 +10,13 @@
 namespace cloud2csg {
 namespace {
 
-/// Points a block: columns of doubles then stay in the second-level cache.
+/// Points a block, so that columns of doubles stay in the second-level cache.
 constexpr std::size_t k_block = 1024;
-/// At most this many elements in all columns together; a very deep tree gets smaller blocks.
+/// Most elements in all columns together. A very deep tree gets smaller blocks.
 constexpr std::size_t k_column_budget = std::size_t{1} << 22U;
 
-/// A value together with whose it is: `signed_index` is (index + 1) times the sign of the signed rank.
-/// Comparing (value, signed_index) is comparing signed ranks; see implicit_gradient() in the header.
+/// A value and the primitive that has it. `signed_index` is (index + 1) times the sign of the signed rank. Comparing
+/// (value, signed_index) compares signed ranks; see implicit_gradient() in the header.
 struct Selected {
   double value;
   std::int32_t signed_index;
@@ -54,8 +54,7 @@ Selected empty_value() {
   return {k_infinity, k_no_primitive, 1};
 }
 
-/// Evaluates a tree over blocks of points, a node at a time over whole columns. Element is double, or Selected where
-/// the chosen primitive matters.
+/// Evaluates a tree node by node over columns. Element is double, or Selected where the chosen primitive matters.
 template <typename Element>
 class ColumnEvaluator {
  public:
@@ -94,7 +93,7 @@ class ColumnEvaluator {
     bool is_scratch;
   };
 
-  /// Leaves are used where they stand; every other value on the stack owns a scratch column.
+  /// Leaves are used in place. Every other value on the stack owns a scratch column.
   [[nodiscard]] std::size_t most_scratch_columns() const {
     std::vector<bool> owns;
     std::size_t in_use = 0;
@@ -118,8 +117,7 @@ class ColumnEvaluator {
     return top.column;
   }
 
-  /// Scratch columns are taken and given back like a stack, so the first free one may be one of the operands:
-  /// element by element that is harmless.
+  /// Scratch columns form a stack, so the first free one may be an operand. Element by element that is harmless.
   Element* push() {
     if (scratch_in_use_ == scratch_.size()) scratch_.emplace_back(block_);
     Element* column = scratch_[scratch_in_use_++].data();
@@ -168,7 +166,7 @@ class ColumnEvaluator {
   std::vector<std::size_t> column_of_;  ///< by primitive: its position in used_
   std::size_t block_ = 0;
   std::size_t count_ = 0;
-  std::vector<Element> leaves_;  ///< one column of block_ elements for each used primitive
+  std::vector<Element> leaves_;  ///< a column of block_ elements for each used primitive
   std::vector<double> distances_;
   std::vector<std::vector<Element>> scratch_;
   std::size_t scratch_in_use_ = 0;

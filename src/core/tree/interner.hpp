@@ -14,8 +14,7 @@ namespace cloud2csg {
   return x ^ (x >> 31U);
 }
 
-/// Gives equal sequences of numbers the same small number: 0, 1, 2... in the order of first appearance.
-/// Exact (sequences are compared, hashes only find the place). All keys share one array.
+/// Numbers distinct sequences 0, 1, 2... by first appearance. Exact: sequences are compared. All keys share one array.
 class Interner {
  public:
   /// Amortised O(key.size()). `key` must not point into this interner.
@@ -34,7 +33,7 @@ class Interner {
   std::vector<std::uint32_t> keys_;
   std::vector<std::uint32_t> begins_ = {0};
   std::vector<std::uint64_t> hashes_;  ///< by id
-  std::vector<std::uint32_t> slots_;   ///< open addressing, a power of two of them; holds id + 1, 0 = free
+  std::vector<std::uint32_t> slots_;   ///< open addressing, a power of two of slots; each holds id + 1, 0 = free
 };
 
 }  // namespace cloud2csg

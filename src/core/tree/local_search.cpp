@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::array k_binary{Operation::union_of, Operation::intersection, Operation::difference};
 
-/// Of two trees, by one of k_binary.
+/// Precondition: the operation is one of k_binary.
 CsgTree joined(Operation operation, const CsgTree& a, const CsgTree& b) {
   if (operation == Operation::union_of) return unite(a, b);
   return operation == Operation::intersection ? intersect(a, b) : subtract(a, b);
@@ -18,7 +18,6 @@ bool is_spent(const ObjectiveEvaluator& evaluator, const LocalSearchOptions& opt
   return evaluator.evaluations() >= options.evaluation_limit || evaluator.work() >= options.work_limit;
 }
 
-/// The best of the neighbours of one tree.
 class Neighbours {
  public:
   Neighbours(ObjectiveEvaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options,
@@ -53,7 +52,7 @@ class Neighbours {
 
   [[nodiscard]] CsgTree child(std::size_t root) const { return CsgTree(centre_.tree.subtree(root)); }
 
-  /// A node gives way to one of its children, as it is or complemented.
+  /// Replaces a node by one of its children, the second also complemented.
   void shrink(std::size_t node) {
     const CsgNode& here = centre_.tree.nodes()[node];
     if (here.is_leaf()) return;
@@ -77,7 +76,8 @@ class Neighbours {
 
   void insert(std::size_t node, const CsgTree& leaf) {
     const Operation now = centre_.tree.nodes()[node].operation();
-    if (now == Operation::empty || now == Operation::full) return;  // nothing to join, and tables take it alone only
+    if (now == Operation::empty || now == Operation::full)
+      return;  // nothing to join, and tables evaluate a constant only as a whole tree
     const CsgTree here = child(node);
     for (const Operation operation : k_binary) consider(node, joined(operation, here, leaf));
     consider(node, subtract(leaf, here));

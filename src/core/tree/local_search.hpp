@@ -9,23 +9,21 @@
 
 namespace cloud2csg {
 
-/// A tree with its score by the objective that is searched.
 struct ScoredTree {
   CsgTree tree;
   double score = 0;
 };
 
-/// What makes one tree better than another.
 struct TreeObjective {
   std::size_t primitives = 0;  ///< trees are over 0 .. primitives - 1
-  /// The score without the cost of size. A genetic algorithm calls it on several threads at a time.
+  /// The score without the cost of nodes. A genetic algorithm calls it on several threads at a time.
   std::function<double(const CsgTree&)> geometry;
   double alpha = 0;  ///< cost of a node
-  /// Of an evaluation, for limits: a part that is the same for all trees, and a part a node.
+  /// Work of an evaluation, for limits: a part for every tree and a part for each node.
   double work = 0, work_per_node = 1;
 };
 
-/// Evaluates trees on a TreeObjective and counts how many; one a thread.
+/// Evaluates trees on a TreeObjective and counts evaluations and work. Each thread needs its own.
 class ObjectiveEvaluator {
  public:
   explicit ObjectiveEvaluator(const TreeObjective& objective) : objective_(objective) {}
@@ -48,11 +46,11 @@ class ObjectiveEvaluator {
 
 struct LocalOptimum : ScoredTree {
   std::size_t evaluations = 0;
-  bool complete = true;  ///< false when it was stopped early: the best tree so far
+  bool complete = true;  ///< false when it was stopped early, with the best tree so far
 };
 
-/// Climbs from `start` by the best of all small changes (a node replaced by its child, by a leaf, by another operation;
-/// a leaf put in anywhere) until none improves the score. The limit of work is in the objective's terms. Deterministic.
+/// Climbs from `start` by the best of all small changes until none improves the score: a node becomes its child, a leaf
+/// or another operation; a leaf is put in anywhere. Work counts in the objective's units. Deterministic.
 [[nodiscard]] LocalOptimum local_search(const TreeObjective& objective, const CsgTree& start,
                                         const LocalSearchOptions& options, const RunContext& run);
 

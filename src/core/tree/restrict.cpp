@@ -11,7 +11,7 @@ namespace {
 
 enum class Step { keep, invert, forget };
 
-/// What a node's parent does with it when its other child, if any, is a constant.
+/// What a parent does with a node's value when its other child, if any, is constant.
 Step step_to_parent(Operation parent, bool is_first_child, bool is_sibling_full) {
   switch (parent) {
     case Operation::complement:
@@ -92,7 +92,7 @@ void TreeRestriction::measure_paths() {
   depth_.assign(tree_.size(), 0);
   inversions_.assign(tree_.size(), 0);
   forgetting_depth_.assign(tree_.size(), 0);
-  for (std::size_t i = tree_.root(); i-- > 0;) {  // parents stand behind their children
+  for (std::size_t i = tree_.root(); i-- > 0;) {  // parents come after their children
     const NodeIndex parent = parent_[i];
     const Operation operation = tree_.nodes()[parent].operation();
     const bool is_first = arity(operation) == 2 && tree_.first_child(parent) == i;
@@ -119,7 +119,7 @@ void TreeRestriction::build_shallowest() {
   }
 }
 
-/// For leaves a < b. Between a and b, only the child of the common ancestor that holds a is so near to the root.
+/// Precondition: leaves a < b. The shallowest node between them is the child of the common ancestor that holds a.
 TreeRestriction::NodeIndex TreeRestriction::common_ancestor(NodeIndex a, NodeIndex b) const {
   const auto bits = static_cast<std::size_t>(std::bit_width(b - a));
   const std::vector<NodeIndex>& row = shallowest_[bits - 1];
@@ -128,7 +128,7 @@ TreeRestriction::NodeIndex TreeRestriction::common_ancestor(NodeIndex a, NodeInd
   return parent_[depth_[left] <= depth_[right] ? left : right];
 }
 
-/// The child of `ancestor` whose subtree holds `node`. Precondition: it is no complement.
+/// The child of `ancestor` whose subtree holds `node`. Precondition: `ancestor` is no complement.
 TreeRestriction::NodeIndex TreeRestriction::child_towards(NodeIndex ancestor, NodeIndex node) const {
   const std::size_t first = tree_.first_child(ancestor);
   return static_cast<NodeIndex>(node <= first ? first : tree_.second_child(ancestor));
@@ -146,8 +146,8 @@ std::vector<TreeRestriction::NodeIndex> TreeRestriction::leaves_of(std::span<con
   return found;
 }
 
-/// Writes the kept leaves and their common ancestors in postfix order. Between two of these, a path has only constants
-/// beside it, so that it keeps, inverts or forgets what comes from below.
+/// Writes the kept leaves and their common ancestors in postfix order. A path between two of them has only constants
+/// beside it, so it keeps, inverts or forgets the value from below.
 class TreeRestriction::Builder {
  public:
   explicit Builder(const TreeRestriction& index) : index_(index) {}
@@ -157,13 +157,13 @@ class TreeRestriction::Builder {
     result_.leaf(index_.tree_.nodes()[node].primitive());
   }
 
-  /// The last value is lifted to the first child of this node, and its second child is to come.
+  /// Lifts the last value to the first child of `ancestor`. The second child follows.
   void open(NodeIndex ancestor) {
     lift(index_.child_towards(ancestor, at_));
     open_.push_back(ancestor);
   }
 
-  /// Ends all open nodes that are deeper than this depth.
+  /// Closes all open nodes deeper than `depth`.
   void close(std::uint32_t depth) {
     while (!open_.empty() && index_.depth_[open_.back()] > depth) close_last();
   }
@@ -183,7 +183,7 @@ class TreeRestriction::Builder {
     at_ = ancestor;
   }
 
-  /// Takes the last value, that of node at_, up to an ancestor or itself.
+  /// Lifts the last value from node at_ to an ancestor, or keeps it at at_.
   void lift(NodeIndex ancestor) {
     if (index_.forgetting_depth_[at_] > index_.depth_[ancestor]) {
       result_.replace_last(index_.is_full_[ancestor]);
@@ -195,8 +195,8 @@ class TreeRestriction::Builder {
 
   const TreeRestriction& index_;
   FoldingTree result_;
-  NodeIndex at_ = 0;             ///< whose the last value is
-  std::vector<NodeIndex> open_;  ///< whose first child is written; each below the one before
+  NodeIndex at_ = 0;             ///< node of the last value
+  std::vector<NodeIndex> open_;  ///< nodes whose first child is written; each below the one before
 };
 
 CsgTree TreeRestriction::restrict_to(std::span<const PrimitiveIndex> kept) const {

@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::uint32_t k_none = 0xffffffffU;
 
-/// One pass of the rules that follow from what is already known. Within a conjunction, each member may take all others
-/// for granted, and everything that surrounds the conjunction likewise: a literal known to hold is left out; one known
-/// not to hold makes its conjunction empty; an inner conjunction that holds all members of one known to be empty is
-/// empty itself. That is idempotence, absorption, complementary pairs, empty and full, and all nested differences.
-/// Conjunctions of one member are dissolved (double complement).
+/// One pass of the rules that follow from known facts. A member of a conjunction may assume all other members and
+/// everything that surrounds the conjunction. A literal known to hold is left out. One known not to hold makes its
+/// conjunction empty. An inner conjunction with all members of a known empty one is empty itself. These rules cover
+/// idempotence, absorption, complementary pairs, empty and full, and all nested differences. Conjunctions of one member
+/// are dissolved (double complement).
 class Propagation {
  public:
-  /// Returns whether anything changed; then another pass may find more. `index` belongs to `formula` as it comes in.
+  /// Returns whether anything changed; then another pass may find more. `index` belongs to the incoming `formula`.
   /// O(size x members known to be empty that share a member); mostly O(size).
   bool run(Formula& formula, const FormulaIndex& index) {
     index_ = &index;
@@ -54,21 +54,21 @@ class Propagation {
     std::uint32_t out_begin;  ///< ...and in the output
     std::size_t first_literal;
     std::size_t first_known;
-    std::uint32_t members = 0;  ///< written so far
+    std::uint32_t members = 0;  ///< members written so far
     bool changed = false;
   };
   /// An inner conjunction known to be empty, listed under its first member.
   struct KnownEmpty {
     std::uint32_t open;
-    std::uint32_t next;  ///< of the list; position in known_
+    std::uint32_t next;  ///< next of the list: position in known_
     std::uint32_t listed_under;
-    std::size_t level;  ///< frames outside of it
+    std::size_t level;  ///< frames around it
     bool is_valid;
   };
 
   void read_literal() {
     Frame& frame = frames_.back();
-    // Taken for granted because of another literal, here or around; the opposite was found on entering.
+    // Another literal here or around implies it. Its opposite was found on entering.
     const bool is_redundant = known_by_[variable(in_[at_])] != at_;
     if (is_redundant) {
       frame.changed = true;
@@ -89,7 +89,7 @@ class Propagation {
     }
   }
 
-  /// Opens the conjunction at at_. Returns false when it contradicts itself or what is known.
+  /// Opens the conjunction at at_. Returns false when it contradicts itself or known facts.
   bool enter() {
     frames_.push_back({.open = at_,
                        .out_begin = narrow(out_.size()),
@@ -132,7 +132,7 @@ class Propagation {
     }
   }
 
-  /// A conjunction that was changed or dropped on the strength of the others must not be used against them in turn.
+  /// A conjunction that was changed or dropped because of others must not be used against them in turn.
   void invalidate(std::uint32_t open) {
     if (known_at_[open] != k_none) known_[known_at_[open]].is_valid = false;
   }
@@ -145,7 +145,7 @@ class Propagation {
         const KnownEmpty& known = known_[k];
         if (!known.is_valid || known.open == open) continue;
         const std::uint32_t known_class = index_->class_of(known.open);
-        // Of equal members of one conjunction the first stays.
+        // Among equal members of a conjunction the first stays.
         if (known_class == own_class && known.level == frames_.size() && known.open > open) continue;
         if (std::ranges::includes(own_members, index_->members(known_class))) return true;
       }
@@ -163,7 +163,7 @@ class Propagation {
       out_.push_back(k_close);
       return;
     }
-    if (frame.members == 0) {  // all of space, so that the one around it is empty
+    if (frame.members == 0) {  // all of space, so the surrounding conjunction is empty
       drop_empty_conjunction();
       return;
     }
@@ -180,7 +180,7 @@ class Propagation {
     }
   }
 
-  /// The complement of a conjunction of one: of a literal, the opposite literal; of [...], what that holds.
+  /// Writes the complement of a conjunction of one member: of a literal the opposite, of [...] its members.
   void dissolve(const Frame& frame) {
     Frame& outer = frames_.back();
     Token& only = out_[frame.out_begin + 1];
@@ -192,11 +192,11 @@ class Propagation {
       const auto begin = out_.begin() + frame.out_begin;
       out_.erase(begin, begin + 2);
       out_.pop_back();
-      outer.members += 2;  // or more: it was kept whole, so it holds two at least
+      outer.members += 2;  // or more: it was kept whole, so it holds at least two
     }
   }
 
-  /// The innermost conjunction being read turned out empty: leaves it out, with what was written of it.
+  /// Drops the innermost conjunction being read, which is empty, with all that was written of it.
   void drop_empty_conjunction() {
     const Frame frame = frames_.back();
     frames_.pop_back();
@@ -219,19 +219,18 @@ class Propagation {
   std::uint32_t at_ = 0;
   bool changed_ = false;
   std::vector<Frame> frames_;
-  std::vector<std::uint32_t> known_by_;  ///< by variable: token of the literal that is taken for granted, or k_none
+  std::vector<std::uint32_t> known_by_;  ///< by variable: token of the assumed literal, or k_none
   std::vector<std::uint32_t> literals_;  ///< variables in known_by_, latest last
   std::vector<KnownEmpty> known_;
   std::vector<std::uint32_t> list_head_;  ///< by member code: latest of known_ listed under it, or k_none
   std::vector<std::uint32_t> known_at_;   ///< by opening token: position in known_, or k_none
 };
 
-/// Pulls out what inner conjunctions have in common: [~[f x] ~[f y]] = [~[f ~[~[x] ~[y]]]], that is
-/// (f & x) | (f & y) = f & (x | y) and its dual. Takes the factor that saves most literals first.
+/// Factors out common members of inner conjunctions: [~[f x] ~[f y]] = [~[f ~[~[x] ~[y]]]], that is (f & x) | (f & y) =
+/// f & (x | y) and its dual. Takes the factor that saves most literals first.
 class Factoring {
  public:
-  /// Returns whether anything changed: then the formula is shorter by a literal or more, and may hold conjunctions of
-  /// one member, for Propagation to dissolve. O(size).
+  /// Returns whether anything changed: the formula is then shorter, but may hold conjunctions of one member. O(size).
   bool run(Formula& formula, const FormulaIndex& index) {
     index_ = &index;
     in_.swap(formula.tokens);
@@ -260,7 +259,7 @@ class Factoring {
   }
 
  private:
-  /// Fills group_ and factor_ for the conjunction that opens here; false when no two members share anything.
+  /// Fills group_ and factor_ for the conjunction that opens at `open`. False when no two members share anything.
   bool find_group(std::uint32_t open) {
     inner_.clear();
     for (std::uint32_t member = open + 1; in_[member] != k_close; member = index_->next(member)) {
@@ -296,7 +295,7 @@ class Factoring {
     return true;
   }
 
-  /// The touched code that saves most literals when it is written once instead of every time; of equal ones the first.
+  /// The touched code that saves most literals when written once instead of each time; the first on ties.
   [[nodiscard]] std::uint32_t best_code() const {
     const auto saved = [this](std::uint32_t code) { return std::uint64_t{count_[code] - 1} * index_->literals(code); };
     return *std::ranges::max_element(touched_, {}, saved);
@@ -326,9 +325,9 @@ class Factoring {
   const FormulaIndex* index_ = nullptr;
   std::vector<Token> in_;
   std::vector<Token> out_;
-  std::vector<std::uint32_t> inner_;    ///< opening tokens of the inner conjunctions at hand
-  std::vector<std::uint32_t> group_;    ///< those of them that share the factor
-  std::vector<std::uint32_t> factor_;   ///< the codes that all of group_ hold, ascending
+  std::vector<std::uint32_t> inner_;    ///< opening tokens of the current inner conjunctions
+  std::vector<std::uint32_t> group_;    ///< those of inner_ that share the factor
+  std::vector<std::uint32_t> factor_;   ///< codes that all of group_ hold, ascending
   std::vector<std::uint32_t> count_;    ///< by code: how many of inner_ hold it
   std::vector<std::uint32_t> touched_;  ///< codes whose count is not 0
 };

@@ -7,11 +7,11 @@
 
 /// Equality up to commutation and association. A **chain** is a maximal run of nodes of one operation: for unions and
 /// intersections through both children, for differences through the first child, ((a - b) - c) - d. Its **operands**
-/// are what hangs off it; their order does not count, but for the first of a difference.
+/// are the subtrees that hang off it. Their order does not count, but for the first of a difference.
 namespace cloud2csg {
 namespace {
 
-/// Whether a child belongs to the same chain as its parent.
+/// Whether a child belongs to its parent's chain.
 bool continues_chain(Operation parent, Operation child, bool is_first) {
   return parent == child && arity(parent) == 2 && (parent != Operation::difference || is_first);
 }
@@ -20,11 +20,11 @@ std::uint64_t salted(std::uint64_t value, Operation operation) {
   return mix(value ^ (static_cast<std::uint64_t>(operation) << 56U));
 }
 
-/// Per node: its hash and, for binary nodes, what a chain hands on to the node above. Sums do not depend on the order.
+/// A node's hash and, for binary nodes, the sums that its chain hands up. Sums do not depend on the order.
 struct ChainHash {
   std::uint64_t hash = 0;
-  std::uint64_t operands = 0;  ///< sum over the operands; of a difference, over the subtracted ones
-  std::uint64_t base = 0;      ///< of a difference: hash of its first operand
+  std::uint64_t operands = 0;  ///< sum over the operands; in a difference, over the subtracted ones
+  std::uint64_t base = 0;      ///< in a difference: hash of the first operand
 };
 
 ChainHash hash_of_binary(Operation operation, const ChainHash& first, bool joins_first, const ChainHash& second,

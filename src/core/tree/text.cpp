@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view k_empty_word = "empty";
 constexpr std::string_view k_full_word = "full";
 
-/// Whether an id may hold this byte without quotes. Every byte of UTF-8 beyond ASCII may.
+/// Whether an unquoted id may hold this byte. Every byte of UTF-8 beyond ASCII may.
 bool is_name_character(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' ||
@@ -39,8 +39,7 @@ std::string written_id(std::string_view id) {
   return '"' + escaped(id) + '"';
 }
 
-/// Parentheses wherever operations meet, even where precedence would do without: people misread `a | b - c & d`.
-/// Chains of one operation are written flat.
+/// Wherever operations meet, even where precedence would do: people misread `a | b - c & d`. Chains are flat.
 bool needs_parentheses(Operation parent, bool is_second, Operation child) {
   if (arity(child) < 2) return false;
   return child != parent || (child == Operation::difference && is_second);
@@ -51,7 +50,6 @@ const char* symbol(Operation operation) {
   return operation == Operation::intersection ? " & " : " - ";
 }
 
-/// What is still to be written: a node, or text.
 using PendingText = std::variant<std::size_t, const char*>;
 
 void push_child(std::vector<PendingText>& pending, const CsgTree& tree, std::size_t parent, std::size_t child) {
@@ -69,7 +67,7 @@ struct TextToken {
   char symbol;  ///< one of ( ) | & - ~; 0 for the other kinds
   std::string name;
   bool quoted;
-  std::size_t begin;  ///< byte in the text
+  std::size_t begin;  ///< byte position in the text
 };
 
 std::string describe(const TextToken& token) {
@@ -125,7 +123,7 @@ class Lexer {
   std::size_t at_ = 0;
 };
 
-/// An operator or an opening parenthesis that waits for what stands to its right.
+/// An operator or an opening parenthesis that waits for its right side.
 struct Waiting {
   char symbol;
   std::size_t begin;
@@ -158,7 +156,7 @@ Operation operation_of(char symbol) {
   }
 }
 
-/// Operator precedence with a stack of its own, writing postfix as it goes.
+/// Parses by operator precedence with its own stack and writes postfix.
 class Parser {
  public:
   Parser(std::string_view text, const PrimitiveSet& primitives) : lexer_(text) {
@@ -193,7 +191,6 @@ class Parser {
     return true;
   }
 
-  /// Returns whether an operand is wanted next.
   bool take_after_operand(const TextToken& token) {
     const bool is_binary = token.symbol == '|' || token.symbol == '&' || token.symbol == '-';
     if (is_binary) {
@@ -227,7 +224,7 @@ class Parser {
     return CsgNode::leaf(found->second);
   }
 
-  /// Writes the waiting operators that bind at least so strongly, the latest first.
+  /// Writes the waiting operators that bind at least as strongly as `weakest`, the latest first.
   void emit_down_to(int weakest) {
     while (!waiting_.empty() && binding(waiting_.back().symbol) >= weakest) {
       const Operation operation = operation_of(waiting_.back().symbol);
@@ -239,7 +236,7 @@ class Parser {
   }
 
   Lexer lexer_;
-  std::unordered_map<std::string, PrimitiveIndex> index_of_;  ///< of equal ids the first counts
+  std::unordered_map<std::string, PrimitiveIndex> index_of_;  ///< the first of equal ids counts
   std::vector<Waiting> waiting_;
   std::vector<CsgNode> nodes_;
 };
@@ -314,7 +311,7 @@ std::string to_graphviz(const Model& model) {
   // ordering=out keeps the first child of a difference on the left.
   std::string text = "digraph csg {\n  graph [ordering=out];\n  node [shape=box];\n";
   const CsgTree& tree = tree_of(model);
-  // From the root down, so that the file reads like the picture.
+  // Start at the root, so that the file reads like the picture.
   for (std::size_t i = tree.size(); i-- > 0;) {
     const CsgNode node = tree.nodes()[i];
     const char* style = node.operation() == Operation::primitive ? ", style=rounded" : "";

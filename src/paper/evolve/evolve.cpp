@@ -16,7 +16,7 @@
 namespace cloud2csg {
 namespace {
 
-constexpr std::uint64_t k_restart_stage = 0x6761'0003;  // names the streams of random numbers of new runs
+constexpr std::uint64_t k_restart_stage = 0x6761'0003;  // names the random streams of restarts
 
 void count_in(Evolution& total, const Evolution& part) {
   total.generations += part.generations;
@@ -39,7 +39,7 @@ Evolution nothing_yet() {
   return evolution;
 }
 
-/// Where a local search may start without knowing anything: each primitive alone, and the union of all.
+/// Starts of a local search that knows nothing: each primitive alone, and the union of all.
 std::vector<CsgTree> simple_trees(std::size_t primitives) {
   std::vector<CsgTree> leaves;
   for (PrimitiveIndex p = 0; p < primitives; ++p) leaves.push_back(CsgTree::leaf(p));
@@ -67,7 +67,7 @@ Evolution seed_by_local_search(const RankClasses& table, const RunContext& run, 
   return best;
 }
 
-/// The genetic algorithm, then a local search on its best; when that improves it, again from there.
+/// Runs the genetic algorithm, then a local search on its best tree. Repeats from there while that improves the tree.
 void climb(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions& options, std::uint64_t item,
            const RunContext& run, Evolution& best) {
   constexpr int k_rounds = 4;
@@ -87,21 +87,20 @@ bool is_believed(const Evolution& best, const RankClasses& table, const GaOption
   return best.geometry >= options.trust * table.geometry_bound();
 }
 
-/// Whether it has no more leaves than there are primitives and is believed on the points nearest to each: then hardly a
-/// tree is better.
+/// No more leaves than primitives, and believed on the points nearest to each: a better tree is unlikely.
 bool is_believed_everywhere(const Evolution& best, const RankClasses& table, const GaOptions& options) {
   if (options.trust <= 0 || leaf_count(best.tree) > table.primitive_count()) return false;
   RankScratch scratch;
   const std::vector<double> reached = table.sums_by_nearest(table.class_scores(best.tree, scratch));
   const std::vector<double> bounds = table.sums_by_nearest(table.class_bounds());
   for (std::size_t p = 0; p < bounds.size(); ++p) {
-    // What less than a node's worth of points tell is noise.
+    // A shortfall below the cost of a node is noise.
     if (reached[p] < options.trust * bounds[p] && bounds[p] - reached[p] > table.objective().alpha) return false;
   }
   return true;
 }
 
-/// A climb from the seeds, then others from random trees only, as long as no tree is believed and the budget lasts.
+/// Climbs from the seeds, then from random trees only, until a tree is believed or the budget is spent.
 void search(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions& options, std::uint64_t item,
             const RunContext& run, Evolution& best) {
   climb(table, std::move(seeds), options, item, run, best);
@@ -119,8 +118,7 @@ bool is_solid(const CsgTree& tree) {
   return !primitives_of(simplify(tree)).empty();
 }
 
-/// A formula such as a - a scores on a sheet that was seen from both sides, but there is no such solid: then the best
-/// of the primitives and their complements it is.
+/// A formula such as a - a scores on a sheet seen from both sides. Replaces it by the best primitive or complement.
 void settle_for_a_solid(const RankClasses& table, Evolution& best) {
   if (is_solid(best.tree)) return;
   RankScratch scratch;

@@ -10,7 +10,6 @@
 namespace cloud2csg {
 namespace {
 
-/// Edges from the root down to a node: the number of its ancestors.
 int level_of(const CsgTree& tree, std::size_t node) {
   int level = 0;
   for (std::size_t above = node + 1; above < tree.size(); ++above) {
@@ -25,15 +24,13 @@ CsgTree with_subtree(const CsgTree& tree, std::size_t node, std::span<const CsgN
   return depth(child) <= static_cast<std::size_t>(height_limit) ? child : tree;
 }
 
-/// Names of random streams.
 enum class Stream : std::uint64_t { first_generation = 0x6761'0001, breeding = 0x6761'0002 };
 
-/// One run. Every child is a pure function of (seed, item, generation, its place), so the population may be bred and
-/// evaluated by any number of threads.
+/// Every child is a pure function of (seed, item, generation, place), so any number of threads may breed.
 template <typename TreeEvaluator>
 class GeneticAlgorithm {
  public:
-  /// `evaluator`: what each thread evaluates trees with.
+  /// Each thread evaluates with a copy of `evaluator`.
   GeneticAlgorithm(std::size_t primitives, const TreeEvaluator& evaluator, const GaOptions& options, std::uint64_t item,
                    const RunContext& run)
       : primitives_(primitives),
@@ -123,7 +120,7 @@ class GeneticAlgorithm {
     return winner->tree;
   }
 
-  /// Puts the elites' places first in `order_`, best first; equal scores by place, so that the order is defined.
+  /// Puts the elites' places first in `order_`, best first, ties by place.
   void rank() {
     order_.resize(population_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});

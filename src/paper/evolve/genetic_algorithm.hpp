@@ -9,10 +9,10 @@
 #include "core/base/random.hpp"
 #include "core/tree/local_search.hpp"
 
-/// The genetic algorithm of the paper, and its operators, crossover and mutation, on flat trees.
+/// The paper's genetic algorithm, with crossover and mutation on flat trees.
 namespace cloud2csg {
 
-/// Evaluates trees on a table and counts how many; one a thread.
+/// Evaluates trees on a table and counts evaluations. Each thread needs its own.
 class Evaluator {
  public:
   explicit Evaluator(const RankClasses& table) : table_(table) {}
@@ -24,7 +24,7 @@ class Evaluator {
   }
   [[nodiscard]] double geometry(const CsgTree& tree) { return table_.geometry(tree, scratch_); }
   [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
-  /// Evaluations x classes x nodes.
+  /// Sum of classes x nodes over the evaluations.
   [[nodiscard]] double work() const { return work_; }
   [[nodiscard]] std::size_t primitives() const { return table_.primitive_count(); }
 
@@ -35,27 +35,25 @@ class Evaluator {
   double work_ = 0;
 };
 
-/// A random tree over primitives 0 .. count - 1 of at most `height` edges from root to leaf: at each node a leaf or an
-/// operation with equal chance, operations with equal chance, down to leaves at the limit.
+/// A random tree over primitives 0 .. count - 1, at most `height` edges high. Each node is a leaf or an operation with
+/// equal chance, and all operations have equal chance. Nodes at the limit are leaves.
 [[nodiscard]] CsgTree random_tree(std::size_t count, int height, RandomStream& random);
 
 struct Children {
   CsgTree first, second;
 };
 
-/// Two children that swapped one random subtree each. A child that would be higher than the limit stays as its own
-/// parent was.
+/// Swaps a random subtree of each tree. A child that would be above the height limit stays as its parent was.
 [[nodiscard]] Children crossover(const CsgTree& a, const CsgTree& b, int height_limit, RandomStream& random);
 
-/// A tree with one random subtree replaced by a new random tree that keeps the height limit.
+/// Replaces a random subtree by a new random tree within the height limit.
 [[nodiscard]] CsgTree mutate_subtree(const CsgTree& tree, std::size_t primitives, int height_limit,
                                      RandomStream& random);
 
-/// The genetic algorithm of the paper on one table; `seeds` join the first generation.
+/// Runs the genetic algorithm on a table, or on any objective. `seeds` join the first generation.
 [[nodiscard]] Evolution run_genetic_algorithm(const RankClasses& table, std::span<const CsgTree> seeds,
                                               const GaOptions& options, std::uint64_t item, const RunContext& run);
 
-/// The same on any objective.
 [[nodiscard]] Evolution run_genetic_algorithm(const TreeObjective& objective, std::span<const CsgTree> seeds,
                                               const GaOptions& options, std::uint64_t item, const RunContext& run);
 

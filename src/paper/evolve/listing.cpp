@@ -12,10 +12,10 @@ namespace {
 
 using Column = AlignedVector<std::int8_t>;
 
-/// How a candidate was made, and what it selects in each class.
+/// How a candidate was made, and the rank that it selects in each class.
 struct Candidate {
   Operation operation = Operation::primitive;
-  std::uint32_t first = 0;  // into the candidates; for a leaf, the primitive
+  std::uint32_t first = 0;  // index of a candidate; for a leaf, the primitive
   std::uint32_t second = 0;
   std::uint32_t size = 1;
   Column column = {};
@@ -39,15 +39,14 @@ std::uint64_t hash_of(const Column& column) {
   return hash;
 }
 
-/// Lists by subsets of the primitives, smaller ones first: a tree on a subset joins a tree on a part of it with one on
-/// the rest. A bit of `subset` is a primitive.
+/// A tree on a subset of primitives joins one on a part with one on the rest. A bit of `subset` is a primitive.
 class Lister {
  public:
   explicit Lister(const RankClasses& table) : table_(table), of_subset_(std::size_t{1} << table.primitive_count()) {}
 
   Listing run(const std::stop_token& stop) {
     for (std::uint32_t p = 0; p < table_.primitive_count(); ++p) add_leaf(p);
-    // Ascending subsets: each part of a subset is a smaller number.
+    // Each part of a subset is a smaller number, so it comes first.
     for (std::uint32_t subset = 1; subset < of_subset_.size() && !stop.stop_requested(); ++subset) {
       if (std::popcount(subset) > 1) list_subset(subset);
     }
@@ -67,7 +66,7 @@ class Lister {
 
   void list_subset(std::uint32_t subset) {
     std::unordered_set<std::uint64_t> seen;
-    // Splits into two parts, each once: the part with the lowest primitive is the first.
+    // Each split comes once: the first part has the lowest primitive.
     const std::uint32_t lowest = subset & (~subset + 1);
     for (std::uint32_t part = (subset - 1) & subset; part > 0; part = (part - 1) & subset) {
       if ((part & lowest) == 0) continue;
@@ -89,7 +88,7 @@ class Lister {
                        .size = candidates_[first].size + candidates_[second].size + 1,
                        .column = Column(table_.padded_count())};
       RankClasses::combine(how.operation, candidates_[first].column, candidates_[second].column, joined.column);
-      // All trees on one subset have the same size, so the first of equal ones is as good as any.
+      // All trees on a subset have the same size, so the first of equal ones will do.
       if (!seen.insert(hash_of(joined.column)).second) continue;
       consider(joined, candidates_.size());
       of_subset_[subset].push_back(static_cast<std::uint32_t>(candidates_.size()));

@@ -15,13 +15,13 @@ namespace {
 
 enum class Role { undecided, added, removed };
 
-/// The tree with one primitive taken for nothing, or for all of space.
+/// The tree with one primitive replaced by nothing or by all of space.
 CsgTree substitute(const CsgTree& tree, PrimitiveIndex primitive, bool is_full) {
   return fold_primitives(tree,
                          [&](PrimitiveIndex p) { return p == primitive ? std::optional(is_full) : std::nullopt; });
 }
 
-/// Primitives of one role, taken out of all trees one after the other.
+/// Primitives of one role, which are taken out of all trees one after the other.
 struct Layer {
   Role role;
   std::vector<PrimitiveIndex> primitives;
@@ -38,7 +38,7 @@ class DominanceMerge {
 
   MergeResult merge() {
     while (!(stale_added_.empty() && stale_removed_.empty()) && !run_.stop.stop_requested()) {
-      // What is taken away goes first: differences stand outermost where there is a choice.
+      // Subtracted primitives go first, so that differences stand outermost where there is a choice.
       peel(Role::removed, stale_removed_);
       peel(Role::added, stale_added_);
     }
@@ -64,19 +64,19 @@ class DominanceMerge {
     stale_removed_.insert(p);
   }
 
-  /// What the primitive is to a partition; nothing: the tree says nothing, because nothing is left of it.
+  /// The primitive's role in a partition. Absent when nothing is left of the tree.
   [[nodiscard]] std::optional<Role> claim_of(std::size_t tree, PrimitiveIndex p) const {
     if (is_constant(trees_[tree])) return std::nullopt;
     const CsgTree inside = substitute(trees_[tree], p, /*is_full=*/true);
-    // One that has primitives left, but not this one, has something in its place: that must go first.
+    // Inside the primitive the tree still depends on others, which must go first.
     if (!is_constant(inside)) return Role::undecided;
     return inside == CsgTree::full() ? Role::added : Role::removed;
   }
 
-  /// What the primitive is to all partitions that have it, if it is the same to all.
+  /// The primitive's role, if all partitions that have it agree.
   [[nodiscard]] Role role_of(PrimitiveIndex p) {
     const std::vector<std::size_t>& trees = trees_with_[p];
-    // A tree that has decided stays so, whatever else is taken out: it is enough to ask the first that has not.
+    // A decided tree stays so, whatever is taken out: ask the first that has not decided.
     for (std::size_t& k = decided_[p]; k < trees.size(); ++k) {
       if (claim_of(trees[k], p) == Role::undecided) return Role::undecided;
     }
@@ -91,7 +91,7 @@ class DominanceMerge {
     return common;
   }
 
-  /// Takes out all primitives of the role, also those that others uncover when they go, in a layer of their own.
+  /// Takes out all primitives of the role as a layer, also those that get the role on the way.
   void peel(Role role, std::set<PrimitiveIndex>& stale) {
     Layer layer{.role = role, .primitives = {}};
     while (!stale.empty() && !run_.stop.stop_requested()) {
@@ -104,7 +104,7 @@ class DominanceMerge {
     if (!layer.primitives.empty()) layers_.push_back(std::move(layer));
   }
 
-  /// All trees are from now on about what is outside of the primitive.
+  /// Restricts all trees with the primitive to its outside.
   void take_out(PrimitiveIndex p) {
     for (const std::size_t k : std::exchange(trees_with_[p], {})) {
       trees_[k] = simplify(substitute(trees_[k], p, /*is_full=*/false));
@@ -114,8 +114,7 @@ class DominanceMerge {
     }
   }
 
-  /// What is left of the trees: primitives that are neither wholly in the solid nor wholly out of it. All of space,
-  /// when that is what all trees say of what is outside of their primitives.
+  /// The trees left over, of primitives neither wholly in the solid nor wholly out. All of space when every tree is.
   [[nodiscard]] std::vector<CsgTree> core() const {
     const auto is_full = [](const CsgTree& tree) { return tree == CsgTree::full(); };
     if (!trees_.empty() && std::ranges::all_of(trees_, is_full)) return {CsgTree::full()};
@@ -139,10 +138,10 @@ class DominanceMerge {
   const RunContext& run_;
   std::vector<CsgTree> trees_;
   std::vector<Clique> cliques_;
-  std::vector<std::vector<std::size_t>> trees_with_;  ///< by primitive
-  std::vector<std::size_t> decided_;                  ///< by primitive: so many of its first trees are not undecided
-  std::set<PrimitiveIndex> stale_added_, stale_removed_;  ///< whose role may have become this one
-  std::vector<Layer> layers_;                             ///< the outermost first
+  std::vector<std::vector<std::size_t>> trees_with_;      ///< by primitive
+  std::vector<std::size_t> decided_;                      ///< by primitive: how many of its first trees have decided
+  std::set<PrimitiveIndex> stale_added_, stale_removed_;  ///< primitives whose role may have become this one
+  std::vector<Layer> layers_;                             ///< outermost first
 };
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace cloud2csg {
 namespace {
 
-/// What a tree scores in a window, by nearest primitive (the window's local indices).
+/// A tree's scores in a window, by nearest primitive (the window's local indices).
 std::vector<double> scores_in(const MergeWindow& window, const CsgTree& tree) {
   RankScratch scratch;
   return window.table->sums_by_nearest(window.table->class_scores(localised(tree, window.primitives), scratch));
@@ -32,8 +32,8 @@ struct Witness {
   const Clique* clique;
 };
 
-/// The trees of the cliques with primitives that are judged in the window, where the window has all of their
-/// primitives. Without any such: of all, each different one once, which are few, as most of their primitives are
+/// Trees of the cliques with a judged primitive that are whole in the window. If none is whole, trees of all cliques
+/// with a judged primitive, restricted to the window, each distinct one once. These are few: most primitives are
 /// elsewhere.
 std::vector<Witness> witnesses_in(const MergeWindow& window, std::span<const Clique> cliques,
                                   std::span<const CsgTree> trees,
@@ -57,7 +57,7 @@ std::vector<Witness> witnesses_in(const MergeWindow& window, std::span<const Cli
   return witnesses;
 }
 
-/// The best that trees of partitions with each of the window's primitives score on the points nearest to it.
+/// The best score of partition trees with each of the window's primitives, on the points nearest to it.
 std::vector<double> promises_in(const MergeWindow& window, std::span<const Clique> cliques,
                                 std::span<const CsgTree> trees,
                                 std::span<const std::vector<std::size_t>> cliques_with) {
@@ -74,8 +74,7 @@ std::vector<double> promises_in(const MergeWindow& window, std::span<const Cliqu
   return promises;
 }
 
-/// Each joint solution is a pass over all points and a search: with more trees than this left over, or for more
-/// primitives, it takes too long.
+/// A joint solution takes a pass over all points and a search: too long for more trees left over, or more primitives.
 constexpr std::size_t k_joint_trees = 32;
 constexpr std::size_t k_joint_primitives = 64;
 
@@ -110,7 +109,7 @@ class ComponentMerger {
   [[nodiscard]] bool has_whole_table() const { return component_.windows.size() == 1; }
   [[nodiscard]] const RankClasses& whole_table() const { return *component_.windows.front().table; }
 
-  /// Keeps the tree when it is the best so far. Whether it is whole and keeps what the partitions promised.
+  /// Keeps the best tree. Returns whether this one is whole, keeps the promises and is no worse than earlier ones.
   bool consider(MergeWay way, const CsgTree& found, bool whole) {
     const CsgTree tree = simplify(found);
     const auto [score, worst_shortfall] = check_.judge(tree);
@@ -122,7 +121,7 @@ class ComponentMerger {
     if (!whole) return false;
     const bool holds = worst_shortfall <= k_tolerated_shortfall;
     if (!holds) ++result_.statistics.failed_checks;
-    // A tree that holds but scores below an earlier one would not be taken: go on looking.
+    // A tree that holds but scores below an earlier one is not taken: go on looking.
     return holds && score >= best_score_;
   }
 
@@ -131,7 +130,7 @@ class ComponentMerger {
       return merge(MergeWay::paper) || merge(MergeWay::dominance) || merge(MergeWay::largest_common_subtree) ||
              merge_jointly();
     }
-    // In a large component there is always something that the paper's merge does not get right.
+    // In a large component the paper's merge always gets something wrong.
     return merge(MergeWay::dominance) || merge(MergeWay::paper) || merge(MergeWay::largest_common_subtree) ||
            merge_jointly();
   }
@@ -146,12 +145,12 @@ class ComponentMerger {
     result_.statistics.merges += merged.merges;
     result_.statistics.blocked += merged.blocked;
     remaining_ = merged.trees;
-    // Somewhere in a large component something is blocked: whether it matters is for the check to say.
+    // Something is always blocked in a large component. The check tells whether it matters.
     const bool may_be_blocked = !has_whole_table();
     return consider(way, unite_all(merged.trees), merged.trees.size() == 1 && (merged.blocked == 0 || may_be_blocked));
   }
 
-  /// The first way is short, and without it there is no tree: it does not stop.
+  /// Never stops the first way: it is short, and without it there is no tree.
   [[nodiscard]] MergeResult merge_result(MergeWay way, std::span<const CsgTree> trees) const {
     const bool is_first = way == (has_whole_table() ? MergeWay::paper : MergeWay::dominance);
     RunContext run = run_;
@@ -160,15 +159,14 @@ class ComponentMerger {
     return merge_trees(trees, way == MergeWay::paper ? MergeOrder::paper : MergeOrder::largest_common_subtree, run);
   }
 
-  /// As long as trees that share primitives are left over, two of them are replaced by one tree for the primitives of
-  /// both, found from the points of both.
+  /// Replaces two trees left over by one that is found from the points of both, again and again until all merge.
   bool merge_jointly() {
     std::vector<CsgTree> trees = remaining_;
     while (trees.size() > 1 && trees.size() <= k_joint_trees && !run_.stop.stop_requested()) {
       const auto [first, second] = most_entangled(trees);
       Clique both;
       std::ranges::set_union(primitives_of(trees[first]), primitives_of(trees[second]), std::back_inserter(both));
-      if (both.empty()) return false;  // trees that contradict themselves: all of space is left of them
+      if (both.empty()) return false;  // trees that contradict themselves, of which all of space is left
       if (both.size() > k_joint_primitives) return false;
       trees[first] = solve_jointly_(both);
       trees.erase(trees.begin() + static_cast<std::ptrdiff_t>(second));
@@ -179,7 +177,7 @@ class ComponentMerger {
     return false;
   }
 
-  /// The pair with the fewest primitives in all among those that share the most: the cheapest to solve together.
+  /// The cheapest pair to solve together: among those that share the most, the one with the fewest primitives in all.
   static std::pair<std::size_t, std::size_t> most_entangled(std::span<const CsgTree> trees) {
     std::pair<std::size_t, std::size_t> best{0, 1};
     std::pair<std::size_t, std::size_t> best_rank{0, std::numeric_limits<std::size_t>::max()};
@@ -206,10 +204,10 @@ class ComponentMerger {
     const Evolution found = evolve_tree_from(whole_table(), result_.tree, options_.search, options_.item, run_);
     count(found);
     consider(MergeWay::search, found.tree, true);
-    result_.statistics.ways = {MergeWay::search};  // it began with the best of the others, which may be the best still
+    result_.statistics.ways = {MergeWay::search};  // it began with the best tree so far, which may still be the best
   }
 
-  /// Of a component without a table over all of it.
+  /// For a component without a table over all of it.
   void search_anew() {
     if (component_.primitives > RankClasses::k_byte_limit || run_.stop.stop_requested()) return;
     Clique all(component_.primitives);
@@ -217,7 +215,7 @@ class ComponentMerger {
     consider(MergeWay::search, solve_jointly_(all), true);
   }
 
-  /// Redundancy removal on the whole component: nodes go as long as E grows.
+  /// Removes redundant nodes of the whole component as long as E grows.
   void polish() {
     const Evolution polished = local_search(whole_table(), result_.tree, {.shrink_only = true}, run_);
     count(polished);

@@ -17,12 +17,10 @@
 namespace cloud2csg {
 namespace {
 
-/// A tree with what is needed to look for subtrees that it shares with others.
-///
-/// Its nodes other than unions are **operands**, each of exactly one **group**: the maximal union that it belongs to,
-/// which may be of one operand only. A subtree is then one or more operands of a group. A group is valid when its top
-/// is reached from the root through unions and first children of differences; all its operands are then valid merge
-/// nodes.
+/// A tree indexed for the search for subtrees that it shares with others. Nodes other than unions are **operands**.
+/// Each is in one **group**: its maximal union, possibly of one operand only. A subtree is one or more operands of a
+/// group. A group is valid when its top is reached from the root through unions and first children of differences. All
+/// its operands are then valid merge nodes.
 struct MergeCandidate {
   struct Operand {
     std::uint64_t hash;  ///< structural_hash of the subtree
@@ -34,19 +32,19 @@ struct MergeCandidate {
   std::vector<PrimitiveIndex> primitives;  ///< ascending
   std::vector<std::uint32_t> group_top;    ///< node index by group; groups are numbered from the root down
   std::vector<Operand> operands;           ///< all, from the root down
-  std::vector<Operand> merge_nodes;        ///< those of valid groups, by hash, then from the root down
+  std::vector<Operand> merge_nodes;        ///< operands of valid groups, by hash, then from the root down
 };
 
-/// A common subtree at a valid place of the larger of two trees.
+/// A common subtree at a valid place in the larger of two trees.
 struct CommonSubtree {
-  std::size_t size;                  ///< nodes, its operands joined
-  std::uint32_t group;               ///< of the larger tree
+  std::size_t size;                  ///< nodes, with the unions of its operands
+  std::uint32_t group;               ///< in the larger tree
   std::vector<std::uint32_t> nodes;  ///< roots of its operands in the larger tree, ascending
 };
 
 using Operand = MergeCandidate::Operand;
 
-/// An operand of the smaller tree that is found at a valid place of the larger one.
+/// An operand of the smaller tree that is found at a valid place in the larger one.
 struct Match {
   std::uint32_t smaller_group;
   std::uint32_t larger_group;
@@ -103,7 +101,7 @@ MergeCandidate make_merge_candidate(CsgTree tree) {
   return result;
 }
 
-/// The largest common subtree with a valid merge node in `larger`; of equal ones the nearest to the roots.
+/// The largest common subtree with a valid merge node in `larger`, on ties the nearest to the roots.
 /// O(size of smaller x log size of larger).
 std::optional<CommonSubtree> largest_common_subtree(const MergeCandidate& larger, const MergeCandidate& smaller) {
   const std::vector<Match> matches = find_matches(larger, smaller);
@@ -123,7 +121,7 @@ std::optional<CommonSubtree> largest_common_subtree(const MergeCandidate& larger
   return common;
 }
 
-/// `larger` with `replacement` in the place of the common subtree, not simplified. O(size).
+/// `larger` with `replacement` in place of the common subtree, not simplified. O(size).
 CsgTree put_in_place(const MergeCandidate& larger, const CommonSubtree& common, const CsgTree& replacement) {
   std::vector<CsgNode> nodes;
   const auto unite_with = [&nodes](std::span<const CsgNode> more) {
@@ -148,7 +146,7 @@ CsgTree put_in_place(const MergeCandidate& larger, const CommonSubtree& common, 
 bool share_a_primitive(const MergeCandidate& a, const MergeCandidate& b) {
   auto in_a = a.primitives.begin();
   auto in_b = b.primitives.begin();
-  // Usually one is a partition and the other has grown far beyond it.
+  // Usually one is a partition's tree and the other has grown far beyond it.
   if (a.primitives.size() > 8 * b.primitives.size()) {
     return std::ranges::any_of(b.primitives, [&a](auto p) { return std::ranges::binary_search(a.primitives, p); });
   }
@@ -159,7 +157,7 @@ bool share_a_primitive(const MergeCandidate& a, const MergeCandidate& b) {
   return false;
 }
 
-/// Where two trees merge, if they do. The larger one receives the other; of equal ones the first.
+/// Where two trees merge. The larger one receives the other; the first on ties.
 struct MergePlan {
   const MergeCandidate& larger;
   const MergeCandidate& smaller;
@@ -190,7 +188,7 @@ std::vector<MergeCandidate> simplified_candidates(std::span<const CsgTree> trees
   return candidates;
 }
 
-/// Merges the first of the trees from `head` on with the first later one that it merges with.
+/// Merges the tree at `head` with the first later one that it merges with.
 bool merge_head(std::vector<MergeCandidate>& list, std::size_t head) {
   for (std::size_t next = head + 1; next < list.size(); ++next) {
     const std::optional<MergePlan> plan = plan_merge(list[head], list[next]);
@@ -210,14 +208,14 @@ std::size_t merge_in_order_of_the_paper(std::vector<MergeCandidate>& list, const
     for (std::size_t head = 0; head < list.size(); ++head) {
       while (!stop.stop_requested() && merge_head(list, head)) {
         ++merges;
-        may_find_more = may_find_more || head > 0;  // one of those passed over
+        may_find_more = may_find_more || head > 0;  // one of the trees passed over
       }
     }
   }
   return merges;
 }
 
-/// Takes out the places that `is_gone`; the others stay in their order.
+/// Removes the entries that `is_gone` and keeps the order of the others.
 template <typename IsGone>
 void drop_gone(std::vector<MergeCandidate>& list, const IsGone& is_gone) {
   std::size_t kept = 0;
@@ -227,13 +225,13 @@ void drop_gone(std::vector<MergeCandidate>& list, const IsGone& is_gone) {
   list.resize(kept);
 }
 
-/// The queue of mergeable pairs, largest common subtree first, then in the order of the list.
+/// A queue of mergeable pairs: the largest common subtree first, then the order of the list.
 class LargestFirst {
  public:
   LargestFirst(std::vector<MergeCandidate>& slots, std::stop_token stop)
       : slots_(slots), versions_(slots.size(), 0), stop_(std::move(stop)) {}
 
-  /// Returns the number of merges; slots of trees that went into others are removed.
+  /// Returns the number of merges. Removes the slots of trees that went into others.
   std::size_t merge_all() {
     for (std::size_t i = 0; i < slots_.size() && !stop_.stop_requested(); ++i) {
       for (std::size_t j = i + 1; j < slots_.size(); ++j) consider(i, j);
@@ -253,7 +251,6 @@ class LargestFirst {
  private:
   struct Pair {
     std::size_t common_size, i, j, version_i, version_j;
-    /// Whether the other pair goes first.
     bool operator<(const Pair& other) const {
       if (common_size != other.common_size) return common_size < other.common_size;
       return i != other.i ? i > other.i : j > other.j;
@@ -284,17 +281,16 @@ class LargestFirst {
   std::stop_token stop_;
 };
 
-/// Lists up to this length are merged in their order alone.
+/// Lists up to this length skip the pairing rounds.
 constexpr std::size_t k_short_list = 64;
 
 /// For long lists: each tree merges with the first later one that it merges with and that has not merged yet, so that
-/// in each round trees become about twice as large. A result that grows by one partition at a time would be copied as
-/// often as there are partitions.
+/// trees about double in each round. A tree that grew by one partition at a time would be copied once for each.
 class PairingRounds {
  public:
   PairingRounds(std::vector<MergeCandidate>& list, std::stop_token stop) : list_(list), stop_(std::move(stop)) {}
 
-  /// Until the list is short or nothing merges. Returns the number of merges.
+  /// Merges until the list is short or nothing merges. Returns the number of merges.
   std::size_t merge() {
     std::size_t merges = 0;
     while (list_.size() > k_short_list && !stop_.stop_requested()) {

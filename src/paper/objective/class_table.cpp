@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Contributions a line of the cache.
+/// Contributions in a cache line.
 constexpr std::size_t k_line = 64 / sizeof(PackedContribution);
 
 bool equal(const std::uint32_t* a, const std::uint32_t* b, std::size_t stride_b, std::size_t words) {
@@ -38,7 +38,7 @@ bool are_same(const std::optional<AlignedBox>& a, const std::optional<AlignedBox
   return a && b ? a->min() == b->min() && a->max() == b->max() : !a && !b;
 }
 
-/// Whether the root may be grouped by for the request as well.
+/// Whether the root's classes can answer the request as well.
 bool can_answer(const Root& root, const RankClassesRequest& request) {
   return root.primitives.size() <= RankClasses::k_shared_limit && root.stride == request.stride &&
          root.without_strangers == request.without_strangers && are_same(root.region, request.region) &&
@@ -46,7 +46,6 @@ bool can_answer(const Root& root, const RankClassesRequest& request) {
          std::ranges::includes(root.owners, owners_of(request));
 }
 
-/// Where in the root's set a primitive is.
 std::size_t place_in(const Root& root, PrimitiveIndex primitive) {
   return static_cast<std::size_t>(std::ranges::lower_bound(root.primitives, primitive) - root.primitives.begin());
 }
@@ -57,7 +56,7 @@ std::vector<std::size_t> places_in(const Root& root, const RankClassesRequest& r
   return places;
 }
 
-/// Takes the classes of a root, a block of them at a time, into the table of a subset.
+/// Regroups the classes of a root, a block at a time, into the table of a subset.
 class Projection {
  public:
   Projection(const Root& root, const ClassTable& from, std::span<const std::uint32_t> inside,
@@ -121,7 +120,7 @@ class Projection {
   KeyLayout root_layout_;
   std::size_t root_size_;
   std::vector<std::size_t> places_;
-  std::uint32_t unwanted_ = 0;  // inside bits of which a class must have none
+  std::uint32_t unwanted_ = 0;  // inside bits that a class must not have
   std::uint32_t wanted_ = 0;    // member bits of which a class must have one; 0: takes every class
   KeyLayout layout_;
   std::vector<RankColumn> old_ranks_, new_ranks_;
@@ -143,7 +142,7 @@ std::size_t ClassTable::slot_of(const std::uint32_t* key, std::size_t stride, st
 
 void ClassTable::find_or_insert(const BlockKeys& keys, std::span<const std::uint16_t> points,
                                 std::span<std::uint32_t> classes) {
-  // The table is larger than the first-level cache: the slots of a whole block are asked for at once.
+  // The table exceeds the first-level cache: prefetch the slots of a whole block.
   for (const std::uint16_t i : points) __builtin_prefetch(&slots_[keys.hashes[i] & (slots_.size() - 1)]);
   for (std::size_t k = 0; k < points.size(); ++k) {
     classes[k] = find_or_insert(&keys.words[points[k]], k_block_points, keys.hashes[points[k]]);
@@ -251,7 +250,7 @@ std::vector<Root> plan_roots(std::span<const RankClassesRequest> requests) {
     const RankClassesRequest& request = requests[k];
     assert(!request.primitives.empty() && request.stride > 0 && std::ranges::is_sorted(request.primitives));
     assert(std::ranges::includes(request.primitives, owners_of(request)));
-    // Of the lists of roots that could do, the shortest: a primitive that overlaps all others is in all.
+    // Search the shortest list of roots: a primitive that overlaps all others is in all of them.
     const PrimitiveIndex rarest =
         *std::ranges::min_element(request.primitives, {}, [&](PrimitiveIndex p) { return roots_with[p].size(); });
     const std::vector<std::size_t>& nearby = roots_with[rarest];

@@ -2,16 +2,16 @@
 
 #include <cstdint>
 
-/// Contributions to E(t) in units: integers, whose sums are exact in any order.
+/// Contributions to E(t) in integer units, whose sums are exact in any order.
 namespace cloud2csg {
 
 /// One unit. A contribution is at most 2: 2^23 units.
 inline constexpr double k_unit = 1.0 / (1U << 22U);
 
-/// What a primitive contributes at a point or some points, as it is (lower half) and as its complement (upper half).
+/// Contributions of a primitive at some points: plain in the lower half, complemented in the upper half.
 using PackedContribution = std::uint64_t;
 
-/// The sums over so many points fit the halves.
+/// Sums over this many points fit the halves.
 inline constexpr std::uint32_t k_most_packed_points = 511;
 
 [[nodiscard]] constexpr std::uint64_t plain_units(PackedContribution packed) {

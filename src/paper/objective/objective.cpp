@@ -14,7 +14,7 @@
 namespace cloud2csg {
 namespace {
 
-/// What a subtree is at one point: the value, and which primitive it is of.
+/// A subtree's value at a point, and the primitive that has it.
 struct Selected {
   double value;
   PrimitiveIndex primitive;
@@ -26,7 +26,7 @@ bool has_negative_rank(const Selected& s) {
   return s.value < 0 || (s.value == 0 && s.complemented);
 }
 
-/// Whether a's signed rank is below b's: by value; equal values by the index of the primitive, mirrored when negative.
+/// Whether a's signed rank is below b's: by value, then by the primitive's index, mirrored when negative.
 bool ranks_below(const Selected& a, const Selected& b) {
   if (a.value != b.value) return a.value < b.value;
   if (has_negative_rank(a) != has_negative_rank(b)) return has_negative_rank(a);
@@ -43,7 +43,7 @@ Selected upper(const Selected& a, const Selected& b) {
   return ranks_below(a, b) ? b : a;
 }
 
-/// What each primitive is at a block of points: made once a block, so that the walk below only reads.
+/// The primitives' fields at a block of points, computed once, so that the walk below only reads.
 struct BlockFields {
   std::vector<std::vector<double>> distances;  // by primitive, then by point; empty for primitives not in the tree
   std::vector<Points> gradients;
@@ -79,7 +79,7 @@ Selected select(const CsgTree& tree, std::size_t node, const BlockFields& fields
 
 constexpr std::size_t k_block = 1024;
 
-/// Whether a tree explains a point, which has a distance and an angle to it.
+/// Whether a tree explains a point that has this distance and angle to it.
 class Explanation {
  public:
   explicit Explanation(const SegmentationTolerances& tolerances)

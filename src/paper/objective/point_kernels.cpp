@@ -18,11 +18,11 @@ namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-/// Numbers of a block, as many as fit a vector; of doubles at most eight, so that as many floats are made of them.
+/// A vector of a block's numbers. At most eight doubles, so that as many floats are made of them.
 template <class Real>
 using Reals = std::conditional_t<sizeof(Real) == sizeof(double), hn::CappedTag<double, 8>, hn::ScalableTag<Real>>;
 
-/// As many floats.
+/// As many floats as there are Reals.
 template <class Real>
 using Floats = hn::Rebind<float, Reals<Real>>;
 
@@ -42,8 +42,8 @@ HWY_INLINE V polynomial(const std::array<float, n>& c, V x) {
   return sum;
 }
 
-/// 2^(-y) for y >= 0, to 1e-7 of its value up to 2, and of one beyond; almost 0 from 126 on. 2^k times a polynomial
-/// (minimax, degree 6) of the rest, which is at most 1/2.
+/// 2^(-y) for y >= 0: relative error 1e-7 up to 2, absolute error 1e-7 beyond; almost 0 from 126 on. It is 2^k times a
+/// minimax polynomial of degree 6 of the rest, which is at most 1/2.
 template <class V>
 HWY_INLINE V power_of_half(V y) {
   constexpr std::array k_coefficients{1.0F,          -0.69314721F,   0.24022652F,  -0.055503272F,
@@ -58,7 +58,7 @@ HWY_INLINE V power_of_half(V y) {
   return polynomial(k_coefficients, rest) * hn::BitCast(d, scale);
 }
 
-/// acos(1 - u)^2 / (2 u) on 0 <= u <= 1, to 5e-8: analytic there, so a polynomial (minimax) does.
+/// acos(1 - u)^2 / (2 u) on 0 <= u <= 1, to 5e-8. It is analytic there, so a minimax polynomial will do.
 template <class V>
 HWY_INLINE V angle_square_ratio(V u) {
   constexpr std::array k_coefficients{1.0F,          0.16667211F,   0.044337514F,   0.015079435F,
@@ -66,7 +66,7 @@ HWY_INLINE V angle_square_ratio(V u) {
   return polynomial(k_coefficients, u);
 }
 
-/// 0 <= v <= 2 in units: above 2, the last bit of a float is one.
+/// 0 <= v <= 2 in units: from 2 on, the last bit of a float is one unit.
 template <class V>
 HWY_INLINE auto units_of(V v) {
   const hn::RebindToUnsigned<hn::DFromV<V>> d;
@@ -88,7 +88,6 @@ void find_range(const BlockField<Real>& field, BlockContributions<Real>& out) {
   out.largest = hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-/// Of the gradients with the normals.
 template <class Real>
 HWY_INLINE auto cosines(const BlockField<Real>& field, const BlockNormals<Real>& normals, bool unit_gradient,
                         std::size_t i) {
@@ -98,21 +97,21 @@ HWY_INLINE auto cosines(const BlockField<Real>& field, const BlockNormals<Real>&
   const auto gz = hn::Load(d, &field.gradient_z[i]);
   const auto dot = gx * hn::Load(d, normals.x + i) + gy * hn::Load(d, normals.y + i) + gz * hn::Load(d, normals.z + i);
   if (unit_gradient) return dot;
-  // A gradient of length zero has no direction, but must not divide.
+  // A gradient of length zero has no direction, but must not cause a division by zero.
   const auto tiny = hn::Set(d, std::numeric_limits<Real>::min());
   return dot / hn::Sqrt(hn::Max(gx * gx + gy * gy + gz * gz, tiny));
 }
 
-/// Scores of 2^(-this) and less, added and rounded, are zero.
+/// Scores of at most 2^(-this) add up and round to zero.
 constexpr double k_silent_power = 17.0 * std::numbers::log2e;
 
-/// What the loop over a block need not compute.
+/// Work that the loop over a block may skip.
 struct Shortcuts {
   bool is_far;           ///< no point's distance counts
   bool far_side_counts;  ///< see far_side_counts()
 };
 
-/// In full precision: distances and angles, and who is a member; all that is left is in single precision.
+/// Distances, angles and memberships are in full precision, all the rest in single precision.
 template <Shortcuts k_shortcuts, class Real>
 void score_block(const BlockField<Real>& field, const BlockNormals<Real>& normals,
                  const ContributionParameters& parameters, BlockContributions<Real>& out) {
@@ -146,10 +145,10 @@ void score_block(const BlockField<Real>& field, const BlockNormals<Real>& normal
       auto at_distance = zero;
       if constexpr (!k_shortcuts.is_far) {
         const auto scaled = f * distance_scale;
-        // Squares beyond the range of floats are clamped in power_of_half, long before they overflow.
+        // 1e30 keeps squares in the range of floats; power_of_half clamps them anyway.
         const auto exponent = to_floats(hn::Min(scaled * scaled, all(1e30)));
         is_silent = hn::And(is_silent, exponent >= silent);
-        // As if the block were far: what a point scores does not depend on its neighbours.
+        // As if the block were far: a point's score must not depend on its neighbours.
         at_distance = hn::IfThenElseZero(exponent < silent, power_of_half(exponent));
       }
       if (hn::AllTrue(df, is_silent)) {
@@ -181,7 +180,7 @@ template <class Real>
 void contributions_of_block(const BlockField<Real>& field, const BlockNormals<Real>& normals,
                             const ContributionParameters& parameters, BlockContributions<Real>& out) {
   find_range(field, out);
-  // In the numbers of the loop, so that both round alike.
+  // Use the number type of the loop, so that both round alike.
   const Real scaled = out.smallest * static_cast<Real>(parameters.beta * std::sqrt(std::numbers::log2e));
   const bool is_far = static_cast<float>(std::min(scaled * scaled, Real{1e30F})) >= static_cast<float>(k_silent_power);
   if (far_side_counts(parameters.gamma)) {
@@ -197,7 +196,7 @@ void contributions_of_block(const BlockField<Real>& field, const BlockNormals<Re
   }
 }
 
-/// Numbers are stored with their lower half first.
+/// The lower half of a number comes first in memory.
 static_assert(std::endian::native == std::endian::little);
 void interleave_units(const BlockUnits& first, const BlockUnits& second, PackedPairs& out) {
   const hn::ScalableTag<std::uint32_t> d;

@@ -11,17 +11,16 @@
 namespace cloud2csg {
 namespace {
 
-/// From so many primitives on, a block of neighbouring points is near few of them, and it pays to find out of which.
+/// From this many primitives on, a block of neighbours is near few of them, and finding those pays.
 constexpr std::size_t k_many_primitives = 32;
 
 bool is_single_enough(const AlignedBox& box, const PrimitiveSet& primitives, const PointPassOptions& options) {
   if (options.precision != Precision::automatic) return options.precision == Precision::single;
-  // From the far side, an angle near 180 degrees counts as it is, not its square: its cosine does not tell it in
-  // single.
+  // On the far side an angle near 180 degrees counts as it is, not squared. A cosine in single cannot resolve it.
   return !far_side_counts(options.objective.gamma) && is_single_enough(box, primitives, options.noise);
 }
 
-/// Where points may belong to each primitive, with room for what rounding does.
+/// Boxes in which points may belong to each primitive, with room for rounding.
 std::vector<AlignedBox> reach_of(const PrimitiveSet& primitives, const AlignedBox& box, double distance) {
   const double largest = (box.isEmpty() ? 0.0 : box.diagonal().norm()) + box.center().norm();
   const double room = 0.01 * distance + 1e-9 * largest;
@@ -67,7 +66,7 @@ WorkerInput<Real> input_of(const PointCloud& cloud, const AlignedBox& box, const
   return input;
 }
 
-/// As many shares as threads: each costs a set of tables. The result does not depend on how many.
+/// As many shares as threads, since each costs a set of tables. The result does not depend on their number.
 template <class Real>
 WorkerShare work(const WorkerInput<Real>& input, const RunContext& run) {
   const std::size_t chunks = chunk_count(input.cloud.size());

@@ -10,7 +10,7 @@
 namespace cloud2csg {
 namespace {
 
-/// Of the points begin .. begin + count - 1, those whose place is a multiple of the stride.
+/// The points begin .. begin + count - 1 whose place is a multiple of the stride.
 BlockMask every_kth(std::size_t begin, std::size_t count, std::size_t stride) {
   if (stride == 1) return first_points(count);
   BlockMask mask{};
@@ -18,13 +18,13 @@ BlockMask every_kth(std::size_t begin, std::size_t count, std::size_t stride) {
   return mask;
 }
 
-/// A primitive that is looked at in a block.
+/// A primitive that is evaluated in a block.
 template <class Real>
 struct ActivePrimitive {
   BlockContributions<Real> contributions;
   BlockField<Real> field;
   PrimitiveIndex primitive = 0;
-  bool has_members = false;  ///< points of the block that belong to it
+  bool has_members = false;  ///< points of the block belong to it
 };
 
 template <class Real>
@@ -82,7 +82,7 @@ class Worker {
     }
   }
 
-  /// Finds out which points of the block belong to which primitives.
+  /// Assigns the points of the block to primitives.
   void segment(std::size_t block) {
     if (looks_at_bounds_) bounds_ = blocks_.bounds(block);
     for (const PrimitiveIndex p : near_chunk_) {
@@ -116,7 +116,6 @@ class Worker {
 
   [[nodiscard]] const ActivePrimitive<Real>& active(PrimitiveIndex p) const { return active_[slot_of_[p]]; }
 
-  /// The roots that take points of the block.
   void choose_roots() {
     for (const std::uint32_t k : wanted_) is_wanted_[k] = false;
     wanted_ = input_.roots_of_all_points;
@@ -136,7 +135,7 @@ class Worker {
     active_count_ = 0;
   }
 
-  /// Those of owners that are not active have no points here.
+  /// Owners that are not active have no points here.
   [[nodiscard]] BlockMask points_of(const Root& root, std::size_t block, std::size_t begin) const {
     BlockMask chosen = every_kth(begin, blocks_.size(block), root.stride);
     if (root.region && !holds_block(*root.region)) keep_to(*root.region, block, chosen);
@@ -150,7 +149,7 @@ class Worker {
     return both(chosen, any);
   }
 
-  /// A side of a region, rounded as the points are, so that all that look at it see it at one place.
+  /// A side of a region, rounded like the points, so that all uses see it at one place.
   static Eigen::Array<Real, 3, 1> rounded(const Eigen::Vector3d& corner) { return corner.cast<Real>().array(); }
 
   [[nodiscard]] bool holds_block(const AlignedBox& region) const {
@@ -158,7 +157,7 @@ class Worker {
            (rounded(bounds_.max()) < rounded(region.max())).all();
   }
 
-  /// Takes out the points that are not in the region, as RankClassesRequest::region says.
+  /// Removes the points outside of the region, as RankClassesRequest::region says.
   void keep_to(const AlignedBox& region, std::size_t block, BlockMask& chosen) const {
     const BasicPointsView<Real> points = blocks_.positions(block);
     const Eigen::Array<Real, 3, 1> least = rounded(region.min());
@@ -169,7 +168,7 @@ class Worker {
     }
   }
 
-  /// Takes out the points inside a primitive that is not of the root. Of those that are not active, none is.
+  /// Removes the points inside a primitive that is not of the root. None are inside one that is not active.
   void leave_out_strangers(const Root& root, BlockMask& chosen) const {
     for (std::size_t slot = 0; slot < segmented_count_; ++slot) {
       const ActivePrimitive<Real>& other = active_[slot];
@@ -178,7 +177,6 @@ class Worker {
     }
   }
 
-  /// The places of the bits that are set.
   [[nodiscard]] std::span<const std::uint16_t> places_of(const BlockMask& mask) {
     std::size_t found = 0;
     for (std::size_t w = 0; w < mask.size(); ++w) {
@@ -211,7 +209,7 @@ class Worker {
     }
   }
 
-  /// The contributions of each group's points.
+  /// Sums the contributions of each group's points.
   void add_up(std::span<const std::uint16_t> chosen) {
     sums_.assign(groups_.size() * loud_.size(), {});
     for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -224,7 +222,7 @@ class Worker {
     }
   }
 
-  /// Of the root's primitives, two and two, those that contribute something in the block: their places, and what.
+  /// Packs the contributions of the root's primitives in pairs. Skips pairs that contribute nothing in the block.
   void pack_loud_pairs(const Root& root) {
     static constexpr BlockContributions<Real> k_nothing{};
     loud_.clear();
@@ -267,20 +265,20 @@ class Worker {
   BlockKeys keys_;
   const WorkerInput<Real>& input_;
   PointBlocks<Real> blocks_;
-  std::vector<PrimitiveIndex> near_chunk_;     // of which points of the chunk may be
-  std::vector<ActivePrimitive<Real>> active_;  // the first active_count_ of them
+  std::vector<PrimitiveIndex> near_chunk_;     // primitives that points of the chunk may belong to
+  std::vector<ActivePrimitive<Real>> active_;  // the first active_count_ are in use
   std::size_t active_count_ = 0;
-  std::size_t segmented_count_ = 0;     // of the active: the others have no points here
-  std::vector<std::uint32_t> slot_of_;  // by primitive: its place among the active, or k_none
+  std::size_t segmented_count_ = 0;     // active ones that may have points here; the others have none
+  std::vector<std::uint32_t> slot_of_;  // by primitive: its place among the active ones, or k_none
   std::vector<std::uint32_t> wanted_;   // roots that take points of the block
   std::vector<bool> is_wanted_;         // by root
   bool looks_at_bounds_;
-  AlignedBox bounds_;  // of the block, if they are looked at
+  AlignedBox bounds_;  // bounds of the block, if they are looked at
   std::vector<DistanceColumn<Real>> columns_;
   std::vector<RankColumn> ranks_;
   std::vector<const BlockMask*> members_;
   std::vector<std::size_t> loud_;   // see pack_loud_pairs
-  std::vector<PackedPairs> pairs_;  // the first loud_.size() of them
+  std::vector<PackedPairs> pairs_;  // the first loud_.size() are in use
   BlockGroups groups_;
   std::vector<std::array<PackedContribution, 2>> sums_;  // by group and loud pair
   std::array<std::uint16_t, k_block_points> places_{};
@@ -302,7 +300,7 @@ WorkerShare work_on_chunks(const WorkerInput<Real>& input, std::size_t first, st
   Worker<Real> worker(input);
   for (std::size_t chunk = first; chunk < last; ++chunk) {
     run.throw_if_stopped();
-    // The first share speaks for all: they are of one size and advance together.
+    // The first share stands for all: they have one size and advance together.
     if (first == 0) run.report("classes", chunk, last);
     worker.process(chunk);
   }

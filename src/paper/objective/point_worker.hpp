@@ -7,24 +7,24 @@
 
 namespace cloud2csg {
 
-/// What every worker reads.
+/// The input of all workers.
 template <class Real>
 struct WorkerInput {
   PrimitiveSet primitives;                         ///< in the frame of the blocks
   std::vector<ContributionParameters> parameters;  ///< by primitive
   const PointCloud& cloud;
-  AlignedBox box;                                         ///< of the cloud
-  std::vector<std::uint32_t> order;                       ///< of the points: see spatial_order()
-  std::vector<Root> roots;                                ///< their regions in the frame of the blocks
-  std::vector<std::vector<std::uint32_t>> roots_of = {};  ///< by primitive: those that it is an owner of
+  AlignedBox box;                                         ///< bounds of the cloud
+  std::vector<std::uint32_t> order;                       ///< see spatial_order()
+  std::vector<Root> roots;                                ///< with regions in the frame of the blocks
+  std::vector<std::vector<std::uint32_t>> roots_of = {};  ///< by primitive: roots that it is an owner of
   std::vector<std::uint32_t> roots_of_all_points = {};
-  /// For many primitives; for few, empty, and all are looked at everywhere.
+  /// Empty for few primitives, which are all evaluated everywhere.
   std::vector<AlignedBox> reach = {};  ///< by primitive, in the frame of the blocks: where points may belong to it
 };
 
-/// What a worker gathers from its share of the points; shares are added up at the end.
+/// A worker's results for its share of the points. Shares are added up at the end.
 struct WorkerShare {
-  std::vector<ClassTable> tables;  ///< one a root
+  std::vector<ClassTable> tables;  ///< one for each root
   std::vector<std::size_t> points_of_primitive;
   std::size_t unassigned = 0;
   double segment_seconds = 0;
@@ -34,8 +34,7 @@ struct WorkerShare {
   void absorb_counts(const WorkerShare& other);
 };
 
-/// Takes chunks of points through distances, membership, contributions, ranks and classes.
-/// @throws Cancelled
+/// Computes distances, memberships, contributions, ranks and classes of chunks of points. @throws Cancelled
 template <class Real>
 [[nodiscard]] WorkerShare work_on_chunks(const WorkerInput<Real>& input, std::size_t first, std::size_t last,
                                          const RunContext& run);

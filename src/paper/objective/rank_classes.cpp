@@ -17,7 +17,7 @@ RankTable<Rank> table_of(const AlignedVector<Rank>& ranks, const AlignedVector<f
   return {.ranks = ranks.data(), .scores = scores.data(), .primitives = primitives, .padded = padded};
 }
 
-/// Nothing and all of space have no surface: they score nothing at any point.
+/// Empty and full trees have no surface: they score nothing at any point.
 bool has_no_surface(const CsgTree& tree) {
   assert(is_constant(tree) || std::ranges::none_of(tree.nodes(), [](const CsgNode& node) {
            return node.is_leaf() && node.operation() != Operation::primitive;
@@ -103,7 +103,7 @@ void RankClassesBuilder::fill(RankClasses& result, AlignedVector<Rank>& ranks, c
       const int rank = static_cast<int>(code) - static_cast<int>(n);
       ranks[p * result.padded_count_ + c] = static_cast<Rank>(rank);
       const WideContribution sum = classes.sum(c, p);
-      // Signed numbers are converted at once.
+      // Signed numbers convert in one step.
       const auto plain = static_cast<std::int64_t>(sum.plain);
       const auto complement = static_cast<std::int64_t>(sum.complement);
       scores[code] = static_cast<float>(static_cast<double>(plain) * k_unit);

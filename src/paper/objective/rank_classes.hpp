@@ -8,7 +8,7 @@ namespace cloud2csg {
 /// Turns grouped points into the table that trees are evaluated on.
 class RankClassesBuilder {
  public:
-  /// The keys of the classes are as KeyLayout(primitives.size()) packs them.
+  /// KeyLayout(primitives.size()) packs the keys of the classes.
   [[nodiscard]] static RankClasses build(std::span<const PrimitiveIndex> primitives, const ClassTable& classes,
                                          const Objective& objective);
 

@@ -16,8 +16,7 @@
 #define CLOUD2CSG_FITNESS_STANDINGS
 namespace cloud2csg {
 
-/// How each primitive of a block stands among the others. Of two, where their ranges overlap, one is nearer here and
-/// the other there; else one is nearer at every point.
+/// How the primitives of a block rank. Unless their ranges overlap, one of two is nearer at every point.
 template <class Real>
 class Standings {
  public:
@@ -37,9 +36,9 @@ class Standings {
     }
   }
 
-  /// One more than how many are nearer at every point.
+  /// One more than the number of primitives that are nearer at every point.
   [[nodiscard]] int certain_rank(std::size_t p) const { return 1 + counts_[p].always_nearer; }
-  /// Distances of those of smaller, and of larger index that are sometimes nearer.
+  /// Distances of the primitives of smaller, and of larger index that are sometimes nearer.
   [[nodiscard]] std::span<const Real* const> earlier(std::size_t p) const { return row(p).first(counts_[p].earlier); }
   [[nodiscard]] std::span<const Real* const> later(std::size_t p) const { return row(p).last(counts_[p].later); }
 
@@ -55,7 +54,7 @@ class Standings {
     return std::span(rivals_).subspan(p * counts_.size(), counts_.size());
   }
 
-  std::vector<const Real*> rivals_;  // by primitive: the earlier from the front, the later from the back
+  std::vector<const Real*> rivals_;  // by primitive: the earlier ones from the front, the later ones from the back
   std::vector<Counts> counts_;
 };
 
@@ -70,7 +69,7 @@ namespace {
 using Bytes = hn::ScalableTag<std::int8_t>;
 using Words = hn::ScalableTag<std::uint32_t>;
 
-/// Ranks are counted in the numbers that are compared, and narrowed at the end.
+/// Ranks are counted in the type of the distances, and narrowed at the end.
 HWY_INLINE void store_narrowed(hn::ScalableTag<float> d, hn::Vec<hn::ScalableTag<float>> ranks, std::int8_t* out) {
   const hn::RebindToSigned<decltype(d)> di;
   hn::StoreU(hn::DemoteTo(hn::Rebind<std::int8_t, decltype(d)>(), hn::ConvertTo(di, ranks)),
@@ -91,7 +90,7 @@ void rank_one(const Real* distances, const Standings<Real>& standings, std::size
     const auto distance = hn::Load(d, distances + i);
     const auto magnitude = hn::Abs(distance);
     auto rank = certain_rank;
-    // Ties by index: of equal magnitudes, those with a smaller index come before.
+    // Ties go by index: among equal magnitudes, a smaller index comes before.
     for (const Real* other : standings.earlier(p)) {
       rank = rank + hn::IfThenElseZero(hn::Abs(hn::Load(d, other + i)) <= magnitude, one);
     }
@@ -166,7 +165,7 @@ void pack_members(std::span<const BlockMask* const> members, BlockKeys& keys) {
   }
 }
 
-/// Multiplications by odd numbers and shifts: every word and every bit of it counts.
+/// Multiplies by odd numbers and shifts, so that every bit of every word counts.
 void hash_keys(BlockKeys& keys) {
   const Words d;
   const auto multiplier = hn::Set(d, 0x9e3779b1U);

@@ -8,29 +8,29 @@
 
 #include "paper/objective/point_kernels.hpp"
 
-/// The order of several primitives at each point of a block, and keys made of it.
+/// The order of several primitives at each point of a block, and keys made from it.
 namespace cloud2csg {
 
-/// The signed ranks of one primitive at the points of a block.
+/// A primitive's signed ranks at the points of a block.
 struct alignas(64) RankColumn {
   std::array<std::int8_t, k_block_points> ranks;
 };
 
-/// A primitive's distances at a block of points, and bounds on their magnitudes.
+/// A primitive's distances at a block of points, and bounds of their magnitudes.
 template <class Real>
 struct DistanceColumn {
   const Real* distances;  ///< k_block_points, aligned to 64 bytes
   Real smallest, largest;
 };
 
-/// Signed ranks of the primitives at each point of a block. Primitives are compared point by point only where the
-/// bounds leave their order open. For up to RankClasses::k_byte_limit primitives. `Real` is double or float.
+/// Signed ranks of up to RankClasses::k_byte_limit primitives at each point of a block. Compares primitives point by
+/// point only where the bounds leave their order open. `Real` is double or float.
 void compute_signed_ranks(std::span<const DistanceColumn<double>> primitives, std::span<RankColumn> out);
 void compute_signed_ranks(std::span<const DistanceColumn<float>> primitives, std::span<RankColumn> out);
-/// The signed ranks of some primitives among themselves from those among more.
+/// The signed ranks of some primitives among themselves, from those among more.
 void compute_signed_ranks(std::span<const RankColumn* const> primitives, std::span<RankColumn> out);
 
-/// How signed ranks are packed into the words of a key: code = n + signed rank, `bits` wide, so many a word.
+/// How a key packs signed ranks: each code is n + signed rank, `bits` wide, codes_per_word to a word.
 struct KeyLayout {
   explicit KeyLayout(std::size_t primitives);
   std::uint32_t bits;
@@ -54,11 +54,10 @@ struct KeyLayout {
   }
 };
 
-/// Keys of the points of a block.
 struct BlockKeys {
   explicit BlockKeys(std::size_t key_words = 0) { reshape(key_words); }
 
-  /// For keys of so many words; what was in them is lost.
+  /// Sets the words of a key. The contents are lost.
   void reshape(std::size_t key_words) {
     count = key_words;
     words.resize(std::max(words.size(), key_words * k_block_points));
@@ -66,17 +65,17 @@ struct BlockKeys {
 
   std::size_t count = 0;                                           ///< words of a key
   AlignedVector<std::uint32_t> words;                              ///< word w of point i at [w * k_block_points + i]
-  alignas(64) std::array<std::uint32_t, k_block_points> hashes{};  ///< of all words
+  alignas(64) std::array<std::uint32_t, k_block_points> hashes{};  ///< hash of all words
 };
 
 /// Writes the words that the layout has.
 void pack_rank_keys(std::span<const RankColumn> columns, const KeyLayout& layout, BlockKeys& keys);
 /// Writes the last word: the primitives that a point belongs to, bit k for the k-th of at most 32 masks.
 void pack_member_word(std::span<const BlockMask* const> members, BlockKeys& keys);
-/// To be called when all words are written.
+/// Precondition: all words are written.
 void compute_hashes(BlockKeys& keys);
 
-/// Ranks by sorting at each point, and keys of them: for many primitives, and the reference of what is above.
+/// Ranks by sorting at each point, and keys of them: for many primitives, and as the reference of the functions above.
 void sort_rank_keys(std::span<const double* const> distances, const KeyLayout& layout, BlockKeys& keys);
 void sort_rank_keys(std::span<const float* const> distances, const KeyLayout& layout, BlockKeys& keys);
 

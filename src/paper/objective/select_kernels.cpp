@@ -15,7 +15,7 @@ namespace cloud2csg::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-/// Classes that are carried through the whole tree at once: the stack of columns stays in the first-level cache.
+/// Classes that go through the tree at once, so that the stack of columns stays in the first-level cache.
 constexpr std::size_t k_chunk = 1024;
 
 AlignedVector<std::int8_t>& stack_memory(RankScratch& scratch, std::int8_t /*tag*/) {
@@ -52,7 +52,7 @@ HWY_INLINE void negate(const Rank* a, Rank* out, std::size_t count) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) hn::Store(hn::Neg(hn::Load(d, a + i)), d, out + i);
 }
 
-/// The tree's column for `count` classes from `begin`. Leaves stay where they are; results go to stack slots.
+/// The tree's column for `count` classes from `begin`. Leaves stay in place; results go to stack slots.
 template <class Rank>
 HWY_INLINE const Rank* select_chunk(const RankTable<Rank>& table, std::span<const CsgNode> nodes, std::size_t begin,
                                     std::size_t count, Rank* stack, const void** operands) {
@@ -75,7 +75,7 @@ HWY_INLINE const Rank* select_chunk(const RankTable<Rank>& table, std::span<cons
   return static_cast<const Rank*>(operands[0]);
 }
 
-/// Adds up the scores that `count` classes from `begin` look up. In double precision the sum is exact (see
+/// Sums the scores that `count` classes from `begin` look up. The sum is exact in double precision (see
 /// compute_contributions), so the order of the lanes does not show.
 template <class Rank>
 HWY_INLINE double look_up(const RankTable<Rank>& table, const Rank* column, std::size_t begin, std::size_t count) {
@@ -97,7 +97,7 @@ HWY_INLINE double look_up(const RankTable<Rank>& table, const Rank* column, std:
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-/// Gives the tree's column to `use`, a chunk at a time.
+/// Passes the tree's column to `use`, a chunk at a time.
 template <class Rank, class Use>
 HWY_INLINE void for_each_chunk(const RankTable<Rank>& table, std::span<const CsgNode> nodes, RankScratch& scratch,
                                const Use& use) {

@@ -34,8 +34,7 @@ Eigen::Vector3d mean(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Half-spaces whose normals are this close to opposite (as a distance of unit vectors) count as parallel: otherwise
-/// they meet more than 10^9 units away.
+/// Half-spaces with unit normals this close to opposite count as parallel: they meet over 10^9 units away, if at all.
 constexpr double k_opposite_tolerance = 1e-9;
 
 bool spheres_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance) {
@@ -47,7 +46,7 @@ Eigen::Vector3d outward_normal(const OverlapBody& half_space) {
   return half_space.solid.pose.orientation * Eigen::Vector3d::UnitZ();
 }
 
-/// How far a displacement can move a surface that is given by a distance.
+/// How far a displacement can move the surface of a distance field.
 double amplitude(const OverlapBody& body) {
   return body.solid.displacement ? 1.0 : 0.0;
 }
@@ -60,7 +59,7 @@ bool half_spaces_overlap(const OverlapBody& a, const OverlapBody& b, double tole
   return gap <= tolerance + amplitude(a) + amplitude(b);
 }
 
-/// The point of a convex body farthest in `direction`, as support(), but in O(corners) for polytopes.
+/// support() of a convex body, but in O(corners) for polytopes.
 Eigen::Vector3d support_point(const OverlapBody& body, const Eigen::Vector3d& direction) {
   if (body.corners.empty()) return support(body.solid, direction);
   return *std::max_element(body.corners.begin(), body.corners.end(),
@@ -77,16 +76,15 @@ bool is_any_half_space(const OverlapBody& body) {
   return std::holds_alternative<HalfSpace>(body.solid.shape);
 }
 
-// libccd offers GJK and Minkowski portal refinement (MPR). On touching solids, tolerance 1e-6 of their size, its
-// GJK misses 20 to 70 % of the contacts (its simplex tests compare squared lengths with an absolute epsilon); its MPR
-// misses none of 280 000, needs fewer support points and ends by itself. So MPR it is.
+// libccd has GJK and Minkowski portal refinement (MPR). On touching solids, tolerance 1e-6 of their size, its GJK
+// misses 20 to 70 % of the contacts, because its simplex tests compare squared lengths with an absolute epsilon. Its
+// MPR misses none of 280 000, needs fewer support points and ends by itself.
 
 constexpr unsigned long k_max_iterations = 1000;  // NOLINT(google-runtime-int): libccd's type
-/// Progress of the portal below which MPR stops, in units of the pair's size: near the resolution of double.
+/// Progress of the portal at which MPR stops, in units of the pair's size: near the resolution of double.
 constexpr double k_portal_tolerance = 1e-13;
 
-/// One body of a pair in libccd's frame: moved and scaled so that the pair is around the origin and of unit size, since
-/// libccd compares with absolute epsilons.
+/// A body in libccd's frame: the pair is at the origin and of unit size, since libccd's epsilons are absolute.
 struct CcdBody {
   const OverlapBody& body;
   double inflation;
@@ -137,8 +135,7 @@ OctreeLevel split(const OctreeLevel& cells) {
   return halves;
 }
 
-/// The cells that the field does not prove to be outside. Not-a-number proves nothing. `values` gets the fields at the
-/// centres of the cells that stay, the larger of the old value and this field's.
+/// Cells not proved to be outside. NaN proves nothing. `values`: the largest field so far at each centre.
 struct Filtered {
   Points centres;
   std::vector<double> values;
@@ -155,8 +152,8 @@ Filtered drop_outside(const OverlapBody& body, const Filtered& cells, double rea
   return kept;
 }
 
-/// One Newton step towards f_a <= 0 and f_b <= 0: the shortest step that solves the violated constraints, linearised.
-/// Where solids touch the two gradients are opposite; the damping keeps the step finite there.
+/// One Newton step towards f_a <= 0 and f_b <= 0: the shortest one that solves the violated constraints, linearised.
+/// Damping keeps the step finite where solids touch and the gradients are opposite.
 Eigen::Vector3d newton_step(double value_a, const Eigen::Vector3d& slope_a, double value_b,
                             const Eigen::Vector3d& slope_b) {
   constexpr double k_damping = 1e-12;
@@ -168,8 +165,8 @@ Eigen::Vector3d newton_step(double value_a, const Eigen::Vector3d& slope_a, doub
   return -slopes.transpose() * normal.inverse() * Eigen::Vector2d(value_a, value_b);
 }
 
-/// Whether Newton's method from `start` ends at a point within `reach` of both solids. Finds contacts that are far
-/// smaller than any cell; proves nothing when it fails.
+/// Whether Newton's method from `start` reaches a point within `reach` of both solids. Finds contacts far smaller than
+/// any cell. A failure proves nothing.
 bool descent_finds_overlap(const OverlapBody& a, const OverlapBody& b, const Eigen::Vector3d& start,
                            const AlignedBox& region, double reach) {
   Points point(1);
@@ -189,7 +186,7 @@ bool descent_finds_overlap(const OverlapBody& a, const OverlapBody& b, const Eig
   return false;
 }
 
-/// The cell nearest to both solids; cells.size() when no field is a number anywhere.
+/// The cell nearest to both solids; values.size() when all values are NaN.
 std::size_t most_promising(const std::vector<double>& values) {
   std::size_t best = values.size();
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -198,7 +195,7 @@ std::size_t most_promising(const std::vector<double>& values) {
   return best;
 }
 
-/// For two bounded convex bodies: do they, each grown by half the tolerance, intersect? Minkowski portal refinement.
+/// Whether two bounded convex bodies, each grown by half the tolerance, intersect, by Minkowski portal refinement.
 bool convex_bodies_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance) {
   const AlignedBox both = a.bounds.merged(b.bounds);
   const double size = both.diagonal().norm() + tolerance;
@@ -215,21 +212,18 @@ bool convex_bodies_overlap(const OverlapBody& a, const OverlapBody& b, double to
   return ccdMPRIntersect(&first, &second, &ccd) != 0;
 }
 
-/// For any two bodies with bounds in common: is there a point that is within half the tolerance of both? Branch and
-/// bound over the common bounds: a cell is dropped when a field's Lipschitz bound proves the whole cell to
-/// be outside of one solid.
-///
-/// "No" is proven where the Lipschitz constants are (all shapes but expressions, whose constant is estimated).
-/// "Yes" is proven by a point, within the fields' own accuracy: a displaced or expression field is divided by its
-/// Lipschitz constant, so such a solid may count as larger by tolerance * lipschitz / 2. When the budget of
-/// evaluations ends first, the gap is smaller than the cells can tell (about 1/500 of the common bounds), and the
-/// answer is yes: an edge too many costs time, an edge too few costs the right tree.
-/// @throws Cancelled
+/// Whether some point is within half the tolerance of two bodies with bounds in common. Branch and bound over the
+/// common bounds drops a cell when a field's Lipschitz constant proves it to be outside of one solid.
+/// "No" is proven where the Lipschitz constants are (all shapes but expressions, whose constant is estimated). "Yes" is
+/// proven by a point, within the fields' own accuracy: a displaced or expression field is divided by its Lipschitz
+/// constant, so such a solid may count as larger by tolerance * lipschitz / 2. When the budget of evaluations ends
+/// first, the gap is smaller than the cells can tell (about 1/500 of the common bounds), and the answer is yes: an
+/// extra edge costs time, a missing edge costs the right tree. @throws Cancelled
 bool fields_overlap(const OverlapBody& a, const OverlapBody& b, double tolerance, const RunContext& run) {
   const double reach = tolerance / 2;
   const AlignedBox region = grown(a.bounds, reach).intersection(grown(b.bounds, reach));
   if (region.isEmpty()) return false;
-  if (!region.sizes().allFinite()) return true;  // no search can end there: rather an edge too many
+  if (!region.sizes().allFinite()) return true;  // no search ends there: rather an extra edge
 
   OctreeLevel cells = initial_cells(region);
   for (std::size_t evaluations = 0; !cells.centres.empty(); cells = split(cells)) {

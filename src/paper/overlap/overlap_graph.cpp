@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// The stop token is looked at once in this many pairs: a pair of convex solids takes about a microsecond.
+/// Pairs between looks at the stop token: a pair of convex solids takes about a microsecond.
 constexpr std::size_t k_pairs_between_stops = 1024;
 
 std::vector<OverlapBody> make_bodies(const PrimitiveSet& primitives, const OverlapOptions& options) {
@@ -23,7 +23,7 @@ std::vector<OverlapBody> make_bodies(const PrimitiveSet& primitives, const Overl
   return bodies;
 }
 
-/// Pairs whose bounds meet: of bounded solids by the R-tree, of an unbounded one with every other.
+/// Pairs whose bounds meet: by the R-tree for bounded solids, all pairs for unbounded ones.
 class BroadPhase {
  public:
   BroadPhase(const std::vector<OverlapBody>& bodies, double margin) : bodies_(bodies), margin_(margin) {
@@ -34,7 +34,7 @@ class BroadPhase {
     index_ = BoundsIndex(entries);  // from a range: packed, O(n log n)
   }
 
-  /// Primitives that may overlap primitive i, each pair for one of its two members only.
+  /// Primitives that may overlap primitive i. Each pair comes for one of its members only.
   [[nodiscard]] std::vector<PrimitiveIndex> partners(PrimitiveIndex i) const {
     std::vector<PrimitiveIndex> found;
     if (!bodies_[i].is_bounded()) {

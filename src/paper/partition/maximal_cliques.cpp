@@ -42,7 +42,7 @@ void erase_sorted(Vertices& vertices, PrimitiveIndex vertex) {
   vertices.erase(std::lower_bound(vertices.begin(), vertices.end(), vertex));
 }
 
-/// Vertices such that each has the fewest neighbours among itself and those after it (Matula and Beck). O(n + edges).
+/// An order in which each vertex has the fewest neighbours among those left (Matula and Beck). O(n + edges).
 Vertices degeneracy_order(const OverlapGraph& graph) {
   std::vector<std::size_t> degree(graph.size());
   std::vector<Vertices> by_degree(graph.size() + 1);
@@ -59,7 +59,7 @@ Vertices degeneracy_order(const OverlapGraph& graph) {
     }
     const PrimitiveIndex v = by_degree[lowest].back();
     by_degree[lowest].pop_back();
-    if (done[v] || degree[v] != lowest) continue;  // an entry from before its degree fell
+    if (done[v] || degree[v] != lowest) continue;  // outdated: its degree has fallen
     done[v] = true;
     order.push_back(v);
     for (const PrimitiveIndex w : graph.neighbours[v]) {
@@ -75,7 +75,7 @@ class CliqueSearch {
  public:
   explicit CliqueSearch(const OverlapGraph& graph) : graph_(graph) {}
 
-  /// Reports every maximal clique that holds all of `clique`, any of `candidates` and none of `excluded`.
+  /// Reports every maximal clique with all of `clique`, any of `candidates` and none of `excluded`.
   void extend(Clique& clique, Vertices candidates, Vertices excluded) {
     if (candidates.empty()) {
       if (excluded.empty()) cliques_.push_back(clique);
@@ -95,7 +95,7 @@ class CliqueSearch {
   [[nodiscard]] std::vector<Clique> take() { return std::move(cliques_); }
 
  private:
-  /// The vertex with the most neighbours among the candidates: only the others need to be branched on.
+  /// The vertex with the most neighbours among the candidates. Only the other candidates need branches.
   [[nodiscard]] PrimitiveIndex pivot(const Vertices& candidates, const Vertices& excluded) const {
     PrimitiveIndex best = candidates.front();
     std::size_t best_count = 0;

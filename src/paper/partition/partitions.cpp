@@ -11,7 +11,7 @@
 namespace cloud2csg {
 namespace {
 
-/// The oriented bounds of the points on each unbounded primitive, in its own frame: what of it matters for overlap.
+/// The oriented bounds, in its own frame, of the points on each unbounded primitive: only they matter for overlap.
 std::vector<std::optional<OrientedBox>> extents_of_unbounded(const PointCloud& cloud, const PrimitiveSet& primitives,
                                                              const SegmentationTolerances& tolerances,
                                                              const RunContext& run) {
@@ -40,7 +40,7 @@ void take_all_at_once(Partitions& partitions) {
   partitions.component_of = {0};
 }
 
-/// Components that `is_whole` says so of, then the cliques of the others.
+/// Takes the components that `is_whole` accepts, then the cliques of the others.
 template <typename IsWhole>
 void take_cliques(Partitions& partitions, IsWhole is_whole) {
   std::vector<std::size_t> component_of_primitive(partitions.graph.size());
@@ -73,7 +73,7 @@ class Cutter {
       std::optional<Halves> halves = cut_across(region, axis);
       if (halves && (!best || halves->larger() < best->larger())) best = std::move(halves);
     }
-    // Cuts that part off little would be many.
+    // Cuts that part off little would be too many.
     if (!best || 8 * best->larger() > 7 * region.near.size()) {
       regions_.push_back(region);
       return;
@@ -90,7 +90,7 @@ class Cutter {
     [[nodiscard]] std::size_t larger() const { return std::max(below.near.size(), above.near.size()); }
   };
 
-  /// At the median of the middles of the boxes.
+  /// Cuts at the median of the middles of the boxes.
   [[nodiscard]] std::optional<Halves> cut_across(const Region& region, int axis) const {
     std::vector<double> middles;
     for (const PrimitiveIndex p : region.near) {
@@ -117,10 +117,10 @@ class Cutter {
   std::vector<Region> regions_;
 };
 
-/// How many bytes a table may take while it is made, when each of its points may be a class of its own.
+/// Bytes for a table in the making, when each of its points may be a class of its own.
 constexpr std::size_t k_table_bytes = std::size_t{64} << 20U;
 
-/// Tables over sets that are too large for that use every k-th point.
+/// Tables over sets that are too large for k_table_bytes use every k-th point.
 std::size_t stride_for(std::size_t primitives, std::size_t points) {
   if (primitives <= RankClasses::k_shared_limit) return 1;
   const std::size_t row_bytes = 2 * sizeof(double) * primitives;
@@ -134,7 +134,7 @@ PointPassOptions pass_options(const NoiseScale& scale, const ExtractOptions& opt
           .precision = options.precision};
 }
 
-/// Of the tables that the search and the merge need.
+/// Collects the tables that the search and the merge need.
 class Requests {
  public:
   Requests(const PointCloud& cloud, const PrimitiveSet& primitives, const Partitions& partitions, double tolerance,
@@ -145,7 +145,6 @@ class Requests {
     }
   }
 
-  /// One a partition.
   void add_partitions() {
     for (const Clique& partition : partitions_.sets) {
       add(partition, {}, stride_for(partition.size(), cloud_.size()), surroundings(partition));
@@ -163,7 +162,7 @@ class Requests {
       const std::vector<Region> regions = cut_into_regions(partitions_.graph.neighbours[p], reach_, k_whole_limit - 1);
       std::size_t largest = 0;
       for (const Region& region : regions) largest = std::max(largest, region.near.size() + 1);
-      // What a primitive scores in its windows is added up: points must weigh the same in all.
+      // A primitive's scores in its windows are added up, so points must weigh the same in all.
       const std::size_t stride = stride_for(largest, cloud_.size());
       for (const Region& region : regions) {
         std::vector<PrimitiveIndex> set = region.near;
@@ -178,7 +177,7 @@ class Requests {
   [[nodiscard]] std::vector<RankClassesRequest> take() && { return std::move(requests_); }
 
  private:
-  /// Overlaps so many others that only those nearby may be looked at.
+  /// Whether it overlaps so many others that only those nearby may be looked at.
   [[nodiscard]] bool is_hub(PrimitiveIndex p) const { return partitions_.graph.neighbours[p].size() >= k_whole_limit; }
 
   std::size_t add(std::vector<PrimitiveIndex> primitives, std::vector<PrimitiveIndex> owners, std::size_t stride,
@@ -191,7 +190,7 @@ class Requests {
     return requests_.size() - 1;
   }
 
-  /// Where a partition with hubs is decided: at its other primitives, and around them. The paper judges by all points.
+  /// Where a partition with hubs is judged: at its other primitives and around them. The paper judges by all points.
   [[nodiscard]] std::optional<AlignedBox> surroundings(const Clique& partition) const {
     const bool has_hub = std::ranges::any_of(partition, [&](PrimitiveIndex p) { return is_hub(p); });
     if (!has_hub || !options_.without_strangers || options_.strategy == Strategy::baseline) return std::nullopt;

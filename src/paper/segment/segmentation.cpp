@@ -17,18 +17,17 @@ namespace {
 
 constexpr std::size_t k_noise_sample = 4096;
 constexpr std::size_t k_noise_block = 1024;
-constexpr double k_noise_floor = 1e-5;  // of the diagonal
+constexpr double k_noise_floor = 1e-5;  // share of the diagonal
 constexpr double k_noise_ceiling = 0.1;
 constexpr double k_outlier_sigmas = 5.0;
 constexpr double k_sigmas = 3.0;
-constexpr std::uint64_t k_sampling_stage = 0x6e6f'6973;  // names its stream of random numbers
+constexpr std::uint64_t k_sampling_stage = 0x6e6f'6973;  // names its random stream
 
 double cosine_of_deg(double degrees) {
   return std::cos(degrees * std::numbers::pi / 180.0);
 }
 
-/// Whether a point's normal is along the slope, or against it, to within an angle with this cosine. False where there
-/// is no slope.
+/// Whether a normal is along the slope or against it, within an angle of this cosine. False where the slope is zero.
 bool agrees(const Eigen::Vector3d& slope, const Eigen::Vector3d& normal, double least_cosine) {
   const double length = slope.norm();
   return length > 0 && std::abs(slope.dot(normal)) / length >= least_cosine;
@@ -40,7 +39,7 @@ void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& 
   const double least_square = least_cosine * least_cosine;
   for (const Primitive& primitive : primitives) {
     const SampledField field = sample_field(primitive, positions);
-    // As agrees(), without roots and branches.
+    // agrees(), without roots and branches
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const double gx = field.slopes.x[i];
       const double gy = field.slopes.y[i];
@@ -56,13 +55,13 @@ void find_nearest(PointsView positions, PointsView normals, const PrimitiveSet& 
 
 constexpr std::size_t k_block = 1024;
 
-/// Points of a block, by primitive, with their distances.
+/// The nearest primitive of each point of a block, and its distance.
 struct NearestInBlock {
-  std::vector<std::uint32_t> owners;  ///< as many as there are primitives for none
+  std::vector<std::uint32_t> owners;  ///< the number of primitives stands for none
   std::vector<double> distances;
 };
 
-/// The points of a block that may be within the tolerance: all where the field is no distance.
+/// The points of a block that may be within the tolerance; all where the field is no distance.
 std::vector<std::uint32_t> candidates_of(const Primitive& primitive, PointsView points, double tolerance) {
   std::vector<std::uint32_t> candidates(points.size());
   std::iota(candidates.begin(), candidates.end(), 0U);
@@ -73,7 +72,7 @@ std::vector<std::uint32_t> candidates_of(const Primitive& primitive, PointsView 
   return candidates;
 }
 
-/// Gives the primitive the points that lie on it and are farther from those before it.
+/// Gives the primitive the points on it that are farther from all primitives before it.
 void claim(std::uint32_t index, const Primitive& primitive, PointsView positions, PointsView normals,
            const SegmentationTolerances& tolerances, NearestInBlock& nearest) {
   const std::vector<std::uint32_t> candidates = candidates_of(primitive, positions, tolerances.distance);
@@ -107,7 +106,7 @@ double estimate_noise(const PointCloud& cloud, const PrimitiveSet& primitives, d
   std::erase_if(nearest, [](double distance) { return !std::isfinite(distance); });
   const AlignedBox box = bounds_of(sample.positions);
   const double diagonal = box.isEmpty() ? 0.0 : box.diagonal().norm();
-  // Points all in one place have no scale; but it must not be zero, since others divide by it.
+  // Points in one place have no scale, but others divide by it, so it must not be zero.
   const double scale = diagonal > 0 ? diagonal : 1.0;
   if (nearest.empty()) return k_noise_floor * scale;
   const double with_outliers = robust_deviation(nearest);

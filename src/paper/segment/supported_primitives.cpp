@@ -10,7 +10,7 @@
 namespace cloud2csg {
 namespace {
 
-/// So many of the primitives that are left out are told by name.
+/// How many of the primitives left out the warnings name.
 constexpr std::size_t k_named_warnings = 10;
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace cloud2csg {
 
-/// How exact the points are, and how far from a primitive they may be to be on it.
+/// The points' noise, and how far from a primitive and how tilted points on it may be.
 struct NoiseScale {
   double noise;
   SegmentationTolerances tolerances;
@@ -22,21 +22,19 @@ struct NoiseScale {
   return {.noise = noise, .tolerances = segmentation_tolerances(options, noise)};
 }
 
-/// Primitives that points support, and which of the input's each is.
+/// Primitives that points support, with their indices in the input.
 struct SupportedPrimitives {
   PrimitiveSet primitives;
   std::vector<PrimitiveIndex> original;
-  std::vector<std::string> warnings = {};  ///< sentences for the user: what was left out
+  std::vector<std::string> warnings = {};  ///< what was left out, in sentences for the user
 
   [[nodiscard]] std::size_t size() const { return primitives.size(); }
 };
 
-/// All of them.
 [[nodiscard]] SupportedPrimitives take_all(const PrimitiveSet& primitives);
 
-/// Leaves out those without points, with a warning each; many share one. The same object when there are none.
-/// `points_of_primitive`: how many points each has, by index in `supported`.
-/// @throws Error when no primitive has points
+/// Leaves out primitives without points, with a warning each; many share one. `points_of_primitive` counts each one's
+/// points, by index in `supported`. @throws Error when no primitive has points
 [[nodiscard]] SupportedPrimitives without_unsupported(SupportedPrimitives supported,
                                                       std::span<const std::size_t> points_of_primitive);
 
