@@ -1,12 +1,12 @@
 #include "paper/partition/partitions.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "core/base/run.hpp"
+#include "core/geometry/boxes.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -56,11 +56,6 @@ void take_cliques(Partitions& partitions, IsWhole is_whole) {
     partitions.sets.push_back(clique);
     partitions.component_of.push_back(component);
   }
-}
-
-AlignedBox all_of_space() {
-  constexpr double k_infinity = std::numeric_limits<double>::infinity();
-  return {Eigen::Vector3d::Constant(-k_infinity), Eigen::Vector3d::Constant(k_infinity)};
 }
 
 class Cutter {
@@ -244,7 +239,7 @@ Partitions partition_primitives(const PointCloud& cloud, const PrimitiveSet& pri
 std::vector<Region> cut_into_regions(std::span<const PrimitiveIndex> primitives, std::span<const AlignedBox> reach,
                                      std::size_t limit) {
   Cutter cutter(reach, limit);
-  cutter.cut({.box = all_of_space(), .near = {primitives.begin(), primitives.end()}});
+  cutter.cut({.box = everywhere(), .near = {primitives.begin(), primitives.end()}});
   return std::move(cutter.regions());
 }
 
