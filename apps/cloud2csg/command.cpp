@@ -60,18 +60,19 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 void add_run_options(CLI::App& options, RunOptions& values) {
-  options.add_option("--threads", values.threads, "Threads to use; 0 = all cores")
+  options.add_option("--threads", values.threads, "Number of threads; 0 = all cores")
       ->transform(number_in<int>(from_to(0, 1024)))
       ->type_name("N")
       ->group("Running")
       ->capture_default_str();
-  options.add_flag("-q,--quiet", values.quiet, "No progress and no notes on standard error")->group("Running");
+  options.add_flag("-q,--quiet", values.quiet, "Do not print progress and notes to standard error")->group("Running");
   add_config_options(options);
 }
 
 CLI::Option* add_outputs(CLI::App& options, std::vector<std::string>& files, const std::string& endings) {
   return options
-      .add_option("-o,--output", files, fmt::format("File to write, by its ending: {}; may be repeated", endings))
+      .add_option("-o,--output", files,
+                  fmt::format("File to write; the ending selects the format: {}; may be repeated", endings))
       ->check(file_name())
       ->required()
       ->type_name("FILE")
@@ -92,15 +93,15 @@ void add_shape(CLI::App& options, std::string& file) {
 const char* taker_of(FileKind kind) {
   switch (kind) {
     case FileKind::cloud:
-      return "'extract' makes a model of it, 'detect' finds its solids, 'compare' and 'info' take it, too";
+      return "'extract' makes a model from it, 'detect' finds its solids, 'compare' and 'info' also read it";
     case FileKind::mesh:
-      return "'extract' makes a model of it, 'sample' a cloud, 'compare' and 'info' take it, too";
+      return "'extract' makes a model from it, 'sample' makes a cloud, 'compare' and 'info' also read it";
     case FileKind::model:
-      return "'convert' writes it in other formats, 'sample' makes a cloud of it, 'info' tells what it holds";
+      return "'convert' writes it in other formats, 'sample' makes a cloud from it, 'info' describes it";
     case FileKind::script:
       return "no command reads it; 'convert' takes the .json that it was written from";
     case FileKind::solid:
-      return "no command reads it; export a mesh from the CAD program, which 'extract' makes a model of";
+      return "no command reads it; export a mesh from the CAD program, from which 'extract' makes a model";
     case FileKind::graph:
       return "no command reads it; Graphviz draws it";
     case FileKind::page:

@@ -68,16 +68,17 @@ void CompareCommand::run(std::stop_token stop) const {
 }
 
 void add_options(CLI::App& app, CompareCommand& command, FieldArguments& fields) {
-  add_file(app, "truth", command.truth, "Model, mesh or cloud to compare with")->type_name("TRUTH");
-  add_file(app, "result", command.result, "Model, mesh or cloud to judge")->type_name("RESULT");
-  app.add_flag("--json", command.is_json, "JSON instead of a table; what cannot be had is null")->group("Output");
+  add_file(app, "truth", command.truth, "Model, mesh or cloud of the true shape")->type_name("TRUTH");
+  add_file(app, "result", command.result, "Model, mesh or cloud to compare with it")->type_name("RESULT");
+  app.add_flag("--json", command.is_json, "Print JSON instead of a table; values that cannot be computed are null")
+      ->group("Output");
   fields.add(command.comparing, {.group = "Accuracy"});
 }
 
 }  // namespace
 
 Command add_compare(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("compare", "Says how alike two of model, mesh or cloud are");
+  CLI::App* app = program.add_subcommand("compare", "Measures how alike two shapes are: models, meshes or clouds");
   app->footer(example("  cloud2csg compare true.off extracted.json --json"));
   return make_command<CompareCommand>(*app, add_options);
 }

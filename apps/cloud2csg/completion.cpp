@@ -191,14 +191,13 @@ std::string completions(CLI::App& program, std::span<const std::string> words) {
 }
 
 Command add_completion(CLI::App& program) {
-  CLI::App* app =
-      program.add_subcommand("completion", "Prints a script that completes commands and options in a shell");
-  app->footer("Installed packages have these scripts where the shells look for them.\n\n" +
+  CLI::App* app = program.add_subcommand("completion", "Prints a shell script that completes commands and options");
+  app->footer("Packages install these scripts where the shells look for them.\n\n" +
               example("  cloud2csg completion bash > ~/.local/share/bash-completion/completions/cloud2csg\n"
                       "  cloud2csg completion zsh > ~/.zfunc/_cloud2csg\n"
                       "  cloud2csg completion fish > ~/.config/fish/completions/cloud2csg.fish"));
   auto shell = std::make_shared<std::string>();
-  app->add_option("shell", *shell, "bash, zsh or fish")
+  app->add_option("shell", *shell, "Shell: bash, zsh or fish")
       ->check(one_of({"bash", "zsh", "fish"}))
       ->required()
       ->type_name("SHELL");

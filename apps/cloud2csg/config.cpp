@@ -111,7 +111,7 @@ class ConfigReader {
     } catch (const Error& error) {
       refuse(error.what());
     } catch (const toml::parse_error& error) {
-      refuse(fmt::format("{}:{}: no TOML: {}", file_, error.source().begin.line, error.description()));
+      refuse(fmt::format("{}:{}: not valid TOML: {}", file_, error.source().begin.line, error.description()));
     }
   }
 
@@ -203,8 +203,9 @@ std::string value_line(const CLI::Option& option, const std::string& key) {
 /// The options in force as a file for --config; options without a value are comments.
 std::string config_text(CLI::App& command) {
   const std::string path = path_text(command, ".");
-  std::string text = fmt::format("# For --config. What begins with # is as the text over it says.\n\n[{}]\n",
-                                 path.substr(path.find('.') + 1));
+  std::string text = fmt::format(
+      "# For --config. Options in lines that begin with # keep their defaults, see the text above each.\n\n[{}]\n",
+      path.substr(path.find('.') + 1));
   std::string group;
   for (const CLI::Option* const option : options_of(command)) {
     if (option->get_lnames().empty() || !option->get_configurable()) continue;
@@ -225,7 +226,7 @@ void add_config_options(CLI::App& command) {
   command
       .add_option_function<std::string>(
           "--config", [&command](const std::string& name) { ConfigReader(command, name).read(); },
-          "Options from this file as well; those of the command line win")
+          "Read options from this file, too; options on the command line take precedence")
       ->check(file_name())
       ->type_name("FILE.toml")
       ->configurable(false)
@@ -233,7 +234,7 @@ void add_config_options(CLI::App& command) {
   command
       .add_flag_callback(
           "--print-config", [&command] { throw PrintedConfig(config_text(command)); },
-          "Print the options in force as such a file, and exit")
+          "Print the options in force as a file for --config, and exit")
       ->configurable(false)
       ->group("Running");
 }

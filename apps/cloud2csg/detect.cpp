@@ -90,7 +90,7 @@ void DetectCommand::run(std::stop_token stop) const {
   const std::string table = surface_table(found.surfaces);
   const Model model{.primitives = found.model.primitives,
                     .tree = {},
-                    .description = fmt::format("found by cloud2csg {} in {}, whose points lie on:\n{}",
+                    .description = fmt::format("found by cloud2csg {} in {}, whose points lie on these surfaces:\n{}",
                                                CLOUD2CSG_VERSION, cloud, table)};
   OutputSet written;
   add_pictures(written, outputs, {.cloud = found.cloud, .colours = colours_of(found)}, drawing, session.run());
@@ -111,19 +111,21 @@ void DetectCommand::run(std::stop_token stop) const {
   session.warn(found.statistics.warnings);
   const FindingStatistics& finding = *found.statistics.finding;
   const LargestChange largest = largest_change(finding.snaps);
-  session.display().note(fmt::format(
-      "{} surfaces, {} of {} points on none; {} values snapped, by at most {:.2g} and {:.2g} deg; {} solids; "
-      "noise {:.3g}, tolerance {:.3g}",
-      found.surfaces.size(), finding.unexplained_points, found.cloud.size(), finding.snaps.size(), largest.shift,
-      largest.turn_deg, found.model.primitives.size(), finding.noise, finding.tolerance));
+  session.display().note(
+      fmt::format("{} surfaces; {} of {} points on no surface; {} values made regular, by at most {:.2g} and {:.2g} "
+                  "deg; {} solids; noise {:.3g}, tolerance {:.3g}",
+                  found.surfaces.size(), finding.unexplained_points, found.cloud.size(), finding.snaps.size(),
+                  largest.shift, largest.turn_deg, found.model.primitives.size(), finding.noise, finding.tolerance));
 }
 
 void add_options(CLI::App& app, DetectCommand& command, FieldArguments& fields) {
   add_cloud(app, command.cloud);
-  CLI::Option* primitives = add_primitives(app, command.primitives,
-                                           " with primitives that are known: they are kept as they are, and only what "
-                                           "they leave unexplained is looked for");
-  app.add_flag("--detect-rest", command.detect_rest, "As in extract; here it is so whenever --primitives is given")
+  CLI::Option* primitives = add_primitives(
+      app, command.primitives,
+      " with known primitives: they are kept unchanged, and others are found only in points that they do not explain");
+  app.add_flag(
+         "--detect-rest", command.detect_rest,
+         "Accepted as in extract, without effect: --primitives always keeps the given primitives and finds the others")
       ->needs(primitives)
       ->group("Input");
   add_outputs(app, command.outputs, "the solids (.json), or the points in the colours of their solids (.ply, .png)");
@@ -138,8 +140,9 @@ void add_options(CLI::App& app, DetectCommand& command, FieldArguments& fields) 
 Command add_detect(CLI::App& program) {
   CLI::App* app = program.add_subcommand("detect", "Finds primitives in a point cloud, a scan or a mesh");
   app->footer(
-      "Prints the surfaces that the points lie on; the output has the solids that these bound, without a tree, and how "
-      "many points lie on each. Points on none are grey in a .ply.\n\n" +
+      "Prints the surfaces on which the points lie. A .json output has the solids that these surfaces bound, without a "
+      "tree, and in its description the surfaces with their numbers of points. Points on no solid are grey in a "
+      ".ply.\n\n" +
       example("  cloud2csg detect scan.ply -o primitives.json -o points.ply"));
   return make_command<DetectCommand>(*app, add_options);
 }

@@ -37,25 +37,26 @@ std::string partitions_line(const ExtractStatistics& s) {
 }
 
 std::string cells_line(const CellStatistics& cells) {
-  return fmt::format("cells        {}, {} of them open; {:.2g} % of what the points say is contradicted", cells.cells,
+  return fmt::format("cells        {}, {} of them open; {:.2g} % of the points' evidence is contradicted", cells.cells,
                      cells.open_cells, 100 * cells.contradicted_share());
 }
 
 std::string way_line(const ExtractStatistics& s) {
   if (s.cells) return cells_line(*s.cells);
-  if (s.finding && s.finding->is_tree_of_choice) return "way          the tree that the solids were chosen with";
+  if (s.finding && s.finding->is_tree_of_choice)
+    return "tree from    the choice of solids, which costs less than the extracted tree";
   return partitions_line(s);
 }
 
 std::string refine_line(const RefineStatistics& s) {
-  if (!s.is_taken) return "refined      nothing: the primitives are where the points are";
+  if (!s.is_taken) return "refined      nothing: the primitives fit the points best as they were";
   double shift = 0;
   double turn = 0;
   for (const PrimitiveChange& change : s.changes) {
     shift = std::max(shift, change.largest_shift);
     turn = std::max(turn, change.turn_deg);
   }
-  return fmt::format("refined      rms distance {:.3g} -> {:.3g}; up to {:.2g} and {:.2g} deg; {} regularities",
+  return fmt::format("refined      rms distance {:.3g} -> {:.3g}; changes up to {:.2g} and {:.2g} deg; {} regularities",
                      s.rms_before, s.rms_after, shift, turn, s.regularities.size());
 }
 
@@ -65,11 +66,11 @@ std::vector<std::string> finding_lines(const FindingStatistics& s, const StageSe
   std::vector<std::string> lines{
       fmt::format("scale        diagonal {:.4g}, spacing {:.3g}, noise {:.3g}: tolerance {:.3g}{}", s.diagonal,
                   s.spacing, s.noise, s.tolerance, s.normals_estimated ? "; normals estimated" : ""),
-      fmt::format("surfaces     {} planes, {} spheres, {} cylinders, {} cones, {} tori; {} points on none",
+      fmt::format("surfaces     {} planes, {} spheres, {} cylinders, {} cones, {} tori; {} points on no surface",
                   count(SurfaceType::plane), count(SurfaceType::sphere), count(SurfaceType::cylinder),
                   count(SurfaceType::cone), count(SurfaceType::torus), s.unexplained_points),
-      fmt::format("regular      {} values snapped, by at most {:.2g} and {:.2g} deg", s.snaps.size(), largest.shift,
-                  largest.turn_deg),
+      fmt::format("regular      {} values made regular, by at most {:.2g} and {:.2g} deg", s.snaps.size(),
+                  largest.shift, largest.turn_deg),
       fmt::format("found in     {:.2f} s: clean {:.2f}, normals {:.2f}, detect {:.2f}, solids {:.2f}",
                   seconds.clean + seconds.normals + seconds.detect + seconds.solids, seconds.clean, seconds.normals,
                   seconds.detect, seconds.solids)};
@@ -104,11 +105,11 @@ std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const 
       fmt::format("primitives   {}; cliques by size ({})", s.primitives, fmt::join(s.clique_histogram, ", ")),
       way_line(s),
       fmt::format("tree         {} nodes, {} leaves, {} levels{}", s.tree.size, s.tree.leaves, s.tree.levels,
-                  s.cells && s.cells->is_minimal ? "; none smaller has these cells" : ""),
+                  s.cells && s.cells->is_minimal ? "; no smaller tree has these cells" : ""),
       fmt::format("fit          rms distance {:.3g}, 95 % below {:.3g}, rms angle {:.3g} deg", s.fit.rms_distance,
                   s.fit.p95_distance, s.fit.rms_angle_deg),
       fmt::format("extraction   {:.1f} ms: {}", s.seconds.extraction * 1e3, stage_times(s.seconds)),
-      fmt::format("in all       {:.1f} ms: read {:.1f}, write {:.1f}", s.seconds.total * 1e3, s.seconds.read * 1e3,
+      fmt::format("total        {:.1f} ms: read {:.1f}, write {:.1f}", s.seconds.total * 1e3, s.seconds.read * 1e3,
                   s.seconds.write * 1e3)};
   if (s.refine) extraction.insert(extraction.begin() + 2, refine_line(*s.refine));
   lines.insert(lines.end(), extraction.begin(), extraction.end());
@@ -160,11 +161,10 @@ void ExtractCommand::settle(const CLI::App& app) {
 
 void check_normals(const PointCloud& cloud, const std::string& file) {
   if (cloud.has_normals()) return;
-  throw Error(
-      {.file = file,
-       .expected = "the points have no normals, which extract needs to combine given primitives",
-       .remedy = "estimate outward normals and save them with the points, add --detect-rest, or leave out --primitives "
-                 "to find them anew"});
+  throw Error({.file = file,
+               .expected = "the points have no normals, which extract needs to combine given primitives",
+               .remedy = "save outward normals with the points, add --detect-rest, or leave out --primitives to find "
+                         "the primitives in the cloud"});
 }
 
 PointCloud ExtractCommand::unexplained_part(const Extraction& result, int threads) const {
@@ -292,30 +292,31 @@ void ExtractCommand::run(const std::stop_token& stop) const {
 void add_options(CLI::App& app, ExtractCommand& command, FieldArguments& fields) {
   add_cloud(app, command.cloud);
   CLI::Option* primitives = add_primitives(
-      app, command.primitives, " with the primitives to combine; if not given, they are found in the cloud");
+      app, command.primitives, " with the primitives to combine; without it, primitives are found in the cloud");
   CLI::Option* detect_rest =
-      app.add_flag("--detect-rest", command.detect_rest,
-                   "Keep the primitives that are given as they are, and find in the cloud what they leave unexplained")
+      app.add_flag(
+             "--detect-rest", command.detect_rest,
+             "Keep the given primitives unchanged, and find further primitives in the points that they do not explain")
           ->needs(primitives)
           ->group("Input");
   add_outputs(app, command.outputs, model_endings());
   fields.add(command.exporting, {.group = "Output"});
-  app.add_option("--stats", command.statistics, "Statistics: times, search, merge, fit")
+  app.add_option("--stats", command.statistics, "File for statistics: times, search, merge, fit")
       ->check(file_name())
       ->type_name("STATS.json")
       ->group("Output");
   app.add_option("--unexplained", command.unexplained,
-                 "The points that the tree contradicts: off its surface, or with another normal")
+                 "File for the points that the tree contradicts: off its surface, or with a different normal")
       ->check(file_name())
       ->type_name("CLOUD")
       ->group("Output");
   app.add_flag("--refine", command.refine,
-               "Move, turn and size the primitives to where the points are, make regular what nearly is, and extract "
-               "again")
+               "Fit positions, directions and sizes of the primitives to the points, make nearly regular ones regular, "
+               "and extract again")
       ->excludes(detect_rest)
       ->group("Fit");
   add_raw_options(fields, command.options, command.reading);
-  app.add_option("--preset", command.preset, "default, or paper: the paper's weights and search, nothing added")
+  app.add_option("--preset", command.preset, "default, or paper: the paper's weights and search, without additions")
       ->check(one_of({"default", "paper"}))
       ->type_name("NAME")
       ->group("Search")
@@ -329,8 +330,8 @@ void add_options(CLI::App& app, ExtractCommand& command, FieldArguments& fields)
 Command add_extract(CLI::App& program) {
   CLI::App* app = program.add_subcommand("extract", "Turns a point cloud, a scan or a mesh into a CSG tree");
   app->footer(
-      "A .json output keeps all primitives, with --refine as they are then, else as they were given or found; the tree "
-      "leaves out those that no point supports.\n\n" +
+      "A .json output keeps all primitives: with --refine the refined ones, otherwise as given or found. The tree "
+      "leaves out primitives that no point supports.\n\n" +
       example("  cloud2csg extract scan.ply -o bracket.scad\n"
               "  cloud2csg extract bracket.ply --primitives fitted.json -o bracket.scad -o bracket.json\n"
               "  cloud2csg extract scan.ply --primitives known.json --detect-rest --radii 2.5,3 -o bracket.scad"));

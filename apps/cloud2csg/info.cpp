@@ -131,11 +131,11 @@ void InfoCommand::run() const {
 }  // namespace
 
 Command add_info(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("info", "Says what a cloud, mesh or model file holds");
+  CLI::App* app = program.add_subcommand("info", "Describes the contents of a cloud, mesh or model file");
   app->footer(example("  cloud2csg info bracket.json"));
   auto command = std::make_shared<InfoCommand>();
   add_file(*app, "file", command->file, "Point cloud, mesh or model")->type_name("FILE");
-  app->add_flag("--json", command->is_json, "JSON instead of a table")->group("Output");
+  app->add_flag("--json", command->is_json, "Print JSON instead of a table")->group("Output");
   return {.options = app, .run = [command](const std::stop_token& /*stop*/) { command->run(); }};
 }
 

@@ -48,7 +48,7 @@ Finding cad_files() {
 
 Finding reports() {
   if (has_report_page()) return {k_fine, "reports", ".html and 'view' are built in"};
-  return {k_absent, "reports", "built without: no .html, no 'view'",
+  return {k_absent, "reports", "not built in: no .html, no 'view'",
           "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"};
 }
 
@@ -64,7 +64,7 @@ Finding models() {
   const auto folder = shipped_models();
   if (folder) return {k_fine, "models", folder->string()};
   return {k_broken, "models", "the shipped models are not beside the program: 'bench paper' needs --models",
-          "install cloud2csg anew"};
+          "install cloud2csg again"};
 }
 
 /// Examines all parts; takes as long as loading OpenCASCADE.
@@ -79,7 +79,7 @@ std::vector<Finding> examine_installation() {
           models(),
           helper("OpenSCAD", "openscad", "written .scad files cannot be opened here", "openscad"),
           helper("FreeCAD", "freecadcmd", "written .FCMacro and .step files cannot be opened here", "freecad"),
-          helper("gnuplot", "gnuplot", "'bench' makes tables, and no figures", "gnuplot-nox"),
+          helper("gnuplot", "gnuplot", "'bench' makes tables but no figures", "gnuplot-nox"),
           helper("browser", "xdg-open", "'view' prints the address only", "xdg-utils")};
 }
 
@@ -123,9 +123,9 @@ std::string version_text() {
 }
 
 Command add_doctor(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("doctor", "Says which optional parts are there, and what is broken");
+  CLI::App* app = program.add_subcommand("doctor", "Reports which optional parts are installed, and what is broken");
   app->footer(
-      "'absent' is what this program was built without, or what is not installed here; exit status 1 says that "
+      "'absent' marks parts that this program was built without, or that are not installed. Exit status 1 means that "
       "something is broken.\n\n" +
       example("  cloud2csg doctor"));
   return {.options = app, .run = [](const std::stop_token& /*stop*/) { examine(); }};

@@ -54,15 +54,15 @@ int print(const std::string& text) {
 void describe(CLI::App& program) {
   program.description("Turns a point cloud of a solid object into an editable CSG tree.");
   program.name("cloud2csg");
-  program.set_version_flag("--version", version_text(), "Print the version, and what is built in, and exit");
+  program.set_version_flag("--version", version_text(), "Print the version and the built-in features, and exit");
   program.set_help_flag("-h,--help", "Print this help and exit");
   program.get_formatter()->column_width(34);
   program.footer(example("  cloud2csg extract scan.ply -o part.scad -o report.html\n"
                          "  cloud2csg extract scan.ply --config part.toml -o part.step\n"
                          "  cloud2csg convert part.json -o part.stl") +
-                 "\n\n'cloud2csg COMMAND --help', or 'cloud2csg help COMMAND', explains a command.\n"
-                 "Results go to files and standard output, progress and messages to standard error.\n"
-                 "Exit status: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted twice.");
+                 "\n\n'cloud2csg COMMAND --help', or 'cloud2csg help COMMAND', explains a command.\nResults go to "
+                 "files and standard output, progress and messages to standard error.\nExit status: 0 success, 1 "
+                 "failure, 2 wrong usage, 130 interrupted twice.");
 }
 
 int run_command(const Command& command) {

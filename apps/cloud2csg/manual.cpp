@@ -42,7 +42,7 @@ std::string entry_text(const CLI::Option& option) {
       fmt::format(".TP\n{}{}\n{}", fmt::join(names, ", "),
                   takes_value(option) ? " " + italic(option.get_type_name()) : "", plain(option.get_description()));
   if (!option.get_default_str().empty()) text += fmt::format("\n.br\nDefault: {}", plain(option.get_default_str()));
-  if (option.get_required()) text += "\n.br\nMust be given.";
+  if (option.get_required()) text += "\n.br\nRequired.";
   return text + "\n";
 }
 
@@ -103,14 +103,14 @@ std::string section(const std::string& title, const std::string& text) {
 
 constexpr const char* k_environment = R"(.TP
 \fBNO_COLOR\fR
-Set to anything but nothing: no colours on a terminal. There are never any elsewhere.
+If set and not empty: no colours on a terminal. There are never colours elsewhere.
 )";
 constexpr const char* k_exit_status = R"(.TP
 0
-Done.
+Success.
 .TP
 1
-It could not be done; standard error says why, and what to do.
+Failure; standard error says why, and what to do.
 .TP
 2
 Wrong usage.
@@ -149,7 +149,7 @@ Command add_manual(CLI::App& program) {
   app->group("");  // hidden: users have the built pages
   app->footer(example("  cloud2csg manual share/man/man1"));
   auto folder = std::make_shared<std::string>();
-  app->add_option("folder", *folder, "Folder that is there")->check(file_name())->required()->type_name("DIR");
+  app->add_option("folder", *folder, "Existing folder")->check(file_name())->required()->type_name("DIR");
   return {.options = app, .run = [&program, folder](const std::stop_token& /*stop*/) {
             for (CLI::App* const command : all_commands(program)) {
               const std::filesystem::path file = std::filesystem::path(*folder) / (path_text(*command, "-") + ".1");

@@ -43,8 +43,9 @@ void add_brep_warnings(std::vector<std::string>& warnings, const std::string& fi
   }
   if (!report.is_valid) warnings.push_back(fmt::format("{}: OpenCASCADE finds faults in the solid", file));
   if (report.volume_difference() > options.volume_tolerance) {
-    warnings.push_back(fmt::format("{}: the solid's volume is {:.6g}, the tree's is {:.6g}, {:.2g} % off", file,
-                                   report.volume, report.tree_volume, 100 * report.volume_difference()));
+    warnings.push_back(
+        fmt::format("{}: the volume of the solid, {:.6g}, differs from that of the tree, {:.6g}, by {:.2g} %", file,
+                    report.volume, report.tree_volume, 100 * report.volume_difference()));
   }
 }
 
@@ -78,19 +79,20 @@ void check_output(const std::filesystem::path& file, const std::string& endings,
   if (format == nullptr || (endings + ' ').find(fmt::format("{} ", format->endings[0])) == std::string::npos) {
     const std::string ending = file.extension().string();
     throw WrongUsage({.file = file.string(),
-                      .expected = ending.empty() ? std::string("the name has no ending")
-                                  : format == nullptr
-                                      ? fmt::format("unknown ending '{}'", ending)
-                                      : fmt::format("{} ('{}') is not written here", kind_name(format->kind), ending),
+                      .expected = ending.empty()      ? std::string("the file name has no ending")
+                                  : format == nullptr ? fmt::format("unknown ending '{}'", ending)
+                                                      : fmt::format("{} ('{}') cannot be written by this command",
+                                                                    kind_name(format->kind), ending),
                       .remedy = fmt::format("use one of {}", endings)});
   }
   if (format->kind == FileKind::solid) require_brep(file);
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
-    refuse(fmt::format("cannot be written: there is no folder '{}'", folder.string()), "make the folder first");
+    refuse(fmt::format("cannot be written: there is no folder '{}'", folder.string()), "create the folder first");
   }
-  if (std::filesystem::is_directory(file, ignored)) refuse("cannot be written: it is a folder", "name a file");
+  if (std::filesystem::is_directory(file, ignored))
+    refuse("cannot be written: it is a folder", "give the name of a file");
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     refuse(fmt::format("cannot be written: folder '{}' ({})", folder.string(), std::strerror(errno)),
            "check its permissions");
@@ -133,7 +135,7 @@ AddedModels add_models(OutputSet& set, std::span<const std::string> files, const
     });
     if (report.brep) add_brep_warnings(added.warnings, file, *report.brep, model.primitives, options.brep);
     if (!report.cut_at) continue;
-    added.warnings.push_back(fmt::format("{}: the solid has no bounds: it was cut at {} to {}; intersect it with a box",
+    added.warnings.push_back(fmt::format("{}: the solid is unbounded and was cut at {} to {}; intersect it with a box",
                                          file, corner(report.cut_at->min()), corner(report.cut_at->max())));
   }
   return added;
@@ -146,8 +148,8 @@ void check_distinct(std::span<const std::string> files) {
     std::filesystem::path path = std::filesystem::weakly_canonical(file, ignored);
     if (std::find(seen.begin(), seen.end(), path) != seen.end()) {
       throw WrongUsage({.file = file,
-                        .expected = "is named twice: one would overwrite the other",
-                        .remedy = "give each file a name of its own"});
+                        .expected = "is named twice, so one file would overwrite the other",
+                        .remedy = "give each file its own name"});
     }
     seen.push_back(std::move(path));
   }
@@ -172,7 +174,7 @@ void write_clouds(std::span<const std::string> files, const PointCloud& cloud, c
 void check_report_page(const std::string& file) {
   if (has_report_page()) return;
   throw Error({.file = file,
-               .expected = "cannot be shown: this cloud2csg was built without the page of reports",
+               .expected = "cannot be shown: this cloud2csg was built without the report page",
                .remedy = "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"});
 }
 

@@ -66,8 +66,8 @@ int bind(httplib::Server& server, int port) {
   const int bound = port == 0 ? server.bind_to_any_port(k_loopback) : server.bind_to_port(k_loopback, port) ? port : -1;
   if (bound > 0) return bound;
   throw Error({.where = fmt::format("--port {}", port),
-               .expected = "the port cannot be listened on",
-               .remedy = "choose another, or leave it out for any that is free"});
+               .expected = "the port cannot be opened",
+               .remedy = "choose another port, or leave out --port to use any free one"});
 }
 
 void wait_for(const std::stop_token& stop) {

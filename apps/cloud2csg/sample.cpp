@@ -36,7 +36,7 @@ PointCloud SampleCommand::sample(const Shape3d& read, const RunContext& run) con
     cloud = sample_mesh_surface(*read.mesh, options, run);
   } else {
     throw Error({.expected = "expected a model with a tree or a mesh, found a point cloud",
-                 .remedy = "sample what the cloud was made of"});
+                 .remedy = "give a model or mesh of the part, from which the cloud was made"});
   }
   if (!relative_noise || *relative_noise == 0) return cloud;
   const double noise = *relative_noise * bounds_of(cloud.positions).diagonal().norm();
@@ -58,7 +58,8 @@ void add_options(CLI::App& app, SampleCommand& command, FieldArguments& fields) 
   add_outputs(app, command.outputs, cloud_endings());
   fields.add(command.writing, {.group = "Output"});
   fields.add(command.sampling, {.group = "Sampling"});
-  app.add_option("--relative-noise", command.relative_noise, "The same as a share of the diagonal, instead of --noise")
+  app.add_option("--relative-noise", command.relative_noise,
+                 "Noise as a share of the diagonal of the points' bounds, instead of --noise")
       ->transform(number_in<double>(at_least(0)))
       ->type_name("SHARE")
       ->excludes(app.get_option("--noise"))
@@ -69,7 +70,7 @@ void add_options(CLI::App& app, SampleCommand& command, FieldArguments& fields) 
 }  // namespace
 
 Command add_sample(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("sample", "Makes a point cloud on the surface of a model or mesh");
+  CLI::App* app = program.add_subcommand("sample", "Samples a point cloud from the surface of a model or mesh");
   app->footer(example("  cloud2csg sample bracket.json -n 50000 --noise 0.01 -o bracket.ply"));
   return make_command<SampleCommand>(*app, add_options);
 }

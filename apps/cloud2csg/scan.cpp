@@ -26,7 +26,7 @@ PointCloud scan_shape(const Shape3d& shape, const std::string& file, const ScanO
   if (shape.mesh) return scan_mesh(*shape.mesh, options, run);
   throw Error({.file = file,
                .expected = "expected a model with a tree or a mesh, found a point cloud",
-               .remedy = "scan what the cloud was made of"});
+               .remedy = "give a model or mesh of the part, from which the cloud was made"});
 }
 
 void ScanCommand::run(std::stop_token stop) const {
@@ -45,7 +45,8 @@ void add_options(CLI::App& app, ScanCommand& command, FieldArguments& fields) {
   add_outputs(app, command.outputs, cloud_endings() + ", with sensor positions in .ply and .pcd");
   fields.add(command.writing, {.group = "Output"});
   fields.add(command.scanning, {.group = "Scanner"});
-  CLI::Option* const perfect = app.add_flag("--perfect", command.is_perfect, "None of the defects")->group("Defects");
+  CLI::Option* const perfect =
+      app.add_flag("--perfect", command.is_perfect, "Scan without any defects")->group("Defects");
   for (CLI::Option* const option : app.get_options()) {
     if (option != perfect && option->get_group() == perfect->get_group()) option->excludes(perfect);
   }
@@ -55,8 +56,7 @@ void add_options(CLI::App& app, ScanCommand& command, FieldArguments& fields) {
 }  // namespace
 
 Command add_scan(CLI::App& program) {
-  CLI::App* app =
-      program.add_subcommand("scan", "Makes the cloud that a range scanner would: occlusion, noise, outliers");
+  CLI::App* app = program.add_subcommand("scan", "Simulates the cloud of a range scanner: occlusion, noise, outliers");
   app->footer(
       example("  cloud2csg scan bracket.json -n 50000 --views 12 -o bracket.ply\n"
               "  cloud2csg scan part.stl --noise 0.002 --rotation 0.1 -o part.ply"));

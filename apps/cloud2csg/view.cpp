@@ -53,7 +53,7 @@ void ViewCommand::run(const std::stop_token& stop) const {
     (void)std::fflush(stdout);
     const bool is_opened = !no_browser && open_in_browser(address);
     if (running.quiet) return;
-    fmt::print(stderr, "{}Ctrl-C ends it\n",
+    fmt::print(stderr, "{}press Ctrl-C to end\n",
                is_opened ? "opened in the browser; " : "open this address in a browser; ");
   });
 }
@@ -61,21 +61,21 @@ void ViewCommand::run(const std::stop_token& stop) const {
 void add_options(CLI::App& app, ViewCommand& command, FieldArguments& /*fields*/) {
   add_file(app, "model", command.model, "Model file with a tree: " + endings_read({FileKind::model}))
       ->type_name("MODEL");
-  app.add_option("--cloud", command.cloud, "Points to show beside the solid, and how far they are from it")
+  app.add_option("--cloud", command.cloud, "Points to show beside the solid, with their distances from it")
       ->check(file_name())
       ->type_name("CLOUD|MESH");
-  app.add_option("--port", command.port, "Port on 127.0.0.1; 0 = any that is free")
+  app.add_option("--port", command.port, "Port on 127.0.0.1; 0 = any free port")
       ->transform(number_in<int>(from_to(0, 65'535)))
       ->type_name("N")
       ->capture_default_str();
-  app.add_flag("--no-browser", command.no_browser, "Print the address only");
+  app.add_flag("--no-browser", command.no_browser, "Print the address, but do not open a browser");
 }
 
 }  // namespace
 
 Command add_view(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("view", "Shows a model, and a cloud beside it, in the browser");
-  app->footer("The page is the one that '-o report.html' writes. It is served to this machine only, until Ctrl-C.\n\n" +
+  CLI::App* app = program.add_subcommand("view", "Shows a model in the browser, with a cloud beside it");
+  app->footer("Shows the page that '-o report.html' writes, to this machine only, until Ctrl-C.\n\n" +
               example("  cloud2csg view bracket.json --cloud bracket.ply"));
   return make_command<ViewCommand>(*app, add_options);
 }

@@ -13,13 +13,13 @@ void make_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, failure);
   if (!std::filesystem::is_directory(folder)) {
     throw Error({.file = folder.string(),
-                 .expected = "the folder cannot be made: " +
-                             (failure ? failure.message() : std::string("there is a file of this name"))});
+                 .expected = "the folder cannot be created: " +
+                             (failure ? failure.message() : std::string("a file of this name exists"))});
   }
 }
 
 void add_results_folder(CLI::App& app, std::string& folder) {
-  app.add_option("-o,--output", folder, "Folder for the results; made when it is not there")
+  app.add_option("-o,--output", folder, "Folder for the results; created if it does not exist")
       ->check(file_name())
       ->required()
       ->type_name("DIR")
@@ -32,7 +32,8 @@ int threads_of(const RunOptions& running) {
 }
 
 Command add_bench(CLI::App& program) {
-  CLI::App* app = program.add_subcommand("bench", "Measures the method: as its paper did, and how it scales");
+  CLI::App* app =
+      program.add_subcommand("bench", "Measures the method: the paper's evaluation, and how time and memory scale");
   app->footer(example("  cloud2csg bench paper -o out/paper"));
   app->require_subcommand(1);
   std::vector<Command> experiments{add_bench_paper(*app), add_bench_scaling(*app), add_bench_compare(*app)};

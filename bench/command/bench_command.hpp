@@ -27,7 +27,7 @@ auto resumable(const std::string& folder, Session& session, const Work& work) {
   try {
     return work();
   } catch (const Cancelled&) {
-    session.display().note("finished runs are kept in " + folder + "; the same command makes those that are missing");
+    session.display().note("finished runs are kept in " + folder + "; the same command makes the missing ones");
     throw;
   }
 }

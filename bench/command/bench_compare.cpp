@@ -38,30 +38,31 @@ void CompareResultsCommand::run(const std::stop_token& /*stop*/) const {
   const Environment& machine_before = results_before.environment;
   const Environment& machine_after = results_after.environment;
   if (machine_before.cpu != machine_after.cpu || machine_before.cores != machine_after.cores) {
-    fmt::print("The machines differ ({}, {} cores; {}, {} cores): so do durations.\n", machine_before.cpu,
+    fmt::print("The machines differ ({}, {} cores; {}, {} cores), and so do durations.\n", machine_before.cpu,
                machine_before.cores, machine_after.cpu, machine_after.cores);
   }
   const std::size_t worse = count_of(changes, Verdict::worse);
   fmt::print("{} measures: {} worse, {} better, {} the same within the noise, {} unknown\n", changes.size(), worse,
              count_of(changes, Verdict::better), count_of(changes, Verdict::same), count_of(changes, Verdict::unknown));
   if (worse == 0) return;
-  throw Error({.file = after, .expected = fmt::format("{} of its measures got worse", worse)});
+  throw Error({.file = after, .expected = fmt::format("{} measures got worse", worse)});
 }
 
 void add_options(CLI::App& app, CompareResultsCommand& command, FieldArguments& fields) {
-  add_file(app, "before", command.before, "The paper.json to compare with")->type_name("BEFORE.json");
-  add_file(app, "after", command.after, "The paper.json to judge")->type_name("AFTER.json");
-  app.add_flag("--all", command.is_all, "Show what stayed the same too")->group("Output");
+  add_file(app, "before", command.before, "Results to compare with (a paper.json)")->type_name("BEFORE.json");
+  add_file(app, "after", command.after, "Results to judge (a paper.json)")->type_name("AFTER.json");
+  app.add_flag("--all", command.is_all, "Also show measures that stayed the same")->group("Output");
   fields.add(command.comparing, {.group = "Judgement"});
 }
 
 }  // namespace
 
 Command add_bench_compare(CLI::App& bench) {
-  CLI::App* app = bench.add_subcommand("compare", "What got slower or larger between two results of 'bench paper'");
+  CLI::App* app =
+      bench.add_subcommand("compare", "Shows what got slower or larger between two results of 'bench paper'");
   app->footer(
-      "A measure is better or worse when Welch's t-test over the repeats says so and the change is large enough.\n"
-      "Exit status 1 when one got worse.\n\n" +
+      "A measure is better or worse if Welch's t-test over the repeats finds a difference and the change is large "
+      "enough.\nExit status 1 if a measure got worse.\n\n" +
       example("  cloud2csg bench compare before/paper.json after/paper.json"));
   return make_command<CompareResultsCommand>(*app, add_options);
 }

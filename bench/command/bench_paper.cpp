@@ -29,7 +29,8 @@ struct PaperCommand {
 std::filesystem::path PaperCommand::models_folder() const {
   if (models) return *models;
   if (auto shipped = shipped_models()) return *shipped;
-  throw Error({.expected = "the shipped models are not beside the program", .remedy = "name their folder by --models"});
+  throw Error(
+      {.expected = "the shipped models are not beside the program", .remedy = "give their folder with --models"});
 }
 
 /// Sorted names of all models in a folder.
@@ -42,7 +43,7 @@ std::vector<std::string> model_names(const std::filesystem::path& folder) {
   if (names.empty()) {
     throw Error({.file = folder.string(),
                  .expected = failure ? failure.message() : std::string("no model files (.json) in this folder"),
-                 .remedy = "name a folder of models by --models"});
+                 .remedy = "give a folder of models with --models"});
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -59,22 +60,24 @@ void PaperCommand::run(std::stop_token stop) const {
   const PaperResults results =
       resumable(folder, session, [&] { return reproduce_paper(experiment, models_folder(), folder, session.run()); });
   for (const std::string& note : write_paper_report(folder, results)) session.display().note("note: " + note);
-  session.display().note(fmt::format("{} runs; tables and figures are in {}", results.runs.size(),
-                                     (std::filesystem::path(folder) / "paper.md").string()));
+  session.display().note(fmt::format(
+      "{} runs; tables and figures are in {}", results.runs.size(),
+      (std::filesystem::path(folder) / "gave different trees; all modes must give the same tree").string()));
   const std::vector<std::string> disagreements = mode_disagreements(results);
   if (disagreements.empty()) return;
   throw Error({.where = disagreements.front(),
-               .expected = "gave different trees, and modes must not",
+               .expected = "report this with paper.json",
                .remedy = "report it with paper.json"});
 }
 
 void add_options(CLI::App& app, PaperCommand& command, FieldArguments& fields) {
   add_results_folder(app, command.folder);
-  app.add_option("--models", command.models, "Folder of models with trees (default: those that are shipped)")
+  app.add_option("--models", command.models, "Folder of models with trees (default: the shipped models)")
       ->check(file_name())
       ->type_name("DIR")
       ->group("Experiment");
-  app.add_option("--only", command.only, "A model of the folder, without its ending; may be repeated (default: all)")
+  app.add_option("--only", command.only,
+                 "Name of a model in the folder, without its ending; may be repeated (default: all)")
       ->check(file_name())
       ->type_name("NAME")
       ->allow_extra_args(false)
@@ -85,8 +88,9 @@ void add_options(CLI::App& app, PaperCommand& command, FieldArguments& fields) {
 }  // namespace
 
 Command add_bench_paper(CLI::App& bench) {
-  CLI::App* app = bench.add_subcommand("paper", "The paper's evaluation: its models and modes, as tables and figures");
-  app->footer("Finished runs are kept in DIR/paper.json: after an interrupt the same command goes on.\n\n" +
+  CLI::App* app =
+      bench.add_subcommand("paper", "Repeats the paper's evaluation of its models and modes, with tables and figures");
+  app->footer("Finished runs are kept in DIR/paper.json: after an interrupt, the same command continues.\n\n" +
               example("  cloud2csg bench paper -o out/paper"));
   return make_command<PaperCommand>(*app, add_options);
 }

@@ -30,8 +30,8 @@ void ScalingCommand::run(std::stop_token stop) const {
   const std::vector<std::string> disagreements = thread_disagreements(results);
   if (disagreements.empty()) return;
   throw Error({.where = disagreements.front(),
-               .expected = "gave different trees, and threads must not",
-               .remedy = "report it with scaling.json"});
+               .expected = "gave different trees; any number of threads must give the same tree",
+               .remedy = "report this with scaling.json"});
 }
 
 void add_options(CLI::App& app, ScalingCommand& command, FieldArguments& fields) {
@@ -42,8 +42,9 @@ void add_options(CLI::App& app, ScalingCommand& command, FieldArguments& fields)
 }  // namespace
 
 Command add_bench_scaling(CLI::App& bench) {
-  CLI::App* app = bench.add_subcommand("scaling", "Time and memory against size, on families of models of any size");
-  app->footer("Finished runs are kept in DIR/scaling.json: after an interrupt the same command goes on.\n\n" +
+  CLI::App* app =
+      bench.add_subcommand("scaling", "Measures time and memory against size, on families of models of any size");
+  app->footer("Finished runs are kept in DIR/scaling.json: after an interrupt, the same command continues.\n\n" +
               example("  cloud2csg bench scaling -o out/scaling\n"
                       "  cloud2csg bench scaling -o out/large --family grid --primitives 100 1000 10000 --repeats 1"));
   return make_command<ScalingCommand>(*app, add_options);

@@ -42,7 +42,7 @@ template <typename Value>
 void read_value(const Json& json, Value& value) {
   if constexpr (HasNames<Value>) {
     const std::optional<Value> named = enum_named<Value>(json.get<std::string>());
-    if (!named) throw invalid_option("options", "there is none of the name " + json.get<std::string>());
+    if (!named) throw invalid_option("options", "unknown name " + json.get<std::string>());
     value = *named;
   } else {
     json.get_to(value);

@@ -64,17 +64,16 @@ struct PaperOptions {
 };
 void option_table(OptionsOf<PaperOptions>, auto&& field) {
   using O = PaperOptions;
-  field(&O::models, "models", "NAME for the file NAME.json of the folder of models", k_library);
-  field(&O::low_points, "low_points", "Points of a cloud, low sampling", at_least(1));
-  field(&O::high_points, "high_points", "Points of a cloud, high sampling", at_least(2));
-  field(&O::noise, "noise", "Standard deviation by which each coordinate is moved", at_least(0), {.unit = "SIGMA"});
-  field(&O::repeats, "repeats", "Runs of each mode, with a seed each for the search", at_least(1));
-  field(&O::seed, "seed", "Seed of the clouds and of the first repeat's search");
-  field(&O::preset, "preset", "paper: the paper's weights and search, nothing added");
+  field(&O::models, "models", "Names of models: NAME for the file NAME.json in the folder of models", k_library);
+  field(&O::low_points, "low_points", "Points per cloud, low sampling", at_least(1));
+  field(&O::high_points, "high_points", "Points per cloud, high sampling", at_least(2));
+  field(&O::noise, "noise", "Standard deviation of the noise added to each coordinate", at_least(0), {.unit = "SIGMA"});
+  field(&O::repeats, "repeats", "Runs of each mode, each with its own seed for the search", at_least(1));
+  field(&O::seed, "seed", "Seed of the clouds and of the search of the first repeat");
+  field(&O::preset, "preset", "paper: the paper's weights and search, without additions");
   field(&O::evaluator, "evaluator",
-        "reference: the paper's steps alone, each tree at each point, thousands of times slower");
-  field(&O::threads, "threads", "Threads of the parallel modes; no more than the machine has cores", at_least(1),
-        k_library);
+        "reference: only the paper's steps, evaluating each tree at each point; thousands of times slower");
+  field(&O::threads, "threads", "Threads of the parallel modes; at most one per core", at_least(1), k_library);
 }
 /// Refuses no models, repeated models, equal point counts for both samplings, and the reference with preset `default`.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const PaperOptions& options);
@@ -196,14 +195,14 @@ struct ResultComparisonOptions {
 void option_table(OptionsOf<ResultComparisonOptions>, auto&& field) {
   using O = ResultComparisonOptions;
   field(&O::least_time_change, "least_time_change",
-        "Durations that differ by less than this share are the same. Between two experiments on a machine, means move "
-        "by more than the spread within one tells.",
+        "Durations that differ by less than this share count as the same. Between two experiments on one machine, "
+        "means differ by more than the spread within one experiment suggests.",
         k_share, {.unit = "SHARE"});
   field(&O::least_change, "least_change",
-        "Nodes, distances and evaluations that differ by less than this share are the same", k_share,
+        "Nodes, distances and evaluations that differ by less than this share count as the same", k_share,
         {.unit = "SHARE"});
   field(&O::error_rate, "error_rate",
-        "Chance that any of all the changes is called better or worse by accident (Bonferroni's correction)", k_share,
+        "Probability that any of the changes is called better or worse by accident (Bonferroni's correction)", k_share,
         {.unit = "P"});
 }
 

@@ -17,7 +17,7 @@ Model read_true_model(const std::filesystem::path& folder, const std::string& na
   if (!model.tree) {
     throw Error({.file = file.string(),
                  .where = "/tree",
-                 .expected = "the model has no tree to make a cloud of",
+                 .expected = "the model has no tree, from which a cloud is made",
                  .remedy = "give a model with a tree"});
   }
   return model;

@@ -33,23 +33,27 @@ struct ScalingOptions {
 };
 void option_table(OptionsOf<ScalingOptions>, auto&& field) {
   using O = ScalingOptions;
-  field(&O::families, "families", "Models of these families", {.option = "family"});
+  field(&O::families, "families", "Families of models", {.option = "family"});
   field(&O::primitives, "primitives",
-        "Sizes of models; each is extracted from `points_per_primitive` points a primitive, and from `at_points`",
+        "Numbers of primitives; each model is extracted from `points_per_primitive` points per primitive, and from "
+        "`at_points` in all",
         k_family_sizes);
-  field(&O::points_per_primitive, "points_per_primitive", "Points of these, by primitive", at_least(1));
-  field(&O::at_points, "at_points", "Points of these in all, measured as well", at_least(1));
-  field(&O::points, "points", "Sizes of clouds of the model with `at_primitives`", from_to(1, 1e9));
-  field(&O::at_primitives, "at_primitives", "Primitives of their model", k_family_sizes);
-  field(&O::cliques, "cliques", "Sizes of cliques, of family random with `at_primitives` and `at_points`",
-        k_clique_sizes);
-  field(&O::noise, "noise", "Standard deviation by which each coordinate is moved. Features are of about unit size.",
+  field(&O::points_per_primitive, "points_per_primitive", "Points per primitive, for the models of `primitives`",
+        at_least(1));
+  field(&O::at_points, "at_points", "Points in all, for additional runs of the models of `primitives`", at_least(1));
+  field(&O::points, "points", "Sizes of clouds, of the model with `at_primitives` primitives", from_to(1, 1e9));
+  field(&O::at_primitives, "at_primitives", "Primitives of the model for `points` and `cliques`", k_family_sizes);
+  field(&O::cliques, "cliques",
+        "Sizes of cliques, in family random with `at_primitives` primitives and `at_points` points", k_clique_sizes);
+  field(&O::noise, "noise", "Standard deviation of the noise added to each coordinate. Features have about unit size.",
         at_least(0), {.unit = "SIGMA"});
-  field(&O::repeats, "repeats", "Runs of each size, with a seed each", at_least(1));
+  field(&O::repeats, "repeats", "Runs of each size, each with its own seed", at_least(1));
   field(&O::seed, "seed", "Seed of model, cloud and search of the first repeat");
-  field(&O::threads, "threads", "The largest of each family is also run on one thread", at_least(1), k_library);
+  field(&O::threads, "threads", "Threads of most runs; the largest case of each family also runs on one thread",
+        at_least(1), k_library);
   field(&O::time_limit_seconds, "time_limit_seconds",
-        "Seconds for the search of a run, which is then not complete; 0: no limit", at_least(0), {.unit = "SECONDS"});
+        "Time limit of a run's search in seconds, after which the run is not complete; 0: no limit", at_least(0),
+        {.unit = "SECONDS"});
 }
 /// Refuses empty or repeated families and sizes.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const ScalingOptions& options);

@@ -52,13 +52,13 @@ inline constexpr OptionRange k_family_sizes = from_to(1, 1e6);
 inline constexpr OptionRange k_clique_sizes = from_to(2, 20);
 void option_table(OptionsOf<FamilyOptions>, auto&& field) {
   using O = FamilyOptions;
-  field(&O::primitives, "primitives", "Exactly so many", k_family_sizes);
+  field(&O::primitives, "primitives", "Exact number of primitives", k_family_sizes);
   field(&O::clique_size, "clique_size",
-        "random: primitives of a cluster, that is of a largest clique; the last may have fewer", k_clique_sizes);
+        "random: primitives per cluster, that is per largest clique; the last may have fewer", k_clique_sizes);
   field(&O::least_clique_size, "least_clique_size",
-        "random: clusters have this many to `clique_size` primitives, drawn evenly; 0: all have that many",
+        "random: clusters have this many to `clique_size` primitives, evenly distributed; 0: all have `clique_size`",
         OptionRange{.least = k_clique_sizes.least, .most = k_clique_sizes.most, .takes_zero = true});
-  field(&O::levels, "levels", "nest: boxes in a nest; the last nest may have fewer", from_to(1, 8));
+  field(&O::levels, "levels", "nest: boxes per nest; the last nest may have fewer", from_to(1, 8));
   field(&O::seed, k_seed);
 }
 /// Refuses a least cluster size above the largest.

@@ -18,10 +18,11 @@ struct CompareOptions {
 void option_table(OptionsOf<CompareOptions>, auto&& field) {
   using O = CompareOptions;
   field(&O::resolution, "resolution",
-        "Volumes: columns along the longest side of the joint bounds. About the square of it in all.",
+        "Columns along the longest side of the joint bounds, to measure volumes. In all, about the square of this "
+        "number.",
         from_to(2, 8192));
-  field(&O::surface_samples, "surface_samples", "Distances: points on each surface that is not a cloud", at_least(1),
-        {.option = "samples"});
+  field(&O::surface_samples, "surface_samples",
+        "Sample points on each surface that is not a cloud, to measure distances", at_least(1), {.option = "samples"});
   field(&O::seed, k_seed);
 }
 

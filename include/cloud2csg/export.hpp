@@ -18,14 +18,14 @@ struct OpenScadOptions {
 };
 void option_table(OptionsOf<OpenScadOptions>, auto&& field) {
   using O = OpenScadOptions;
-  field(&O::facets, "facets", "OpenSCAD (.scad .csg): facets of a full circle. $fn, in .csg by $fa where that can be.",
-        at_least(3));
+  field(&O::facets, "facets",
+        "OpenSCAD (.scad .csg): facets of a full circle. Sets $fn; in .csg, sets $fa where possible.", at_least(3));
   field(&O::mesh_resolution, "mesh_resolution",
-        "Displaced and expression solids, which become polyhedra: cells along the longest side", at_least(4),
+        "Cells along the longest side of displaced and expression solids, which become polyhedra", at_least(4),
         k_library);
-  field(&O::patterns, "patterns", ".scad: write what repeats at equal steps or angles, or mirrored, as loops",
+  field(&O::patterns, "patterns", ".scad: write solids that repeat at equal steps or angles, or mirrored, as loops",
         k_library);
-  field(&O::comment, "comment", "Lines for the head of the file, such as the fit; without '//'", k_library);
+  field(&O::comment, "comment", "Comment lines for the head of the file, such as the fit, without '//'", k_library);
 }
 
 /// An OpenSCAD program with named variables for each primitive's values in a section of the customiser, a named module
@@ -46,7 +46,7 @@ struct ScriptOptions {
 void option_table(OptionsOf<ScriptOptions>, auto&& field) {
   using O = ScriptOptions;
   field(&O::facet_resolution, k_facet_resolution);
-  field(&O::comment, "comment", "Lines for the head of the file; without '#'", k_library);
+  field(&O::comment, "comment", "Comment lines for the head of the file, without '#'", k_library);
 }
 
 /// A FreeCAD macro (.FCMacro, Python). Each primitive is an object with sizes and placement, labelled with its id, and
@@ -67,17 +67,17 @@ struct ExportOptions {
 };
 void option_table(OptionsOf<ExportOptions>, auto&& field) {
   using O = ExportOptions;
-  field(&O::openscad, "openscad", "How .scad and .csg are written");
-  field(&O::script, "script", "How .FCMacro and .py are written");
-  field(&O::meshing, "meshing", "The mesh of .stl, .off, .obj and .3mf");
-  field(&O::brep, "brep", "How .step, .stp and .brep are written");
+  field(&O::openscad, "openscad", "Options of .scad and .csg files");
+  field(&O::script, "script", "Options of .FCMacro and .py files");
+  field(&O::meshing, "meshing", "Options of the meshes in .stl, .off, .obj and .3mf files");
+  field(&O::brep, "brep", "Options of .step, .stp and .brep files");
   field(&O::exact_meshes, "exact_meshes",
-        "Meshes of the exact solid, as near as a fiftieth of the cells of `meshing`. For trees of more than 100 "
-        "leaves, for what has no exact surface, and where the exact solid has a fault or cannot be had, they are made "
-        "by contouring in cells all the same.",
+        "Mesh the exact solid, with a deviation of a fiftieth of a cell of `meshing`. Contouring in cells is used "
+        "instead for trees of more than 100 leaves, for solids without an exact surface, and where the exact solid has "
+        "a fault or cannot be made.",
         {.opposite = "contour",
-         .otherwise = "Meshes by contouring in cells, also where OpenCASCADE could make the exact solid: faster for "
-                      "many primitives"});
+         .otherwise = "Mesh by contouring in cells, even where OpenCASCADE could make the exact solid: faster for many "
+                      "primitives"});
 }
 
 /// What the written file does not tell by itself.

@@ -67,42 +67,45 @@ struct ExtractOptions {
 void option_table(OptionsOf<ExtractOptions>, auto&& field) {
   using O = ExtractOptions;
   field(&O::strategy, "strategy",
-        "cells: by the cells into which space is cut; partition: by cliques, as in the paper; baseline: all primitives "
-        "at once; auto: by cells, and by partitions where the points do not bear them out");
-  field(&O::parallel, "parallel", "What runs in parallel in the search; the result is the same for each");
-  field(&O::segmentation, "segmentation", "Which points lie on which primitive", {.group = "Fit"});
+        "cells: by the cells into which the primitives cut space; partition: by cliques of overlapping primitives, as "
+        "in the paper; baseline: all primitives at once; auto: by cells, and also by partitions where the points do "
+        "not support the tree of the cells");
+  field(&O::parallel, "parallel", "Parts of the search that run in parallel; the result does not depend on it");
+  field(&O::segmentation, "segmentation", "Assignment of points to primitives", {.group = "Fit"});
   field(&O::objective, "objective", "Weights of the objective", {.group = "Fit"});
   field(&O::precision, "precision",
-        "How exactly distances and angles are computed; auto: single where the noise is far above rounding",
+        "Floating-point precision of distances and angles; auto: single where the noise is far above rounding errors",
         {.group = "Fit"});
-  field(&O::search, "search", "The genetic algorithm; its seed is not used, but that of the extraction",
+  field(&O::search, "search", "Genetic algorithm; uses the seed of the extraction instead of its own",
         {.group = "Genetic algorithm"});
   field(&O::cell_trust, "cell_trust",
-        "Strategy auto: take the tree of the cells where enough points say something, and they contradict at most the "
-        "share 1 - cell_trust of it. Elsewhere partitions are searched too, and the tree of the higher E is taken. 0: "
-        "the tree of the cells wherever there is one; above 1: no cells.",
+        "Strategy auto: take the tree of the cells if enough points are evidence, and contradict at most the share 1 - "
+        "cell_trust of it. Otherwise search partitions too and take the tree with the higher E. 0: take the tree of "
+        "the cells wherever there is one; above 1: do not use cells.",
         at_least(0), k_library);
-  field(&O::cell_samples, "cell_samples", "Samples of surfaces, to find cells without points", k_library);
-  field(&O::cell_labels, "cell_labels", "What labels of cells cost", k_library);
-  field(&O::cell_solve, "cell_solve", "From cells to the tree", k_library);
+  field(&O::cell_samples, "cell_samples", "Samples of the primitives' surfaces, to find cells without points",
+        k_library);
+  field(&O::cell_labels, "cell_labels", "Costs of labelling cells as in or out of the solid", k_library);
+  field(&O::cell_solve, "cell_solve", "Search for a small tree with the labels of the cells", k_library);
   field(&O::overlap_tolerance, "overlap_tolerance",
-        "Primitives nearer than this overlap, in the cloud's units. So touching faces do.", at_least(0),
-        {.absent = "the measured noise", .unit = "D", .group = "Fit"});
+        "Distance below which primitives count as overlapping, in the cloud's units. Primitives with touching faces "
+        "therefore overlap.",
+        at_least(0), {.absent = "the measured noise", .unit = "D", .group = "Fit"});
   field(&O::without_strangers, "without_strangers",
-        "Judge a partition's trees without points inside primitives of others: no tree of the partition explains them. "
-        "The paper judges by all points on its primitives.",
+        "Judge a partition's trees without points inside primitives that are not in it: none of its trees explains "
+        "them. The paper judges by all points on the partition's primitives.",
         {.option = "no-strangers",
          .opposite = "strangers",
-         .otherwise = "Judge a partition's trees also by points inside primitives of others"});
+         .otherwise = "Judge a partition's trees also by points inside primitives that are not in it"});
   field(&O::polish, "polish",
-        "Improve the merged trees by the whole cloud. Nodes are taken out as long as E over a component of up to 24 "
-        "primitives grows. Where the tree of the cells was not taken at once, a local search by E over all points "
-        "comes last, of up to 127 primitives. The paper has neither.",
-        {.option = "polish", .opposite = "no-polish", .otherwise = "Take them as they are"});
+        "Improve the merged trees on the whole cloud. Removes nodes as long as E increases, in components of up to 24 "
+        "primitives. If the tree of the cells was not taken at once, a local search by E over all points follows, for "
+        "up to 127 primitives. The paper does neither.",
+        {.option = "polish", .opposite = "no-polish", .otherwise = "Do not improve the merged trees"});
   field(&O::time_limit_seconds, "time_limit_seconds",
-        "Take the best tree so far when so many seconds have passed; reading and writing are not counted. The pass "
-        "over the points, without which there is no tree, is always completed. The one option that makes a result "
-        "depend on the machine's speed.",
+        "Stop the search after this many seconds and keep the best result so far; reading and writing are not counted. "
+        "The pass over the points, without which there is no tree, is always completed. This is the only option that "
+        "makes the result depend on the speed of the machine.",
         above(0), {.absent = "none", .unit = "SECONDS"});
   field(&O::seed, k_seed);
 }

@@ -21,7 +21,8 @@ struct InputOptions {
 void option_table(OptionsOf<InputOptions>, auto&& field) {
   using O = InputOptions;
   field(&O::mesh_points, "mesh_points",
-        "Points to draw from a mesh. Enough that details of a hundredth of the part still have dozens.", at_least(1));
+        "Points to draw from a mesh. With the default, details of a hundredth of the part still have dozens of points.",
+        at_least(1));
   field(&O::seed, k_inner_seed);
 }
 

@@ -25,8 +25,8 @@ void option_table(OptionsOf<MeshingOptions>, auto&& field) {
   using O = MeshingOptions;
   field(&O::resolution, "resolution", "Meshes of solids: cells along the longest side of the bounds", from_to(4, 4096));
   field(&O::corners_first, "corners_first",
-        "Keep the solid's corners even where that makes a few of the small triangles around them overlap. Without, "
-        "such corners are cut off by less than a cell: for programs that need all triangles apart, as OpenSCAD does.",
+        "Keep the solid's corners even if a few of the small triangles around them then overlap. False: cut off such "
+        "corners by less than a cell, for programs that need triangles without overlap, such as OpenSCAD.",
         k_library);
 }
 

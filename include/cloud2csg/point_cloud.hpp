@@ -58,10 +58,10 @@ struct CloudWriteOptions {
 };
 void option_table(OptionsOf<CloudWriteOptions>, auto&& field) {
   using O = CloudWriteOptions;
-  field(&O::binary, "binary", "Binary numbers in .ply and .pcd; the others are text always",
-        {.opposite = "ascii", .otherwise = "Text instead of binary numbers in .ply and .pcd"});
+  field(&O::binary, "binary", "Write binary numbers in .ply and .pcd; other formats are always text",
+        {.opposite = "ascii", .otherwise = "Write text instead of binary numbers in .ply and .pcd"});
   field(&O::double_precision, "double_precision",
-        "Keep every bit, in text too; else single precision, a file of half the size", k_library);
+        "Keep all bits, in text too; false: single precision, which halves the size of the file", k_library);
 }
 
 /// Writes by the file's ending, as read_point_cloud() reads. .pts leaves out normals, .xyzn needs them. .ply and .pcd

@@ -25,24 +25,24 @@ struct ReconstructOptions {
 void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
   using O = ReconstructOptions;
   field(&O::known, "known",
-        "Primitives that are known: they are kept as they are, of any type, with their ids, and only what the points "
-        "show beyond them is detected. Ids are all different.",
+        "Known primitives of any type, with distinct ids. They are kept unchanged; detection looks only for what the "
+        "points show beyond them.",
         k_library);
-  field(&O::preparation, "preparation", "How the cloud is cleaned and oriented");
-  field(&O::detection, "detection", "How surfaces are detected");
+  field(&O::preparation, "preparation", "Cleaning of the cloud and its normals");
+  field(&O::detection, "detection", "Detection of surfaces");
   field(&O::close_unseen, "close_unseen",
-        "Close a side that is missing as a whole, as that on which the part stood, by a plane, and go on with the "
-        "walls of bores where no sensor could see them. Else nothing tells how far the solid reaches there. Not where "
-        "primitives are known.",
+        "Close a side without any points, such as the one on which a scanned part stood, by a plane, and extend the "
+        "walls of bores where no sensor could see them. Without this, nothing tells how far the solid reaches there. "
+        "Has no effect with known primitives.",
         {.opposite = "leave-open",
-         .otherwise = "Do not close a side without any points, as that on which a scanned part stood, by a plane, nor "
-                      "go on with walls of bores that no sensor saw"});
-  field(&O::solids, "solids", "How solids are chosen");
-  field(&O::extraction, "extraction", "How a tree over them is extracted", k_library);
+         .otherwise = "Do not close a side without any points, such as the one on which a scanned part stood, by a "
+                      "plane, nor extend walls of bores that no sensor saw"});
+  field(&O::solids, "solids", "Choice of the solids");
+  field(&O::extraction, "extraction", "Extraction of a tree over the solids", k_library);
   field(&O::refine, "refine",
-        "Then move and size the solids to where the points are, and take them where E is higher so. As in "
-        "extract_refined_csg(). Not where primitives are known: these stay.",
-        {.absent = "they stay where they are", .option = k_no_option});
+        "Then fit positions, directions and sizes of the solids to the points, and keep the result if E is higher. "
+        "Works like extract_refined_csg(). Has no effect with known primitives, which stay unchanged.",
+        {.absent = "the solids stay as chosen", .option = k_no_option});
 }
 
 [[nodiscard]] ReconstructOptions with_seed(ReconstructOptions options, std::uint64_t seed);

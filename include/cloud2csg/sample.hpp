@@ -18,13 +18,13 @@ struct SampleOptions {
 };
 void option_table(OptionsOf<SampleOptions>, auto&& field) {
   using O = SampleOptions;
-  field(&O::count, "count", "How many points, unless a density is given", {.letter = 'n'});
-  field(&O::density, "density", "Points per unit of area, of models only; 0: use `count`", at_least(0));
+  field(&O::count, "count", "Number of points, unless a density is given", {.letter = 'n'});
+  field(&O::density, "density", "Points per unit of area, for models only; 0: use `count`", at_least(0));
   field(&O::noise, "noise",
-        "Standard deviation by which each coordinate is moved, in the model's units. The paper: 0.01.", at_least(0),
-        {.unit = "SIGMA"});
+        "Standard deviation of the noise added to each coordinate, in the model's units. The paper uses 0.01.",
+        at_least(0), {.unit = "SIGMA"});
   field(&O::normal_noise_deg, "normal_noise_deg",
-        "Standard deviation by which normals are tilted, in degrees; of models only", at_least(0), {.unit = "DEG"});
+        "Standard deviation of the tilt of normals, in degrees; for models only", at_least(0), {.unit = "DEG"});
   field(&O::seed, k_seed);
 }
 /// Refuses options with neither a count nor a density.
@@ -57,46 +57,51 @@ struct ScanOptions {
 };
 void option_table(OptionsOf<ScanOptions>, auto&& field) {
   using O = ScanOptions;
-  field(&O::views, "views", "Sensors, spread evenly over a sphere around the part, turned by the seed",
+  field(&O::views, "views", "Number of sensors, spread evenly over a sphere around the part, which the seed rotates",
         from_to(1, 1e6));
   field(
       &O::on_table, "on_table",
-      "The part lies on a table, its z axis upright: sensors are above its middle only, and its underside is not seen");
-  field(&O::distance, "distance", "From the middle of the part to each sensor, in radii of its bounding sphere",
-        from_to(1.001, 1e6), {.unit = "R"});
+      "The part lies on a table with its z axis upright: no sensor is below its middle, and its underside is not seen");
+  field(&O::distance, "distance",
+        "Distance of each sensor from the middle of the part, in radii of its bounding sphere", from_to(1.001, 1e6),
+        {.unit = "R"});
   field(&O::field_of_view_deg, "field_of_view_deg",
         "Width and height of a view in degrees; 0: just the bounding sphere", from_to(0, 170), {.unit = "DEG"});
-  field(&O::count, "count", "How many points in all, unless the step of rays is given", {.letter = 'n'});
+  field(&O::count, "count", "Number of points in all, unless the angle between rays is given", {.letter = 'n'});
   field(&O::angular_step_deg, "angular_step_deg",
-        "Degrees between neighbouring rays of a view; 0: what gives `count` points", from_to(0, 170), {.unit = "DEG"});
+        "Angle between neighbouring rays of a view in degrees; 0: the angle that gives `count` points", from_to(0, 170),
+        {.unit = "DEG"});
   field(&O::noise, "noise",
-        "Sigma of the range, as a share of the bounds' diagonal; it grows with the range squared and with grazing "
-        "incidence. Told for the middle's distance and a ray that hits squarely; it grows with 1 / cosine of the "
-        "incidence, up to twenty times.",
+        "Standard deviation of ranges, as a share of the bounds' diagonal; it grows with the range squared and with "
+        "grazing incidence. Applies to a ray that hits perpendicularly at the distance of the middle; it grows with 1 "
+        "/ cosine of the angle of incidence, up to twenty times.",
         at_least(0), {.unit = "SHARE", .group = "Defects"});
-  field(&O::quantisation, "quantisation", "Step of the range, as a share of the diagonal; 0: any number", at_least(0),
+  field(&O::quantisation, "quantisation",
+        "Step to which ranges are rounded, as a share of the diagonal; 0: no rounding", at_least(0),
         {.unit = "SHARE", .group = "Defects"});
   field(&O::grazing_angle_deg, "grazing_angle_deg",
-        "Incidence from which on returns are missing; 0: squarely, 90: along the surface", from_to(0, 89.999),
-        {.unit = "DEG", .group = "Defects"});
-  field(&O::grazing_loss, "grazing_loss",
-        "Probability at 90 degrees that such a return is missing; it grows evenly from 0", k_share,
-        {.unit = "P", .group = "Defects"});
-  field(&O::outliers, "outliers", "Probability that a return is anywhere on its ray within the bounding sphere",
+        "Angle of incidence above which returns may be missing; 0: perpendicular to the surface, 90: along the surface",
+        from_to(0, 89.999), {.unit = "DEG", .group = "Defects"});
+  field(
+      &O::grazing_loss, "grazing_loss",
+      "Probability at 90 degrees of incidence that a return is missing; it grows linearly from 0 at the grazing angle",
+      k_share, {.unit = "P", .group = "Defects"});
+  field(&O::outliers, "outliers", "Probability that a return lies anywhere on its ray within the bounding sphere",
         k_share, {.unit = "P", .group = "Defects"});
   field(&O::mixed_pixels, "mixed_pixels",
-        "Probability that a ray at an edge returns from between two surfaces. The ray is as wide as half an angular "
-        "step: it grazes the edge of one and sees the other.",
+        "Probability that a ray at an edge returns from between two surfaces. The ray is half an angular step wide: it "
+        "grazes the edge of one surface and sees the other.",
         k_share, {.unit = "P", .group = "Defects"});
   field(&O::rotation_deg, "rotation_deg",
-        "Sigma of the turn by which each view is out of place, in degrees. Around the middle of the part about a "
-        "random axis.",
+        "Standard deviation of the rotation error of each view, in degrees. About a random axis through the middle of "
+        "the part.",
         at_least(0), {.unit = "DEG", .group = "Defects"});
-  field(&O::translation, "translation", "Sigma of each coordinate of the shift of a view, as a share of the diagonal",
-        at_least(0), {.unit = "SHARE", .group = "Defects"});
-  field(&O::with_normals, "with_normals", "With the true outward normals, which no scanner knows",
+  field(&O::translation, "translation",
+        "Standard deviation of the shift error of each view, per coordinate, as a share of the diagonal", at_least(0),
+        {.unit = "SHARE", .group = "Defects"});
+  field(&O::with_normals, "with_normals", "Add the true outward normals, which no real scanner knows",
         {.option = "normals"});
-  field(&O::meshing, "meshing", "Models: the mesh that tells what a ray hits first");
+  field(&O::meshing, "meshing", "Models: the mesh on which the first hit of each ray is found");
   field(&O::seed, k_seed);
 }
 /// Refuses options with neither a count nor an angular step.

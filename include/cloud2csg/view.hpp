@@ -39,19 +39,19 @@ struct PictureOptions {
 void option_table(OptionsOf<PictureOptions>, auto&& field) {
   using O = PictureOptions;
   constexpr OptionRange k_sides = from_to(16, 4096);
-  field(&O::width, "width",
-        "Width of a .png; 0: a square for the cloud, one for the solid. Pixels, at most 4 million in all.",
-        OptionRange{.least = k_sides.least, .most = k_sides.most, .takes_zero = true},
-        {.unit = "PIXELS", .option = "picture-width"});
-  field(&O::height, "height", "Height of a .png. Pixels.", k_sides, {.unit = "PIXELS", .option = "picture-height"});
+  field(
+      &O::width, "width",
+      "Width of a .png in pixels; 0: one square for the cloud and one for the solid. At most 4 million pixels in all.",
+      OptionRange{.least = k_sides.least, .most = k_sides.most, .takes_zero = true},
+      {.unit = "PIXELS", .option = "picture-width"});
+  field(&O::height, "height", "Height of a .png in pixels", k_sides, {.unit = "PIXELS", .option = "picture-height"});
   field(&O::azimuth_deg, "azimuth_deg",
-        "Where the camera stands, seen from the middle: degrees turned from the x axis towards y", from_to(-360, 360),
+        "Direction of the camera as seen from the middle, in degrees from the x axis towards y", from_to(-360, 360),
         {.unit = "DEG"});
-  field(&O::elevation_deg, "elevation_deg", "How far the camera is raised over the xy plane, in degrees",
-        from_to(-90, 90), {.unit = "DEG"});
-  field(&O::resolution, "resolution",
-        "Cells along the longest side of the solid's mesh, of which only outlines show any", from_to(4, 4096),
-        k_library);
+  field(&O::elevation_deg, "elevation_deg", "Elevation of the camera above the xy plane, in degrees", from_to(-90, 90),
+        {.unit = "DEG"});
+  field(&O::resolution, "resolution", "Cells along the longest side of the solid's mesh; only outlines show them",
+        from_to(4, 4096), k_library);
 }
 /// Refuses more than 4 million pixels.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const PictureOptions& options);
@@ -103,18 +103,19 @@ struct ReportOptions {
 void option_table(OptionsOf<ReportOptions>, auto&& field) {
   using O = ReportOptions;
   field(&O::most_points, "most_points",
-        "Points to show; of more, so many are taken, evenly in space. Figures are of all points. 100 000 take about a "
-        "megabyte.",
+        "Largest number of points to show; larger clouds are thinned to it, evenly in space. Figures refer to all "
+        "points. 100 000 points take about a megabyte.",
         at_least(1));
-  field(&O::resolution, "resolution", "Cells along the longest side of the whole solid's mesh", from_to(4, 4096));
+  field(&O::resolution, "resolution", "Cells along the longest side of the mesh of the whole solid", from_to(4, 4096));
   field(&O::part_resolution, "part_resolution",
         "Cells along the longest side of the meshes of parts; fewer where there are many parts", from_to(4, 4096));
-  field(&O::most_triangles, "most_triangles", "Triangles of the whole solid; flat parts need few", at_least(1));
-  field(&O::most_triangles_in_all, "most_triangles_in_all", "Triangles of all meshes together");
-  field(
-      &O::most_meshes, "most_meshes",
-      "Parts of the tree that have a mesh of their own. The whole, then primitives, then inner nodes from the root on.",
-      at_least(1));
+  field(&O::most_triangles, "most_triangles", "Largest number of triangles of the whole solid; flat parts need few",
+        at_least(1));
+  field(&O::most_triangles_in_all, "most_triangles_in_all", "Largest number of triangles of all meshes together");
+  field(&O::most_meshes, "most_meshes",
+        "Largest number of parts of the tree with their own mesh. The whole solid comes first, then primitives, then "
+        "inner nodes from the root on.",
+        at_least(1));
 }
 /// Refuses fewer triangles in all than for the solid.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const ReportOptions& options);

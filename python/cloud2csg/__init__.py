@@ -10,9 +10,9 @@ True
 '$fn = 64;  // facets of a full circle'
 
 Points are NumPy arrays of shape (n, 3), float64, in the cloud's units; angles are in degrees where a name ends in
-``_deg``, else in radians. Functions that have work to do release the interpreter's lock, take ``threads`` (0 = all
-cores) and ``progress`` (a callable of stage, done, total), and end soon with KeyboardInterrupt on Ctrl-C. Bad input
-raises cloud2csg.Error, an array of a wrong shape or with NaN ValueError. docs/python.md tells more.
+``_deg``, otherwise in radians. Functions with much work release the interpreter's lock, take ``threads`` (0 = all cores)
+and ``progress`` (a callable of stage, done, total), and stop soon with KeyboardInterrupt on Ctrl-C. Bad input raises
+cloud2csg.Error; arrays of a wrong shape or with NaN raise ValueError. See docs/python.md.
 """
 from cloud2csg._native import (
     Box,

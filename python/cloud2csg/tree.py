@@ -1,4 +1,4 @@
-"""CSG trees as nested objects: what ``Model.tree`` is made of.
+"""CSG trees as nested objects, as in ``Model.tree``.
 
 >>> from cloud2csg import Leaf, Union, Difference
 >>> tree = Difference(Union(Leaf("plate"), Leaf("boss")), Leaf("bore"))
@@ -7,7 +7,7 @@
 >>> tree == (Leaf("plate") | Leaf("boss")) - Leaf("bore")
 True
 
-Nodes do not change. Nothing here recurses, so trees may be as deep as memory allows.
+Nodes are immutable. No function recurses, so trees may be as deep as memory allows.
 """
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ __all__ = ["Complement", "Difference", "Empty", "Full", "Intersection", "Leaf", 
 class Node:
     """A subtree: a Leaf, Empty, Full, Complement, Union, Intersection or Difference.
 
-    ``a | b`` is Union(a, b), ``a & b`` Intersection(a, b), ``a - b`` Difference(a, b), ``~a`` Complement(a); nested
-    unions become one, so do intersections. Nodes are equal when they are written alike, operands in the same order.
+    ``a | b`` is Union(a, b), ``a & b`` Intersection(a, b), ``a - b`` Difference(a, b), ``~a`` Complement(a). Nested
+    unions become one union, and nested intersections one intersection. Nodes are equal if they have equal text forms,
+    with operands in the same order.
     """
 
     __slots__ = ("_children",)
-    #: The operation's name in model files.
+    #: Name of the operation in model files.
     operation: ClassVar[str] = ""
     _symbol: ClassVar[str] = ""
     _children: tuple[Node, ...]
@@ -38,11 +39,11 @@ class Node:
 
     @property
     def children(self) -> tuple[Node, ...]:
-        """The operands, in order; none of a leaf."""
+        """The operands, in order; empty for a leaf."""
         return self._children
 
     def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError("tree nodes do not change")
+        raise AttributeError("tree nodes are immutable")
 
     def __or__(self, other: Node) -> Union:
         return _chain(Union, self, other)
@@ -68,7 +69,7 @@ class Node:
                 pending.append((node._children[done], 0))
 
     def leaves(self) -> Iterator[Leaf]:
-        """The leaves that are primitives, from left to right, each as often as it appears."""
+        """The primitives of the subtree from left to right, with repetitions."""
         return (node for node in self.walk() if isinstance(node, Leaf))
 
     def _key(self) -> tuple[object, ...]:
@@ -92,7 +93,7 @@ class Node:
         return _written(self, lambda node: node._text())
 
     def _text(self) -> list[str | Node]:
-        """Texts, and the children where they stand among them."""
+        """Texts and children, in the order of the text form."""
         parts: list[str | Node] = []
         for index, child in enumerate(self._children):
             parts.append(self._symbol if index > 0 or len(self._children) == 1 else "")
@@ -119,7 +120,7 @@ class Leaf(Node):
 
     @property
     def id(self) -> str:
-        """Of the primitive."""
+        """Id of the primitive."""
         return self._id
 
     def _argument(self) -> str:
@@ -135,7 +136,7 @@ class Leaf(Node):
 
 
 class Empty(Node):
-    """No point at all."""
+    """The empty solid."""
 
     __slots__ = ()
     operation = "empty"
@@ -157,7 +158,7 @@ class Full(Node):
 
 
 class Complement(Node):
-    """All that is not in its child."""
+    """All of space except its child."""
 
     __slots__ = ()
     __match_args__ = ("child",)
@@ -169,12 +170,12 @@ class Complement(Node):
 
     @property
     def child(self) -> Node:
-        """What is left out."""
+        """The solid whose complement this is."""
         return self._children[0]
 
 
 class Union(Node):
-    """What is in any of its children, of which there are two or more."""
+    """Union of two or more children."""
 
     __slots__ = ()
     __match_args__ = ("children",)
@@ -187,7 +188,7 @@ class Union(Node):
 
 
 class Intersection(Node):
-    """What is in all of its children, of which there are two or more."""
+    """Intersection of two or more children."""
 
     __slots__ = ()
     __match_args__ = ("children",)
@@ -200,7 +201,7 @@ class Intersection(Node):
 
 
 class Difference(Node):
-    """What is in the first and not in the second."""
+    """The first child without the second."""
 
     __slots__ = ()
     __match_args__ = ("first", "second")
@@ -212,12 +213,12 @@ class Difference(Node):
 
     @property
     def first(self) -> Node:
-        """What is taken from."""
+        """The solid from which ``second`` is subtracted."""
         return self._children[0]
 
     @property
     def second(self) -> Node:
-        """What is taken away."""
+        """The solid that is subtracted."""
         return self._children[1]
 
 
@@ -227,7 +228,7 @@ def _require_two(kind: type[Node], children: Sequence[Node]) -> None:
 
 
 def _needs_parentheses(parent: Node, child: Node, index: int) -> bool:
-    """As the library writes: wherever operations meet; chains of one operation are written flat."""
+    """As in the library: parentheses between different operations, but none within chains of one operation."""
     is_chain = type(child) is type(parent) and not (isinstance(child, Difference) and index == 1)
     return len(child.children) > 1 and not is_chain
 
@@ -248,7 +249,7 @@ def _separated(nodes: Sequence[Node], separator: str) -> list[str | Node]:
 
 
 def _written(root: Node, parts_of: Callable[[Node], list[str | Node]]) -> str:
-    """What the parts of a node are, with those of the nodes among them in their places."""
+    """Joins the parts of a node; child nodes are replaced by their own parts."""
     texts: list[str] = []
     pending: list[str | Node] = [root]
     while pending:
@@ -265,7 +266,7 @@ _KINDS: dict[str, type[Node]] = {
 
 
 def postfix(root: Node) -> list[tuple[str, str]]:
-    """(operation, id of a leaf or '') of each node of the binary tree, children first: what the library works with."""
+    """(operation, id of a leaf or '') of each node of the binary tree, children first: the form of the library."""
     nodes: list[tuple[str, str]] = []
     pending: list[tuple[Node, int]] = [(root, 0)]
     while pending:
@@ -299,7 +300,7 @@ def from_postfix(nodes: Sequence[tuple[str, str]]) -> Node:
 
 
 def _closed(part: tuple[type[Node], list[Node]]) -> Node:
-    """Of a chain that is still being collected, the node; else the node that it is."""
+    """The node of a chain that is still being collected; otherwise the single node."""
     kind, nodes = part
     return kind(*nodes) if kind in (Union, Intersection) else nodes[0]
 

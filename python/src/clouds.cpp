@@ -86,40 +86,42 @@ const PointCloud& points_of(const py::object& self) {
 void bind_arrays(py::class_<Cloud, std::shared_ptr<Cloud>>& cloud) {
   cloud
       .def_property_readonly("positions", &Cloud::position_rows,
-                             "Shape (n, 3), float64, read-only, in the cloud's units. Made from the library's columns "
-                             "when first asked for, the same array each time.")
+                             "Shape (n, 3), float64, read-only, in the cloud's units. Copied from the library's "
+                             "columns on first use; later uses return the same array.")
       .def_property_readonly("normals", &Cloud::normal_rows,
-                             "Outward, of unit length: as `positions`. None where the cloud has none.")
-      .def_property_readonly("sensor_positions", &Cloud::sensor_rows,
-                             "Where the sensor stood that saw each point: as `positions`, or None.")
+                             "Outward unit normals, shape and type as `positions`. None if the cloud has none.")
+      .def_property_readonly(
+          "sensor_positions", &Cloud::sensor_rows,
+          "Position of the sensor that saw each point, shape and type as `positions`. None if unknown.")
       .def_property_readonly(
           "position_columns", [](const py::object& self) { return column_views(points_of(self).positions, self); },
-          "(x, y, z), each of shape (n,), float64, read-only: the library's own memory, no copies.")
+          "Columns (x, y, z), each of shape (n,), float64, read-only, in the library's own memory (no copies).")
       .def_property_readonly(
           "normal_columns", [](const py::object& self) { return columns_or_none(points_of(self).normals, self); },
-          "As `position_columns`, or None.")
+          "As `position_columns`, or None if the cloud has no normals.")
       .def_property_readonly(
           "sensor_columns",
           [](const py::object& self) { return columns_or_none(points_of(self).sensor_positions, self); },
-          "As `position_columns`, or None.");
+          "As `position_columns`, or None if the cloud has no sensor positions.");
 }
 
 void bind_cloud(py::module_& module) {
   py::class_<Cloud, std::shared_ptr<Cloud>> cloud(
       module, "PointCloud",
-      "Points with outward unit normals, and where their sensors stood, as far as these are known. Does not change.\n\n"
-      "positions, normals, sensor_positions: shape (n, 3), or None. They are copied once, into the library's columns; "
-      "float32, integers and lists are converted. Normals are brought to unit length.\n"
-      "is_exact: the points lie on the surface and have its normals, as those drawn from a mesh.\n\n"
-      "Raises ValueError for another shape, NaN, infinity, and normals of length 0.");
+      "Points with outward unit normals and the positions of their sensors, if known. Immutable.\n\npositions, "
+      "normals, sensor_positions: shape (n, 3); normals and sensor_positions may be None. They are copied once into "
+      "the library's columns; float32, integers and lists are converted. Normals are scaled to unit length.\nis_exact: "
+      "the points lie on the surface and have its normals, such as points drawn from a mesh.\n\nRaises ValueError for "
+      "other shapes, NaN, infinity, and normals of length 0.");
   cloud.def(py::init(&make_cloud), py::arg("positions"), py::arg("normals") = py::none(),
             py::arg("sensor_positions") = py::none(), py::arg("is_exact") = false);
   bind_arrays(cloud);
   cloud.def("__len__", [](const Cloud& self) { return self.points().size(); })
-      .def_property_readonly("is_exact", &Cloud::is_exact, "Whether the points were drawn from a mesh or are as good.")
-      .def_property_readonly("warnings", &Cloud::warnings, "Sentences: what was doubtful when the cloud was read.")
+      .def_property_readonly("is_exact", &Cloud::is_exact,
+                             "Whether the points were drawn from a mesh or are equally exact.")
+      .def_property_readonly("warnings", &Cloud::warnings, "Sentences about doubts when the cloud was read.")
       .def("select", &select, py::arg("indices"),
-           "The points with these indices, shape (k,), in this order, with all that is known of them.")
+           "The points with these indices, shape (k,), in this order, with their normals and sensor positions.")
       .def(
           "write",
           [](const Cloud& self, const std::filesystem::path& file, const std::optional<CloudWriteOptions>& options) {
@@ -128,9 +130,8 @@ void bind_cloud(py::module_& module) {
             write_point_cloud(file, self.points(), options.value_or(CloudWriteOptions{}));
           },
           py::arg("file"), py::arg("options") = py::none(),
-          "Writes by the file's ending: .ply .pcd .xyz .xyzn .txt .pts. Nothing half-written; a file of another kind "
-          "is not "
-          "overwritten.")
+          "Writes a file by its ending: .ply .pcd .xyz .xyzn .txt .pts. Never leaves a partial file; does not "
+          "overwrite a file of another kind.")
       .def("__repr__",
            [](const Cloud& self) {
              return fmt::format("<cloud2csg.PointCloud: {} points{}{}>", self.points().size(),
@@ -172,18 +173,19 @@ py::array triangles_of(const py::object& self) {
 void bind_mesh(py::module_& module) {
   py::class_<TriangleMesh, std::shared_ptr<TriangleMesh>>(
       module, "TriangleMesh",
-      "Triangles over shared vertices, counter-clockwise seen from outside. Does not change.\n\n"
-      "vertices: shape (n, 3). triangles: indices of vertices, shape (m, 3). Both are copied.")
+      "Triangles over shared vertices, counter-clockwise seen from outside. Immutable.\n\nvertices: shape (n, 3). "
+      "triangles: indices of vertices, shape (m, 3). Both are copied.")
       .def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly(
           "vertices", [](const TriangleMesh& self) { return to_rows(self.vertices); },
-          "Shape (n, 3), float64: a copy, made each time.")
+          "Shape (n, 3), float64: a new copy at each use.")
       .def_property_readonly("triangles", &triangles_of,
-                             "Indices of vertices, shape (m, 3), uint32, read-only: the library's memory, no copy.")
+                             "Indices of vertices, shape (m, 3), uint32, read-only, in the library's memory (no copy).")
       .def_property_readonly("is_watertight", &is_watertight,
                              "Whether every edge has exactly two triangles, in opposite directions.")
-      .def_property_readonly("volume", &volume_of,
-                             "Enclosed by a closed mesh, in cubed units; positive when it is oriented outward.")
+      .def_property_readonly(
+          "volume", &volume_of,
+          "Volume enclosed by a closed mesh, in cubed units; positive when the mesh is oriented outward.")
       .def(
           "write",
           [](const TriangleMesh& self, const std::filesystem::path& file) {
@@ -192,8 +194,8 @@ void bind_mesh(py::module_& module) {
             write_mesh(file, self);
           },
           py::arg("file"),
-          "Writes by the file's ending: .stl .off .obj .3mf. Nothing half-written; a file of another kind "
-          "is not overwritten.")
+          "Writes a file by its ending: .stl .off .obj .3mf. Never leaves a partial file; does not overwrite a file of "
+          "another kind.")
       .def("__repr__", [](const TriangleMesh& self) {
         return fmt::format("<cloud2csg.TriangleMesh: {} vertices, {} triangles>", self.vertices.size(),
                            self.triangles.size());
@@ -216,16 +218,16 @@ void bind_clouds(py::module_& module) {
   module.def("read_cloud", &read_cloud, py::arg("file"), py::arg("options") = py::none(), py::kw_only(),
              py::arg("threads") = 0, py::arg("progress") = py::none(),
              "Reads a point cloud (.ply .pcd .xyz .xyzn .txt .pts), or draws points with normals from a mesh (.stl "
-             ".off .obj .3mf .glb, .ply with faces).\n\n"
-             "Invalid points are left out and a mesh is mended: PointCloud.warnings says so. Further keywords are "
-             "fields of InputOptions. Raises Error when the file cannot be read or has no valid points.");
+             ".off .obj .3mf .glb, .ply with faces).\n\nLeaves out invalid points and repairs meshes, with warnings in "
+             "PointCloud.warnings. Further keywords are fields of InputOptions. Raises Error when the file cannot be "
+             "read or has no valid points.");
   module.def(
       "read_mesh",
       [](const std::filesystem::path& file) {
         const py::gil_scoped_release unlocked;
         return read_mesh(file);
       },
-      py::arg("file"), "Reads a mesh: .stl .off .obj .ply .3mf .glb. Raises Error.");
+      py::arg("file"), "Reads a mesh: .stl .off .obj .ply .3mf .glb. Raises Error when that fails.");
 }
 
 }  // namespace cloud2csg::python

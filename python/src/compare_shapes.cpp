@@ -47,16 +47,18 @@ std::string number_text(const std::optional<double>& number) {
 
 void bind_compare(py::module_& module) {
   py::class_<Comparison>(module, "Comparison",
-                         "How alike two solids are. What cannot be had from the inputs (a volume from a cloud, a tree "
-                         "from a mesh) is None.")
-      .def_readonly("intersection_over_union", &Comparison::intersection_over_union, "Of the volumes; 1: the same.")
-      .def_readonly("volume_truth", &Comparison::volume_truth, "In cubed units.")
-      .def_readonly("volume_result", &Comparison::volume_result, "In cubed units.")
+                         "Similarity of two solids. Values that the inputs do not allow (the volume of a cloud, the "
+                         "tree of a mesh) are None.")
+      .def_readonly("intersection_over_union", &Comparison::intersection_over_union,
+                    "Intersection over union of the volumes; 1: equal.")
+      .def_readonly("volume_truth", &Comparison::volume_truth, "Volume of the truth, in cubed units.")
+      .def_readonly("volume_result", &Comparison::volume_result, "Volume of the result, in cubed units.")
       .def_readonly("mean_distance", &Comparison::mean_distance,
-                    "Mean over both surfaces of the distance to the other one, in units of length.")
-      .def_readonly("hausdorff_distance", &Comparison::hausdorff_distance, "The largest of these.")
-      .def_readonly("size_ratio", &Comparison::size_ratio, "Nodes of the trees: result / truth.")
-      .def_readonly("depth_ratio", &Comparison::depth_ratio, "Depth of the trees: result / truth.")
+                    "Mean distance of each surface to the other one, averaged over both, in units of length.")
+      .def_readonly("hausdorff_distance", &Comparison::hausdorff_distance,
+                    "Largest distance from one surface to the other, in units of length.")
+      .def_readonly("size_ratio", &Comparison::size_ratio, "Ratio of the numbers of tree nodes: result / truth.")
+      .def_readonly("depth_ratio", &Comparison::depth_ratio, "Ratio of the tree depths: result / truth.")
       .def("__repr__", [](const Comparison& self) {
         return fmt::format(
             "Comparison(intersection_over_union={}, mean_distance={:.6g}, hausdorff_distance={:.6g}, size_ratio={})",
@@ -65,10 +67,9 @@ void bind_compare(py::module_& module) {
       });
   module.def("compare", &compare_shapes, py::arg("truth"), py::arg("result"), py::arg("options") = py::none(),
              py::kw_only(), py::arg("threads") = 0, py::arg("progress") = py::none(),
-             "How alike two solids are: Comparison.\n\n"
-             "Each is a Model with a tree, a Result, a TriangleMesh, a PointCloud, or the name of a file with one of "
-             "these. Further keywords are fields of CompareOptions. progress: callable(stage, done, total).\n\n"
-             "Raises Error when a shape is empty or unbounded.");
+             "Compares two shapes: Comparison.\n\nEach is a Model with a tree, a Result, a TriangleMesh, a PointCloud, "
+             "or the name of a file with one of these. Further keywords are fields of CompareOptions. progress: "
+             "callable(stage, done, total).\n\nRaises Error when a shape is empty or unbounded.");
 }
 
 }  // namespace cloud2csg::python

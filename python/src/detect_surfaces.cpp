@@ -39,38 +39,39 @@ using SurfaceClass = py::class_<DetectedSurface, std::shared_ptr<DetectedSurface
 
 void bind_surface(py::module_& module) {
   SurfaceClass(module, "DetectedSurface",
-               "A surface without ends that points lie on: a plane, sphere, cylinder, cone or torus.")
+               "An unbounded surface on which points lie: a plane, sphere, cylinder, cone or torus.")
       .def_property_readonly(
           "type", [](const DetectedSurface& self) { return std::string(type_name(self.surface.type)); },
           "'plane', 'sphere', 'cylinder', 'cone', 'torus'.")
       .def_property_readonly(
           "position", [](const DetectedSurface& self) { return self.surface.position; },
-          "Shape (3,): a point of the plane or of a cylinder's axis, a centre, a cone's apex.")
+          "Shape (3,): a point of the plane or of a cylinder's axis, the centre of a sphere or torus, the apex of a "
+          "cone.")
       .def_property_readonly(
           "axis", [](const DetectedSurface& self) { return self.surface.axis; },
-          "Shape (3,), unit length: a plane's outward normal, an axis. No meaning for spheres.")
+          "Shape (3,), unit length: the outward normal of a plane, or an axis. Meaningless for spheres.")
       .def_property_readonly(
           "radius", [](const DetectedSurface& self) { return self.surface.radius; },
-          "Of a sphere or cylinder, in the cloud's units; a torus' major one.")
+          "Radius of a sphere or cylinder, or major radius of a torus, in the cloud's units.")
       .def_property_readonly(
-          "minor_radius", [](const DetectedSurface& self) { return self.surface.minor_radius; }, "Of a torus' tube.")
+          "minor_radius", [](const DetectedSurface& self) { return self.surface.minor_radius; },
+          "Radius of a torus' tube.")
       .def_property_readonly(
           "half_angle", [](const DetectedSurface& self) { return self.surface.half_angle; },
-          "Of a cone, between axis and surface, in radians.")
+          "Angle between axis and surface of a cone, in radians.")
       .def_property_readonly(
           "concave", [](const DetectedSurface& self) { return self.surface.concave; },
-          "Whether the material is outside, as around a hole.")
-      .def_readonly("rms", &DetectedSurface::rms, "Of the distances of its points, in the cloud's units.")
+          "Whether the material is on the outside, as around a hole.")
+      .def_readonly("rms", &DetectedSurface::rms, "Root mean square distance of its points, in the cloud's units.")
       .def_property_readonly(
           "points", [](const py::object& self) { return view(self.cast<const DetectedSurface&>().points, self); },
-          "Indices into Result.cloud of the points that lie on it, ascending: shape (k,), uint32, read-only, no "
-          "copy.")
+          "Indices into Result.cloud of the points on the surface, ascending: shape (k,), uint32, read-only, no copy.")
       .def(
           "distance",
           [](const DetectedSurface& self, const py::object& points) {
             return distances_at(points, {}, [&](PointsView at) { return signed_distance(self.surface, at); });
           },
-          py::arg("points"), "Signed distance at points of shape (n, 3), negative in the material: shape (n,).")
+          py::arg("points"), "Signed distance at points of shape (n, 3), negative inside the material: shape (n,).")
       .def("__repr__", [](const DetectedSurface& self) {
         return fmt::format("<cloud2csg.DetectedSurface: {}{}, {} points, rms {:.3g}>",
                            self.surface.concave ? "concave " : "", type_name(self.surface.type), self.points.size(),
@@ -84,11 +85,10 @@ void bind_detect(py::module_& module) {
   bind_surface(module);
   module.def("detect", &detect, py::arg("cloud"), py::arg("options") = py::none(), py::kw_only(),
              py::arg("seed") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
-             "The surfaces that a raw cloud lies on, and solids that these bound, with a tree over them: Result.\n\n"
-             "cloud: PointCloud, or positions of shape (n, 3). options: ReconstructOptions. seed: instead of all seeds "
-             "in the options. threads: 0 = all cores; the result does not depend on them. progress: callable(stage, "
-             "done, total).\n\n"
-             "Raises Error when no surface is found.");
+             "Detects the surfaces of a raw cloud, the solids that they bound, and a tree over the solids: "
+             "Result.\n\ncloud: PointCloud, or positions of shape (n, 3). options: ReconstructOptions. seed: replaces "
+             "all seeds in the options. threads: 0 = all cores; the result does not depend on them. progress: "
+             "callable(stage, done, total).\n\nRaises Error when no surface is found.");
 }
 
 }  // namespace cloud2csg::python

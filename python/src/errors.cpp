@@ -25,11 +25,11 @@ void raise(const Error& error) {
 const char* taker_of(FileKind kind) {
   switch (kind) {
     case FileKind::cloud:
-      return "read_cloud() takes it";
+      return "read it with read_cloud()";
     case FileKind::mesh:
-      return "read_mesh() takes it, and read_cloud() draws points from it";
+      return "read it with read_mesh(), or draw points from it with read_cloud()";
     case FileKind::model:
-      return "Model.read() takes it";
+      return "read it with Model.read()";
     default:
       return "no function reads it";
   }
@@ -41,9 +41,8 @@ void bind_errors(py::module_& module) {
   py::dict members;
   members["__module__"] = "cloud2csg";
   members["__doc__"] =
-      "Bad input: a file, an option or a model that the library cannot work with.\n\n"
-      "str() is one line. file, where (line, byte or path of the field), expected and remedy are its parts, '' where "
-      "there is nothing to say.";
+      "Bad input: a file, an option or a model that the library cannot work with.\n\nstr() is one line. file, where "
+      "(line, byte or path of the field), expected and remedy are its parts; parts that do not apply are ''.";
   for (const char* part : {"file", "where", "expected", "remedy"}) members[part] = "";
   module.attr("Error") = py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(&PyType_Type))(
       "Error", py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_Exception)), members);

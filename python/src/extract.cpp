@@ -95,8 +95,8 @@ void bind_result_outputs(py::class_<Result>& result) {
   result
       .def("unexplained_points", &unexplained_in, py::kw_only(), py::arg("threads") = 0,
            py::arg("progress") = py::none(),
-           "Indices into `cloud` of the points that the tree contradicts: farther from its surface than the "
-           "tolerance of the extraction, or with another normal. Ascending, shape (k,), uint32.")
+           "Indices into `cloud` of the points that the tree contradicts: farther from its surface than the tolerance "
+           "of the extraction, or with a different normal. Ascending, shape (k,), uint32.")
       .def(
           "write",
           [](const Result& self, const std::filesystem::path& file, const std::optional<ExportOptions>& options,
@@ -106,7 +106,7 @@ void bind_result_outputs(py::class_<Result>& result) {
           },
           py::arg("file"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
           py::arg("progress") = py::none(),
-          "As Model.write(); a report (.html) also shows the cloud and the statistics.")
+          "Like Model.write(); a report (.html) also shows the cloud and the statistics.")
       .def(
           "report",
           [](const Result& self, const std::string& title, const std::optional<ReportOptions>& options, int threads,
@@ -117,25 +117,27 @@ void bind_result_outputs(py::class_<Result>& result) {
             });
           },
           py::kw_only(), py::arg("title") = "", py::arg("options") = py::none(), py::arg("threads") = 0,
-          py::arg("progress") = py::none(), "As Model.report(), with the cloud and the statistics.")
+          py::arg("progress") = py::none(), "Like Model.report(), with the cloud and the statistics.")
       .def(
           "_repr_html_", [](const Result& self) { return html_of(report_of(self, {}), repr_of(self)); },
-          "The viewer, for notebooks; a line of text where this build has none.");
+          "The report for notebooks; a line of text if this build has no viewer.");
 }
 
 }  // namespace
 
 void bind_extract(py::module_& module) {
-  py::class_<Result> result(module, "Result", "What extract() or detect() found.");
-  result.def_readonly("model", &Result::model, "The solids and the tree over them: Model.")
-      .def_readonly("cloud", &Result::cloud, "The points that were used, with normals: PointCloud.")
-      .def_readonly("surfaces", &Result::surfaces,
-                    "list of DetectedSurface: those that the points lie on, where primitives were found in the cloud.")
-      .def_property_readonly("statistics", &statistics_of,
-                             "dict: what the command line writes with --stats; times in seconds.")
+  py::class_<Result> result(module, "Result", "The result of extract() or detect().");
+  result.def_readonly("model", &Result::model, "The solids and the tree over them, a Model.")
+      .def_readonly("cloud", &Result::cloud, "The points used, with normals, a PointCloud.")
+      .def_readonly(
+          "surfaces", &Result::surfaces,
+          "list of DetectedSurface: the surfaces on which the points lie, if primitives were found in the cloud.")
+      .def_property_readonly(
+          "statistics", &statistics_of,
+          "dict: the content of the file that the command line writes with --stats; times in seconds.")
       .def_property_readonly(
           "warnings", [](const Result& self) { return self.statistics.warnings; },
-          "Sentences: what is doubtful, and where.")
+          "Sentences about doubts, with places.")
       .def_property_readonly(
           "complete", [](const Result& self) { return self.statistics.complete; },
           "False when a time limit ended the search.")
@@ -145,20 +147,15 @@ void bind_extract(py::module_& module) {
       "extract", &extract, py::arg("cloud"), py::arg("primitives") = py::none(), py::arg("options") = py::none(),
       py::kw_only(), py::arg("seed") = py::none(), py::arg("refine") = false, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
-      "The CSG tree of a point cloud: Result.\n\n"
-      "cloud: PointCloud, or positions of shape (n, 3).\n"
-      "primitives: the solids to combine, a Model or an iterable of Primitive; the cloud needs normals then. None: "
-      "they "
-      "are found in the cloud, which may be a raw scan.\n"
-      "options: ExtractOptions or ReconstructOptions.\n"
-      "seed: instead of all seeds in the options. The same seed gives the same tree, for any number of threads.\n"
-      "refine: True or RefineOptions: primitives are moved and sized to where the points are, and the tree extracted "
-      "again.\n"
-      "threads: 0 = all cores.\n"
-      "progress: callable(stage: str, done: int, total: int), called from this thread; total is 0 when it is not "
-      "known. An exception in it stops the work and is passed on.\n\n"
-      "The interpreter's lock is released meanwhile, and Ctrl-C (KeyboardInterrupt) stops the work soon. Raises Error "
-      "when the cloud has too few points or no inside, no surface is found, or no point is near any primitive.");
+      "Extracts the CSG tree of a point cloud: Result.\n\ncloud: PointCloud, or positions of shape (n, "
+      "3).\nprimitives: the solids to combine, a Model or an iterable of Primitive; the cloud then needs normals. "
+      "None: find primitives in the cloud, which may be a raw scan.\noptions: ExtractOptions or "
+      "ReconstructOptions.\nseed: replaces all seeds in the options. The same seed gives the same tree, for any number "
+      "of threads.\nrefine: True or RefineOptions: fit positions, directions and sizes of the primitives to the "
+      "points, and extract the tree again.\nthreads: 0 = all cores.\nprogress: callable(stage: str, done: int, total: "
+      "int), called from this thread; total is 0 if unknown. An exception in it stops the work and is passed "
+      "on.\n\nReleases the interpreter's lock during the work, and Ctrl-C (KeyboardInterrupt) stops it soon. Raises "
+      "Error when the cloud has too few points or no inside, no surface is found, or no point is near any primitive.");
 }
 
 }  // namespace cloud2csg::python

@@ -34,7 +34,7 @@ PrimitiveSet to_primitives(const py::object& primitives) {
     set.push_back(primitive.cast<Primitive>());
     if (!ids.insert(set.back().id).second) {
       throw Error({.where = fmt::format("primitives/{}/id", set.size() - 1),
-                   .expected = fmt::format("expected an id of its own, found \"{}\" again", set.back().id)});
+                   .expected = fmt::format("expected a unique id, found \"{}\" again", set.back().id)});
     }
   }
   return set;
@@ -87,78 +87,81 @@ py::object box_or_none(const std::optional<AlignedBox>& box) {
 }
 
 void bind_export_reports(py::module_& module) {
-  py::class_<FailedNode>(module, "FailedNode", "A node whose exact solid could not be had: written with facets.")
-      .def_readonly("node", &FailedNode::node, "As the text form writes it, shortened when long.")
-      .def_readonly("reason", &FailedNode::reason, "One line.");
-  py::class_<BrepReport>(module, "BrepReport", "What was written to .step or .brep, as far as the file does not say.")
-      .def_readonly("volume", &BrepReport::volume, "Of the solid in the file, in cubed units.")
-      .def_readonly("tree_volume", &BrepReport::tree_volume, "Of the tree, by samples.")
-      .def_readonly("tree_volume_error", &BrepReport::tree_volume_error, "Standard error of that.")
-      .def_property_readonly("volume_difference", &BrepReport::volume_difference, "As a part of the tree's.")
-      .def_readonly("is_valid", &BrepReport::is_valid, "Whether the kernel finds no fault in the solid.")
-      .def_readonly("solids", &BrepReport::solids, "Separate bodies.")
-      .def_readonly("faces", &BrepReport::faces, "How many.")
-      .def_readonly("healed_faces", &BrepReport::healed_faces, "Faces that were invalid before they were mended.")
+  py::class_<FailedNode>(module, "FailedNode",
+                         "A node whose exact solid could not be made, so that it was written with facets.")
+      .def_readonly("node", &FailedNode::node, "The node in text form, shortened when long.")
+      .def_readonly("reason", &FailedNode::reason, "The reason, in one line.");
+  py::class_<BrepReport>(module, "BrepReport", "What the written .step or .brep file does not show by itself.")
+      .def_readonly("volume", &BrepReport::volume, "Volume of the solid in the file, in cubed units.")
+      .def_readonly("tree_volume", &BrepReport::tree_volume, "Volume of the tree, estimated from samples.")
+      .def_readonly("tree_volume_error", &BrepReport::tree_volume_error, "Standard error of tree_volume.")
+      .def_property_readonly("volume_difference", &BrepReport::volume_difference,
+                             "Difference of the two volumes, as a share of the tree's.")
+      .def_readonly("is_valid", &BrepReport::is_valid, "Whether the CAD kernel finds no fault in the solid.")
+      .def_readonly("solids", &BrepReport::solids, "Number of separate bodies.")
+      .def_readonly("faces", &BrepReport::faces, "Number of faces.")
+      .def_readonly("healed_faces", &BrepReport::healed_faces,
+                    "Number of faces that were invalid before they were repaired.")
       .def_readonly("faceted", &BrepReport::faceted, "Indices of primitives without exact surfaces.")
       .def_readonly("failed", &BrepReport::failed, "Nodes written with facets: list of FailedNode.");
-  py::class_<ExportReport>(module, "ExportReport", "What a written file does not say of itself.")
+  py::class_<ExportReport>(module, "ExportReport", "What the written file does not show by itself.")
       .def_property_readonly(
           "cut_at", [](const ExportReport& self) { return box_or_none(self.cut_at); },
-          "The box at which a solid without bounds was cut, shape (2, 3), or None.")
-      .def_readonly("brep", &ExportReport::brep, "Of .step and .brep: BrepReport, or None.");
+          "The box at which an unbounded solid was cut, shape (2, 3), or None.")
+      .def_readonly("brep", &ExportReport::brep, "BrepReport of a .step or .brep file, or None.");
 }
 
 void bind_content(ModelClass& model) {
   model.def(py::init(&make_model), py::arg("primitives"), py::arg("tree") = py::none(), py::arg("description") = "")
       .def_property_readonly(
           "primitives", [](const Model& self) { return py::tuple(py::cast(self.primitives)); },
-          "tuple of Primitive: copies.")
+          "Copies of the primitives: tuple of Primitive.")
       .def_property_readonly(
           "tree",
           [](const Model& self) -> py::object {
             return self.tree ? to_nodes(*self.tree, self.primitives) : py::none();
           },
           "The tree as nested objects (see cloud2csg.tree), or None.")
-      .def_readonly("description", &Model::description, "Free text on where the model comes from.")
-      .def_readonly("warnings", &Model::warnings, "Sentences: what was doubtful when the model was read.")
+      .def_readonly("description", &Model::description, "Free text on the origin of the model.")
+      .def_readonly("warnings", &Model::warnings, "Sentences about doubts when the model was read.")
       .def_property_readonly(
           "size", [](const Model& self) { return tree_of(self).size(); },
-          "Nodes of the tree as a binary one, as in the paper. Raises Error without a tree.")
+          "Nodes of the tree in binary form, as in the paper. Raises Error without a tree.")
       .def_property_readonly(
           "leaf_count", [](const Model& self) { return leaf_count(tree_of(self)); },
-          "Leaves that are primitives, each as often as it appears. Raises Error without a tree.")
+          "Number of primitives in the tree, counting repetitions. Raises Error without a tree.")
       .def_property_readonly(
           "depth", [](const Model& self) { return depth(tree_of(self)); },
-          "Edges from the root to the deepest leaf of the binary tree. Raises Error without a tree.")
+          "Number of edges from the root to the deepest leaf of the binary tree. Raises Error without a tree.")
       .def_property_readonly(
           "bounds", [](const Model& self) { return to_array(bounds_of(self)); },
-          "[[least x, y, z], [greatest x, y, z]] around the solid, shape (2, 3); may be infinite.")
+          "[[least x, y, z], [greatest x, y, z]] of a box around the solid, shape (2, 3); may be infinite.")
       .def(
           "simplified",
           [](const Model& self) {
             return Model{self.primitives, simplify(tree_of(self)), self.description};
           },
-          "The same solid with a tree by the rules of set algebra, never larger.");
+          "The same solid with the tree simplified by the rules of set algebra; never larger.");
 }
 
 void bind_texts(ModelClass& model) {
   model
       .def_static(
           "from_json", [](const std::string& text) { return parse_model(text); }, py::arg("text"),
-          "From the text of a model file. Raises Error with the path of the field that is wrong.")
+          "Reads the text of a model file. Raises Error with the path of the wrong field.")
       .def_static("read", &read_file, py::arg("file"),
-                  "Reads a model file (.json), or one of OpenSCAD (.scad .csg). Raises Error.")
+                  "Reads a model file (.json) or an OpenSCAD file (.scad .csg). Raises Error when that fails.")
       .def(
-          "to_json", [](const Model& self) { return to_json(self); }, "The text of a model file.")
+          "to_json", [](const Model& self) { return to_json(self); }, "The text of a .json model file.")
       .def(
           "to_scad",
           [](const Model& self, const std::optional<OpenScadOptions>& options) {
             return to_openscad(self, options.value_or(OpenScadOptions{}));
           },
-          py::arg("options") = py::none(), "The OpenSCAD program. Raises Error without a tree.")
+          py::arg("options") = py::none(), "The text of an OpenSCAD program. Raises Error without a tree.")
       .def(
           "to_graphviz", [](const Model& self) { return to_graphviz(self); },
-          "The tree for Graphviz. Raises Error without a tree.")
+          "The tree in Graphviz's language. Raises Error without a tree.")
       .def(
           "to_text", [](const Model& self) { return to_text(tree_of(self), self.primitives); },
           "The tree in one line, e.g. '(plate | boss) - bore'. Raises Error without a tree.")
@@ -182,7 +185,7 @@ void bind_fields(ModelClass& model) {
                                 [&](PointsView at) { return implicit_value(tree, self.primitives, at); });
           },
           py::arg("points"), py::kw_only(), py::arg("threads") = 0,
-          "The tree's distance field at points of shape (n, 3), in any layout, float64 without a copy: shape (n,), in "
+          "Distance field of the tree at points of shape (n, 3), in any layout, float64 without a copy: shape (n,), in "
           "the model's units. Negative inside; the distance near the surface, a lower bound elsewhere; +inf for the "
           "empty solid.")
       .def(
@@ -193,8 +196,8 @@ void bind_fields(ModelClass& model) {
                                 [&](PointsView at) { return implicit_gradient(tree, self.primitives, at); });
           },
           py::arg("points"), py::kw_only(), py::arg("threads") = 0,
-          "The gradient of distance() at points of shape (n, 3): shape (n, 3), that of the primitive whose value the "
-          "tree takes, not normalised; outward on the surface.");
+          "Gradient of distance() at points of shape (n, 3): shape (n, 3). It is the gradient of the primitive whose "
+          "value the tree takes, not normalised; outward on the surface.");
 }
 
 void bind_outputs(ModelClass& model) {
@@ -209,8 +212,8 @@ void bind_outputs(ModelClass& model) {
             });
           },
           py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0, py::arg("progress") = py::none(),
-          "The surface as a closed TriangleMesh with sharp edges. Further keywords are fields of MeshingOptions. What "
-          "has no bounds is cut at a box around its primitives.")
+          "The surface as a closed TriangleMesh with sharp edges. Further keywords are fields of MeshingOptions. "
+          "Unbounded solids are cut at a box around their primitives.")
       .def(
           "write",
           [](const Model& self, const std::filesystem::path& file, const std::optional<ExportOptions>& options,
@@ -220,10 +223,9 @@ void bind_outputs(ModelClass& model) {
           },
           py::arg("file"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
           py::arg("progress") = py::none(),
-          "Writes by the file's ending: .json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .3mf .dot .html "
-          ".png. "
-          "All but .json need a tree. Nothing half-written; a file of another kind is not overwritten. Returns "
-          "ExportReport; raises Error.")
+          "Writes a file by its ending: .json .scad .csg .FCMacro .py .step .stp .brep .stl .off .obj .3mf .dot .html "
+          ".png. All but .json need a tree. Never leaves a partial file; does not overwrite a file of another kind. "
+          "Returns ExportReport; raises Error.")
       .def(
           "picture",
           [](const Model& self, const py::object& cloud, const std::optional<PictureOptions>& options, int threads,
@@ -237,8 +239,9 @@ void bind_outputs(ModelClass& model) {
           },
           py::arg("cloud") = py::none(), py::kw_only(), py::arg("options") = py::none(), py::arg("threads") = 0,
           py::arg("progress") = py::none(),
-          "The solid in the colours of its primitives, with a cloud (PointCloud, or positions of shape (n, 3)) on its "
-          "left: red, green and blue, shape (height, width, 3), uint8. Further keywords are fields of PictureOptions.");
+          "Picture of the solid in the colours of its primitives, with a cloud (PointCloud, or positions of shape (n, "
+          "3)) on its left: red, green and blue, shape (height, width, 3), uint8. Further keywords are fields of "
+          "PictureOptions.");
 }
 
 void bind_pages(ModelClass& model) {
@@ -254,14 +257,15 @@ void bind_pages(ModelClass& model) {
           },
           py::arg("cloud") = py::none(), py::kw_only(), py::arg("title") = "", py::arg("options") = py::none(),
           py::arg("threads") = 0, py::arg("progress") = py::none(),
-          "The text of an HTML page that shows the model, with a cloud (PointCloud, or positions of shape (n, 3)) how "
-          "far apart the two are. Needs nothing else, no network either. Raises Error in builds without the viewer.")
+          "Text of an HTML page that shows the model and, with a cloud (PointCloud, or positions of shape (n, 3)), the "
+          "distances between the two. The page needs no other files and no network. Raises Error in builds without the "
+          "viewer.")
       .def(
           "_repr_html_",
           [](const Model& self) {
             return html_of(report_of(self, py::none(), {}), fmt::format("cloud2csg.Model: {}", summary_of(self)));
           },
-          "The viewer, for notebooks; a line of text where there is no tree or no viewer in this build.");
+          "The report for notebooks; a line of text if the model has no tree or this build no viewer.");
 }
 
 }  // namespace
@@ -269,17 +273,16 @@ void bind_pages(ModelClass& model) {
 void bind_models(py::module_& module) {
   bind_export_reports(module);
   ModelClass model(module, "Model",
-                   "Primitives and, where known, the tree over them. Does not change.\n\n"
-                   "primitives: iterable of Primitive, or a Model. tree: a node of cloud2csg.tree, a text such as "
-                   "'(a | b) - c', or None. description: free text.\n\n"
-                   "Raises Error for an id that is there twice, or that no primitive has.");
+                   "Primitives and, if known, the tree over them. Immutable.\n\nprimitives: iterable of Primitive, or "
+                   "a Model. tree: a node of cloud2csg.tree, a text such as '(a | b) - c', or None. description: free "
+                   "text.\n\nRaises Error for a repeated id, or an id in the tree that no primitive has.");
   bind_content(model);
   bind_texts(model);
   bind_fields(model);
   bind_outputs(model);
   bind_pages(model);
-  module.def("has_viewer", &has_report_page, "Whether this build has the page of reports.");
-  module.def("has_brep", &has_brep, "Whether this build writes .step and .brep files.");
+  module.def("has_viewer", &has_report_page, "Whether this build contains the report page.");
+  module.def("has_brep", &has_brep, "Whether this build can write .step and .brep files.");
 }
 
 }  // namespace cloud2csg::python

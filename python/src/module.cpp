@@ -3,7 +3,7 @@
 namespace c2c = cloud2csg::python;
 
 PYBIND11_MODULE(_native, module) {
-  module.doc() = "The compiled part of cloud2csg; its names are those of the package.";
+  module.doc() = "The compiled part of cloud2csg. The package exports its names.";
   module.attr("__version__") = CLOUD2CSG_VERSION;
   c2c::bind_errors(module);
   c2c::bind_options(module);

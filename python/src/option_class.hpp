@@ -175,7 +175,7 @@ class OptionClass {
           set_fields(options, name, fields, values);
           return options;
         },
-        "A copy with other values for the fields that are named.");
+        "A copy with the named fields changed.");
     class_.def("__copy__", [](const Options& self) { return self; });
     class_.def("__deepcopy__", [](const Options& self, const pybind11::dict&) { return self; });
     class_.def(pybind11::pickle([fields = fields_](const pybind11::object& self) { return values_of(self, fields); },

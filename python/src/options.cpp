@@ -12,46 +12,49 @@ namespace cloud2csg::python {
 namespace {
 
 void bind_cloud_options(py::module_& module) {
-  add_options<InputOptions>(module, "InputOptions", "How a cloud is read: see read_cloud().");
-  add_options<CloudWriteOptions>(module, "CloudWriteOptions", "How a cloud is written: see PointCloud.write().");
-  add_options<CleanOptions>(module, "CleanOptions", "Which points of a raw cloud are left out.");
-  add_options<PrepareOptions>(module, "PrepareOptions", "From a raw cloud to one to detect surfaces in.");
-  add_options<SampleOptions>(module, "SampleOptions", "How points are drawn from a surface: see sample().");
-  add_options<MeshingOptions>(module, "MeshingOptions", "How the surface of a solid becomes triangles.");
+  add_options<InputOptions>(module, "InputOptions", "Options for reading a cloud: see read_cloud().");
+  add_options<CloudWriteOptions>(module, "CloudWriteOptions", "Options for writing a cloud: see PointCloud.write().");
+  add_options<CleanOptions>(module, "CleanOptions", "Removal of points from a raw cloud.");
+  add_options<PrepareOptions>(module, "PrepareOptions", "Preparation of a raw cloud for the detection of surfaces.");
+  add_options<SampleOptions>(module, "SampleOptions", "Options for drawing points from a surface: see sample().");
+  add_options<MeshingOptions>(module, "MeshingOptions", "Triangulation of a solid's surface.");
   add_options<ScanOptions>(module, "ScanOptions",
-                           "A range scanner put around a part: see scan(). Lengths are shares of the diagonal of the "
-                           "part's bounds where nothing else is said.")
+                           "A simulated range scanner around a part: see scan(). Lengths are shares of the diagonal of "
+                           "the part's bounds unless stated otherwise.")
       .def("without_defects", &without_defects,
-           "The same scanner without noise, missing returns, outliers and views out of place.");
-  add_options<CompareOptions>(module, "CompareOptions", "How two solids are compared: see compare().");
+           "The same scanner without noise, missing returns, outliers and misregistration of views.");
+  add_options<CompareOptions>(module, "CompareOptions", "Options for comparing two solids: see compare().");
 }
 
 void bind_extract_options(py::module_& module) {
-  add_options<SegmentationOptions>(module, "SegmentationOptions", "Which points lie on which primitive.");
+  add_options<SegmentationOptions>(module, "SegmentationOptions", "Assignment of points to primitives.");
   add_options<ObjectiveOptions>(module, "ObjectiveOptions", "Weights of the paper's objective E(t).");
-  add_options<SampleCounts>(module, "SampleCounts", "How many samples of its surface a primitive gets.");
-  add_options<LabelOptions>(module, "LabelOptions", "What labels of cells cost.");
-  add_options<MinimalFormulaOptions>(module, "MinimalFormulaOptions", "How much work a minimal formula may take.");
-  add_options<LocalSearchOptions>(module, "LocalSearchOptions", "Climbing by the best of all small changes of a tree.");
-  add_options<CellSolveOptions>(module, "CellSolveOptions", "From labelled cells to a small tree.");
-  add_options<GaOptions>(module, "GaOptions", "The search for the tree of one partition.");
-  add_options<ExtractOptions>(module, "ExtractOptions", "From a cloud and known primitives to a tree: see extract().")
-      .def_static("paper", &paper_options, "As in the paper: its weights, its genetic algorithm, no polish.");
-  add_options<RefineOptions>(module, "RefineOptions", "Primitives moved to where the points are: see extract().");
-  add_options<DetectOptions>(module, "DetectOptions", "How surfaces are detected: see detect().");
-  add_options<PlaceOptions>(module, "PlaceOptions", "Places by which solids are judged.");
-  add_options<RegularityOptions>(module, "RegularityOptions", "What of the surfaces is made regular.");
-  add_options<SolidOptions>(module, "SolidOptions", "How solids are chosen that the surfaces bound.");
-  add_options<ReconstructOptions>(module, "ReconstructOptions", "From a raw cloud to a tree: see extract().");
+  add_options<SampleCounts>(module, "SampleCounts", "Number of samples on the surface of each primitive.");
+  add_options<LabelOptions>(module, "LabelOptions", "Costs of labelling cells as in or out of the solid.");
+  add_options<MinimalFormulaOptions>(module, "MinimalFormulaOptions", "Limits on the search for a minimal formula.");
+  add_options<LocalSearchOptions>(module, "LocalSearchOptions",
+                                  "Local search that repeatedly makes the best small change of a tree.");
+  add_options<CellSolveOptions>(module, "CellSolveOptions", "Search for a small tree with the labels of the cells.");
+  add_options<GaOptions>(module, "GaOptions", "Search for the tree of one partition, by the genetic algorithm.");
+  add_options<ExtractOptions>(module, "ExtractOptions",
+                              "Extraction of a tree from a cloud and known primitives: see extract().")
+      .def_static("paper", &paper_options, "The paper's options: its weights, its genetic algorithm, no polish.");
+  add_options<RefineOptions>(module, "RefineOptions", "Refinement of the primitives to fit the points: see extract().");
+  add_options<DetectOptions>(module, "DetectOptions", "Detection of surfaces: see detect().");
+  add_options<PlaceOptions>(module, "PlaceOptions", "Sample places by which solids are judged.");
+  add_options<RegularityOptions>(module, "RegularityOptions", "Regularity of the surfaces.");
+  add_options<SolidOptions>(module, "SolidOptions", "Choice of the solids that the surfaces bound.");
+  add_options<ReconstructOptions>(module, "ReconstructOptions",
+                                  "Reconstruction of a tree from a raw cloud: see extract().");
 }
 
 void bind_output_options(py::module_& module) {
-  add_options<OpenScadOptions>(module, "OpenScadOptions", "How an OpenSCAD program is written.");
-  add_options<ScriptOptions>(module, "ScriptOptions", "How scripts in Python are written (.FCMacro, .py).");
-  add_options<BrepOptions>(module, "BrepOptions", "How exact solids are written (.step, .brep).");
-  add_options<ExportOptions>(module, "ExportOptions", "How a model is written: see Model.write().");
-  add_options<PictureOptions>(module, "PictureOptions", "How large a picture is, and from where: see Model.picture().");
-  add_options<ReportOptions>(module, "ReportOptions", "How large the page of a report is: see Model.report().");
+  add_options<OpenScadOptions>(module, "OpenScadOptions", "Options of OpenSCAD files.");
+  add_options<ScriptOptions>(module, "ScriptOptions", "Options of scripts in Python (.FCMacro, .py).");
+  add_options<BrepOptions>(module, "BrepOptions", "Options of files of exact solids (.step, .brep).");
+  add_options<ExportOptions>(module, "ExportOptions", "Options for writing a model: see Model.write().");
+  add_options<PictureOptions>(module, "PictureOptions", "Size and viewpoint of a picture: see Model.picture().");
+  add_options<ReportOptions>(module, "ReportOptions", "Limits on the size of a report page: see Model.report().");
 }
 
 }  // namespace

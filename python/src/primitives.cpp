@@ -28,7 +28,7 @@ void bind_round_shapes(py::module_& module) {
       .def(py::init([](double radius) { return Sphere{radius}; }), py::arg("radius"))
       .def_readonly("radius", &Sphere::radius, "Length.")
       .def("__repr__", [](const Sphere& self) { return fmt::format("Sphere(radius={})", self.radius); });
-  py::class_<Cylinder>(module, "Cylinder", "Axis = local z, centred: |z| <= height / 2.")
+  py::class_<Cylinder>(module, "Cylinder", "A cylinder along local z, centred: |z| <= height / 2.")
       .def(py::init([](double radius, double height) {
              return Cylinder{radius, height};
            }),
@@ -39,7 +39,7 @@ void bind_round_shapes(py::module_& module) {
         return fmt::format("Cylinder(radius={}, height={})", self.radius, self.height);
       });
   py::class_<Cone>(module, "Cone",
-                   "A frustum: axis = local z, centred; radius_bottom at z = -height / 2. One of the radii may be 0.")
+                   "A frustum along local z, centred; radius_bottom at z = -height / 2. One of the radii may be 0.")
       .def(py::init([](double bottom, double top, double height) {
              return Cone{bottom, top, height};
            }),
@@ -51,13 +51,13 @@ void bind_round_shapes(py::module_& module) {
         return fmt::format("Cone(radius_bottom={}, radius_top={}, height={})", self.radius_bottom, self.radius_top,
                            self.height);
       });
-  py::class_<Torus>(module, "Torus", "Axis = local z; minor_radius <= major_radius.")
+  py::class_<Torus>(module, "Torus", "A torus around local z; minor_radius <= major_radius.")
       .def(py::init([](double major, double minor) {
              return Torus{major, minor};
            }),
            py::arg("major_radius"), py::arg("minor_radius"))
-      .def_readonly("major_radius", &Torus::major_radius, "From the centre to the middle of the tube.")
-      .def_readonly("minor_radius", &Torus::minor_radius, "Of the tube.")
+      .def_readonly("major_radius", &Torus::major_radius, "Distance from the centre to the middle of the tube.")
+      .def_readonly("minor_radius", &Torus::minor_radius, "Radius of the tube.")
       .def("__repr__", [](const Torus& self) {
         return fmt::format("Torus(major_radius={}, minor_radius={})", self.major_radius, self.minor_radius);
       });
@@ -89,18 +89,19 @@ void bind_flat_shapes(py::module_& module) {
       .def_property_readonly(
           "size", [](const Box& self) { return self.size; }, "Edge lengths, shape (3,).")
       .def("__repr__", [](const Box& self) { return fmt::format("Box(size={})", text_of(self.size)); });
-  py::class_<HalfSpace>(module, "HalfSpace", "Local z <= 0.").def(py::init<>()).def("__repr__", [](const HalfSpace&) {
-    return "HalfSpace()";
-  });
+  py::class_<HalfSpace>(module, "HalfSpace", "The half-space z <= 0 of its own frame.")
+      .def(py::init<>())
+      .def("__repr__", [](const HalfSpace&) { return "HalfSpace()"; });
   py::class_<Polytope>(module, "Polytope",
-                       "The intersection of half-spaces; bounded, with volume. planes: rows (nx, ny, nz, offset), "
-                       "shape (k, 4), for normal . x <= offset.")
+                       "A bounded intersection of half-spaces with a volume. planes: rows (nx, ny, nz, offset), shape "
+                       "(k, 4), for normal . x <= offset.")
       .def(py::init(&make_polytope), py::arg("planes"))
-      .def_property_readonly("planes", &planes_of, "Shape (k, 4), normals of unit length.")
+      .def_property_readonly("planes", &planes_of,
+                             "Rows (nx, ny, nz, offset), shape (k, 4), with normals of unit length.")
       .def("__repr__", [](const Polytope& self) { return fmt::format("<Polytope of {} planes>", self.planes.size()); });
   py::class_<Expression>(module, "Expression",
-                         "A formula in x, y, z (muParser syntax), negative inside; lower and upper, shape (3,), are "
-                         "corners of a box around the solid, in its own frame.")
+                         "A solid given by a formula in x, y, z (muParser syntax), negative inside. lower and upper, "
+                         "shape (3,), are corners of a box around the solid, in its own frame.")
       .def(py::init([](std::string distance, const Vector3d& lower, const Vector3d& upper) {
              return Expression{std::move(distance), AlignedBox(lower, upper)};
            }),
@@ -147,29 +148,30 @@ std::string repr_of(const Primitive& self) {
 void bind_primitive(py::module_& module) {
   py::class_<Primitive>(
       module, "Primitive",
-      "A solid with a name. Does not change.\n\n"
-      "shape: Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope or Expression, in its own frame. position, shape "
-      "(3,), and quaternion, (w, x, y, z), place it in the world: x_world = rotation x_local + position. "
-      "displacement_frequency k: adds sin(kx) sin(ky) sin(kz) to the distance, in the own frame.\n\n"
-      "Raises Error for sizes that make no solid.")
+      "A named solid. Immutable.\n\nshape: Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope or Expression, in "
+      "its own frame. position, shape (3,), and quaternion, (w, x, y, z), place it in the world: x_world = rotation "
+      "x_local + position. displacement_frequency k: adds sin(kx) sin(ky) sin(kz) to the distance, in the shape's own "
+      "frame.\n\nRaises Error for sizes that make no solid.")
       .def(py::init(&make_primitive), py::arg("id"), py::arg("shape"),
            py::arg_v("position", Vector3d(0, 0, 0), "(0, 0, 0)"),
            py::arg_v("quaternion", Eigen::Vector4d(1, 0, 0, 0), "(1, 0, 0, 0)"),
            py::arg("displacement_frequency") = py::none())
       .def_readonly("id", &Primitive::id, "The name, unique in a model.")
-      .def_readonly("shape", &Primitive::shape, "Box, Sphere...: a copy.")
+      .def_readonly("shape", &Primitive::shape, "Box, Sphere, ...: a copy.")
       .def_property_readonly(
           "type", [](const Primitive& self) { return std::string(type_name(self.shape)); },
-          "As in model files: 'box', 'sphere', 'cylinder', 'cone', 'torus', 'half_space', 'polytope', 'expression'.")
+          "Type name as in model files: 'box', 'sphere', 'cylinder', 'cone', 'torus', 'half_space', 'polytope', "
+          "'expression'.")
       .def_property_readonly(
-          "position", [](const Primitive& self) { return self.pose.position; }, "Of its frame's origin, shape (3,).")
-      .def_property_readonly("quaternion", &quaternion_of, "(w, x, y, z), unit length, shape (4,).")
+          "position", [](const Primitive& self) { return self.pose.position; },
+          "Position of the frame's origin, shape (3,).")
+      .def_property_readonly("quaternion", &quaternion_of, "Orientation (w, x, y, z), unit length, shape (4,).")
       .def_property_readonly(
           "displacement_frequency",
           [](const Primitive& self) {
             return self.displacement ? std::optional(self.displacement->frequency) : std::nullopt;
           },
-          "Of the sine displacement, or None.")
+          "Frequency of the sine displacement, or None.")
       .def_property_readonly(
           "bounds", [](const Primitive& self) { return to_array(bounds(self)); },
           "[[least x, y, z], [greatest x, y, z]] in the world, shape (2, 3); infinite for half-spaces.")

@@ -22,7 +22,7 @@ std::string html_of(const Report& report, const std::string& text) {
     return fmt::format("<pre>{}</pre>", escaped(reason.empty() ? text : text + "\n" + reason));
   };
   if (!report.model.tree) return as_text({});
-  if (!has_report_page()) return as_text("(this build has no viewer: it takes Node.js to build it)");
+  if (!has_report_page()) return as_text("(this build has no viewer, which needs Node.js at build time)");
   try {
     const std::string page = run_work({}, [&](const RunContext& run) { return report_page(report, {}, run); });
     return fmt::format(R"(<iframe srcdoc="{}" sandbox="allow-scripts allow-downloads" )"

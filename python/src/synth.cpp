@@ -48,15 +48,15 @@ Cloud scan(const py::object& shape, const std::optional<ScanOptions>& options, i
 void bind_synth(py::module_& module) {
   module.def("sample", &sample, py::arg("shape"), py::arg("options") = py::none(), py::kw_only(),
              py::arg("threads") = 0, py::arg("progress") = py::none(),
-             "Points on the surface of a Model or TriangleMesh, uniform by area, with outward normals: PointCloud.\n\n"
-             "Positions are moved by the noise after the normal was taken. Further keywords are fields of "
-             "SampleOptions: sample(model, count=50_000, noise=0.01). progress: callable(stage, done, total).\n\n"
-             "Raises Error when the solid is empty or unbounded.");
-  module.def("scan", &scan, py::arg("shape"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
-             py::arg("progress") = py::none(),
-             "The PointCloud that a range scanner would make of a Model or TriangleMesh, with sensor positions.\n\n"
-             "Further keywords are fields of ScanOptions. progress: callable(stage, done, total). Raises Error when "
-             "there is nothing to see.");
+             "Draws points from the surface of a Model or TriangleMesh, uniformly by area, with outward normals: "
+             "PointCloud.\n\nNormals are those of the positions before the noise. Further keywords are fields of "
+             "SampleOptions: sample(model, count=50_000, noise=0.01). progress: callable(stage, done, "
+             "total).\n\nRaises Error when the solid is empty or unbounded.");
+  module.def(
+      "scan", &scan, py::arg("shape"), py::arg("options") = py::none(), py::kw_only(), py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      "Simulates a range scanner around a Model or TriangleMesh: PointCloud with sensor positions.\n\nFurther keywords "
+      "are fields of ScanOptions. progress: callable(stage, done, total). Raises Error when the scanner sees nothing.");
 }
 
 }  // namespace cloud2csg::python

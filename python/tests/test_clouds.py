@@ -94,11 +94,11 @@ def test_sensor_positions_are_kept(tmp_path):
 def test_a_file_of_the_wrong_kind_is_told_which_function_takes_it(tmp_path):
     model = tmp_path / "part.json"
     cloud2csg.Model([cloud2csg.Primitive("ball", cloud2csg.Sphere(1))], "ball").write(model)
-    with pytest.raises(cloud2csg.Error, match=r"found a model; Model.read\(\) takes it") as raised:
+    with pytest.raises(cloud2csg.Error, match=r"found a model; read it with Model.read\(\)") as raised:
         cloud2csg.read_cloud(model)
     assert "Model.read()" in raised.value.remedy
     cloud2csg.PointCloud(POINTS).write(tmp_path / "scan.ply")
-    with pytest.raises(cloud2csg.Error, match=r"expected a mesh, found a point cloud; read_cloud\(\) takes it"):
+    with pytest.raises(cloud2csg.Error, match=r"expected a mesh, found a point cloud; read it with read_cloud\(\)"):
         cloud2csg.read_mesh(tmp_path / "scan.ply")
 
 

@@ -142,7 +142,7 @@ def test_unknown_ending(tmp_path, plate):
 def test_a_file_of_another_kind_is_not_overwritten(tmp_path, plate):
     theirs = tmp_path / "theirs.scad"
     theirs.write_text("cube(1);\n")
-    with pytest.raises(cloud2csg.Error, match="is there already and is no OpenSCAD script of cloud2csg"):
+    with pytest.raises(cloud2csg.Error, match="already exists and is no OpenSCAD script of cloud2csg"):
         plate.write(theirs)
     assert theirs.read_text() == "cube(1);\n"
     for _ in range(2):

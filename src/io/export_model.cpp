@@ -20,7 +20,7 @@ std::string text_of(const Eigen::Vector3d& corner) {
 std::string head_comment(std::string comment, const Model& model, const std::optional<AlignedBox>& cut) {
   if (comment.empty()) comment = model.description;
   if (cut) {
-    comment += fmt::format("{}The solid has no bounds: it is cut at {} to {}.", comment.empty() ? "" : "\n",
+    comment += fmt::format("{}The solid is unbounded and is cut at {} to {}.", comment.empty() ? "" : "\n",
                            text_of(cut->min()), text_of(cut->max()));
   }
   return comment;

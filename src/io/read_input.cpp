@@ -46,10 +46,10 @@ void warn_of_coarse_corners(const TriangleMesh& mesh, std::vector<std::string>& 
   const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
   const double step = farthest * static_cast<double>(std::numeric_limits<float>::epsilon());
   if (step <= k_coarse * box.diagonal().norm() || !is_in_single_precision(mesh)) return;
-  warnings.push_back(fmt::format(
-      "The mesh is in single precision, and so far from the origin that its corners are in steps of {:.2g}: move it "
-      "there before it is written, or give a cloud.",
-      step));
+  warnings.push_back(
+      fmt::format("The mesh is in single precision and so far from the origin that its coordinates have steps of "
+                  "{:.2g}: move it to the origin before writing it, or give a cloud.",
+                  step));
 }
 
 Input read_and_sample(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
@@ -92,8 +92,8 @@ PointCloud sample_mesh(const TriangleMesh& mesh, const InputOptions& options, co
 PointCloud sample_mesh_surface(const TriangleMesh& mesh, const SampleOptions& options, const RunContext& run) {
   validate(options);
   if (options.density > 0 || options.normal_noise_deg > 0) {
-    throw invalid_option(options.density > 0 ? "density" : "normal_noise_deg", "works on models only, this is a mesh",
-                         "give `count` and `noise`");
+    throw invalid_option(options.density > 0 ? "density" : "normal_noise_deg",
+                         "works only for models, and this is a mesh", "give `count` and `noise`");
   }
   PointCloud cloud = sample_mesh(mesh, {.mesh_points = options.count, .seed = options.seed}, run);
   return options.noise > 0 ? with_noise(std::move(cloud), options.noise, options.seed) : cloud;

@@ -152,17 +152,17 @@ std::vector<std::string> fit_warnings(const ExtractStatistics& statistics, doubl
   std::vector<std::string> warnings;
   if (10 * statistics.unassigned_points > statistics.points) {
     warnings.emplace_back(
-        "more than a tenth of the points is on no primitive: primitives may be missing or badly fitted");
+        "more than a tenth of the points are on no primitive: primitives may be missing or badly fitted");
   } else if (statistics.fit.p95_distance > tolerance) {
     warnings.push_back(
-        fmt::format("more than a twentieth of the points is farther than {:.3g} from the surface of the result: "
+        fmt::format("more than a twentieth of the points are farther than {:.3g} from the surface of the result: "
                     "primitives may be missing or badly fitted",
                     tolerance));
   }
   if (!statistics.cells && statistics.merge.worst_shortfall > k_tolerated_shortfall) {
     warnings.push_back(
-        fmt::format("the trees of the partitions did not merge well: on one of the primitives, {:.0f} % of what its "
-                    "partition explains is lost",
+        fmt::format("the trees of the partitions did not merge well: one primitive lost {:.0f} % of the fit that its "
+                    "partition reached",
                     100 * statistics.merge.worst_shortfall));
   }
   if (!statistics.complete) warnings.emplace_back("stopped early: this is the best tree so far");
@@ -173,7 +173,7 @@ std::vector<std::string> tolerance_warnings(double tolerance, double diagonal) {
   if (tolerance >= diagonal) {
     throw invalid_option("detection.distance_tolerance",
                          fmt::format("{:.3g} is as large as the cloud, whose diagonal is {:.3g}", tolerance, diagonal),
-                         "give it in the cloud's units, or leave it out: it is taken from the noise");
+                         "give it in the cloud's units, or leave it out to use a multiple of the noise");
   }
   if (tolerance <= k_coarse * diagonal) return {};
   return {fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost", tolerance,
@@ -193,8 +193,8 @@ std::vector<std::string> detection_warnings(const RestDetection& found, const Pr
   const double unexplained = share(detection.unexplained, cloud.size());
   if (unexplained <= k_much_unexplained) return {};
   return {
-      fmt::format("{:.0f} % of the points lie on no surface that was found, most of them near {}: a larger "
-                  "tolerance than {:.3g} may help, or these parts are of free form",
+      fmt::format("{:.0f} % of the points lie on no detected surface, most of them near {}: a larger tolerance than "
+                  "{:.3g} may help, or these parts are of free form",
                   100 * unexplained, place_text(unexplained_place(found, prepared), prepared.scale.diagonal),
                   detection.distance_tolerance)};
 }
@@ -202,10 +202,9 @@ std::vector<std::string> detection_warnings(const RestDetection& found, const Pr
 std::vector<std::string> disagreement_warnings(const CsgTree& tree, const FoundPrimitives& found, double disagreement) {
   if (disagreement <= k_much_disagreement) return {};
   const Eigen::Vector3d worst = worst_place(tree, found.choice.solids, found.choice.places);
-  return {
-      fmt::format("the tree is doubtful: it is wrong at places that weigh {:.0f} % of the solid's volume and "
-                  "surface, worst near {}",
-                  100 * disagreement, place_text(worst, found.prepared.scale.diagonal))};
+  return {fmt::format(
+      "the tree is doubtful: it contradicts the points in {:.0f} % of the solid's volume and surface, worst near {}",
+      100 * disagreement, place_text(worst, found.prepared.scale.diagonal))};
 }
 
 std::vector<std::string> bare_surface_warnings(const CsgTree& tree, const FoundPrimitives& found,
@@ -213,10 +212,9 @@ std::vector<std::string> bare_surface_warnings(const CsgTree& tree, const FoundP
   const double near = std::max(k_bare_spacings * found.prepared.scale.spacing, 2 * found.detection.distance_tolerance);
   const auto bare = find_bare_surface(tree, found.choice.solids, found.prepared.cloud, near, run);
   if (!bare || bare->share < k_much_bare_surface) return {};
-  return {
-      fmt::format("{:.0f} % of the result's surface has no points near it, least of all at {}: what is there "
-                  "is a guess",
-                  100 * bare->share, place_text(bare->middle, found.prepared.scale.diagonal))};
+  return {fmt::format(
+      "{:.0f} % of the result's surface has no points nearby, farthest from any at {}: the solid there is a guess",
+      100 * bare->share, place_text(bare->middle, found.prepared.scale.diagonal))};
 }
 
 std::vector<std::string> unused_surface_warnings(const CsgTree& tree, const FoundPrimitives& found) {
@@ -227,11 +225,9 @@ std::vector<std::string> unused_surface_warnings(const CsgTree& tree, const Foun
   if (unused.count == 0) return {};
   const DetectedSurface& largest = found.detection.surfaces[unused.largest];
   const Eigen::Vector3d middle = bounds_of(select_points(cloud, largest.points).positions).center();
-  return {
-      fmt::format("of the surfaces that were found, {} are not on the result, the largest a {} of {} "
-                  "points near {}",
-                  unused.count, type_name(largest.surface.type), largest.points.size(),
-                  place_text(middle, found.prepared.scale.diagonal))};
+  return {fmt::format("{} detected surfaces are not on the result, the largest a {} of {} points near {}", unused.count,
+                      type_name(largest.surface.type), largest.points.size(),
+                      place_text(middle, found.prepared.scale.diagonal))};
 }
 
 std::vector<std::string> unused_known_warnings(const CsgTree& tree, const FoundPrimitives& found,
@@ -242,7 +238,7 @@ std::vector<std::string> unused_known_warnings(const CsgTree& tree, const FoundP
     const std::string name = fmt::format("'{}'", known[p].id);
     const auto names_it = [&name](const std::string& text) { return text.find(name) != std::string::npos; };
     if (std::ranges::find(used, p) != used.end() || std::ranges::any_of(told, names_it)) continue;
-    warnings.push_back(fmt::format("the points do not bear out the known primitive {}: {} of {} lie on it", name,
+    warnings.push_back(fmt::format("the points do not support the known primitive {}: {} of {} lie on it", name,
                                    found.points[p].points.size(), found.prepared.cloud.size()));
   }
   return warnings;

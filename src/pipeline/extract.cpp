@@ -93,7 +93,7 @@ class Extractor {
     run_.enforce_limit();
     if (is_asked_for && !by_cells_->tree) {
       statistics_.warnings.emplace_back(
-          "the cells leave more than 64 primitives that depend on each other: partitions were searched instead");
+          "more than 64 primitives depend on each other in the cells, so partitions were searched instead");
     }
     return by_cells_->tree && (is_asked_for || by_cells_->trust() >= options_.cell_trust);
   }

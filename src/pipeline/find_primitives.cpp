@@ -44,8 +44,8 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   // Rounded, and + 0.0 turns -0 into 0.
   const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
   found.warnings.push_back(
-      fmt::format("the side that faces ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points: it is closed "
-                  "by a plane through {}",
+      fmt::format("the side facing ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points and was closed by "
+                  "a plane through {}",
                   facing.x(), facing.y(), facing.z(), 100 * side->share,
                   place_text(bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
 }
@@ -66,8 +66,8 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
     append(cloud, wall.points);
   }
   found.warnings.push_back(
-      fmt::format("no sensor saw far into {} of the holes, the largest near {}: the walls are taken to go on between "
-                  "what was seen of them",
+      fmt::format("no sensor saw far into {} of the holes, the largest near {}: their walls were extended between the "
+                  "parts that were seen",
                   walls.size(), place_text(middle, found.prepared.scale.diagonal)));
 }
 
@@ -83,7 +83,7 @@ void check_known(const PrimitiveSet& known) {
   for (const Primitive& primitive : known) {
     const std::string where = fmt::format("known primitive '{}'", primitive.id);
     if (!ids.insert(primitive.id).second) {
-      throw Error({.where = where, .expected = "another has the same id"});
+      throw Error({.where = where, .expected = "another known primitive has the same id"});
     }
     try {
       validate(primitive);
@@ -136,9 +136,9 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
   found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
   if (found.choice.solids.empty()) {
-    throw Error({.expected = fmt::format("the surfaces that were found, {} in a cloud of {} points, bound no solid",
+    throw Error({.expected = fmt::format("the {} detected surfaces in a cloud of {} points bound no solid",
                                          found.detection.surfaces.size(), found.prepared.cloud.size()),
-                 .remedy = "give a cloud of a closed object, or of most of its surface, of some thousand points"});
+                 .remedy = "give a cloud of some thousand points that covers most of the surface of a closed object"});
   }
   append(found.warnings, found.choice.warnings);
   // An early stop of the choice still leaves a tree.
@@ -177,13 +177,13 @@ FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& 
   try {
     FoundPrimitives found = find_all(cloud, options, limited);
     if (seconds && *seconds <= watch.seconds()) {
-      found.warnings.emplace_back("the time was over while solids were chosen: these are the best so far");
+      found.warnings.emplace_back("the time limit ended the choice of solids: these are the best so far");
     }
     return found;
   } catch (const Cancelled&) {
     if (run.stop.stop_requested()) throw;
-    throw invalid_option("extraction.time_limit_seconds", "the time was over before primitives were found",
-                         "allow more, or give a `point_budget` below the number of points");
+    throw invalid_option("extraction.time_limit_seconds", "the time limit ended before primitives were found",
+                         "allow more time, or give a `point_budget` below the number of points");
   }
 }
 

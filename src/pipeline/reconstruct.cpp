@@ -113,7 +113,8 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
 Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   validate(options);
   if (options.refine && !options.known.empty()) {
-    throw invalid_option("refine", "primitives that are known would be moved", "refine all primitives, or none");
+    throw invalid_option("refine", "refinement would change the known primitives",
+                         "leave out refine or the known primitives");
   }
   const Stopwatch watch;
   FoundPrimitives found = find_in_time(cloud, options, run);

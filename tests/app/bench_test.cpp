@@ -62,7 +62,7 @@ TEST_F(Bench, CompareTellsWhatGotWorse) {
   const std::string after = file("after.json", results.dump());
   const Outcome worse = run({"bench", "compare", before, after});
   EXPECT_EQ(worse.status, 1);
-  EXPECT_EQ(worse.err, "cloud2csg: " + after + ": 4 of its measures got worse\n");
+  EXPECT_EQ(worse.err, "cloud2csg: " + after + ": 4 measures got worse\n");
   EXPECT_NE(worse.out.find("| m1    | high     | SST  | nodes "), std::string::npos) << worse.out;
   EXPECT_EQ(worse.out.find("duration"), std::string::npos) << worse.out;
   EXPECT_EQ(run({"bench", "compare", after, before}).status, 0);
@@ -95,7 +95,7 @@ TEST_F(Bench, BadInputIsNamed) {
   expect_failure(run_small({"--models", path("nowhere")}), 1, {"nowhere"});
   expect_failure(run({"bench", "paper", "-o", path("out"), "--models", path("nowhere")}), 1, {"nowhere", "--models"});
   const std::string taken = file("taken", "");
-  expect_failure(run({"bench", "paper", "-o", taken}), 1, {taken, "cannot be made"});
+  expect_failure(run({"bench", "paper", "-o", taken}), 1, {taken, "cannot be created"});
 }
 
 }  // namespace

@@ -168,11 +168,11 @@ TEST_F(Commands, ConvertWarnsWhereItCuts) {
   const Outcome outcome =
       run({"convert", model, "-o", path("h.off"), "-o", path("h.scad"), "-o", path("h.dot"), "--resolution", "8"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("warning: " + path("h.off") + ": the solid has no bounds"), std::string::npos)
+  EXPECT_NE(outcome.err.find("warning: " + path("h.off") + ": the solid is unbounded"), std::string::npos)
       << outcome.err;
   EXPECT_NE(outcome.err.find("warning: " + path("h.scad")), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find("h.dot"), std::string::npos) << outcome.err;
-  EXPECT_NE(read_file(path("h.scad")).find("// The solid has no bounds"), std::string::npos);
+  EXPECT_NE(read_file(path("h.scad")).find("// The solid is unbounded"), std::string::npos);
   EXPECT_EQ(run({"convert", shipped("m1.json"), "-o", path("m.off"), "--resolution", "8"}).err.find("warning"),
             std::string::npos);
 }

@@ -85,7 +85,7 @@ TEST_F(Config, WrongNamesAreRefusedWithTheNearest) {
   refused("[detect]\nsed = 1\n", {"c.toml:2: unknown option 'sed'; did you mean 'seed'?"});
   refused("[bench.papr]\n", {"c.toml:1: unknown command 'papr'; did you mean 'paper'?"});
   refused("[extract]\nprint-config = true\n", {"unknown option 'print-config'"});
-  refused("[extract]\nseed = \n", {"c.toml:2: no TOML"});
+  refused("[extract]\nseed = \n", {"c.toml:2: not valid TOML"});
 }
 
 TEST_F(Config, WrongValuesAreRefused) {

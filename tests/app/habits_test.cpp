@@ -100,7 +100,7 @@ TEST_F(Habits, DoctorFailsForABrokenPart) {
   if (outcome.status == 0) GTEST_SKIP() << "the run path comes first here";
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.out.find("BROKEN  CAD files"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.err.find("install cloud2csg anew"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("install cloud2csg again"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Habits, BashCompletesCommandsOptionsAndValues) {
@@ -140,9 +140,9 @@ TEST_F(Habits, CompletionTellsWhatWordsMean) {
     EXPECT_EQ(outcome.err, "");
     return outcome.out;
   };
-  EXPECT_EQ(told({"doc"}), "doctor\tSays which optional parts are there, and what is broken\n");
+  EXPECT_EQ(told({"doc"}), "doctor\tReports which optional parts are installed, and what is broken\n");
   EXPECT_EQ(told({"help", "doc"}), told({"doc"}));
-  EXPECT_EQ(told({"info", "x.ply", "--js"}), "--json\tJSON instead of a table\n");
+  EXPECT_EQ(told({"info", "x.ply", "--js"}), "--json\tPrint JSON instead of a table\n");
   // Once given, only what may be repeated is offered again.
   EXPECT_EQ(told({"info", "--json", "x.ply", "--js"}), "");
   EXPECT_EQ(told({"sample", "-o", "a.ply", "--outp"}).substr(0, 9), "--output\t");
@@ -174,7 +174,8 @@ TEST_F(Habits, ZshCompletes) {
                                  start + "'; _cloud2csg\n");
   };
   EXPECT_EQ(offers("", "conv"), "convert:Writes a model in other formats\n");
-  EXPECT_EQ(offers("bench ", "pa"), "paper:The paper's evaluation: its models and modes, as tables and figures\n");
+  EXPECT_EQ(offers("bench ", "pa"),
+            "paper:Repeats the paper's evaluation of its models and modes, with tables and figures\n");
   EXPECT_EQ(offers("extract --strategy ", "p"), "partition\n");
   EXPECT_EQ(offers("extract a\\ b.ply --primitives ", "pa"), "before\nfiles -g *.(#i)(json|scad|csg)\n");
   EXPECT_EQ(offers("extract a.ply ", "--primitives=pa"), "before --primitives=\nfiles -g *.(#i)(json|scad|csg)\n");

@@ -103,8 +103,7 @@ TEST_F(Known, DetectKeepsWhatIsKnown) {
   EXPECT_EQ(primitives[0]["id"], "block");
   EXPECT_EQ(primitives[0]["size"], json({4, 3, 1}));
   EXPECT_EQ(primitives[1]["evidence"]["points"], 0);
-  EXPECT_NE(outcome.err.find("warning: the points do not bear out the known primitive 'ghost': 0 of"),
-            std::string::npos)
+  EXPECT_NE(outcome.err.find("warning: the points do not support the known primitive 'ghost': 0 of"), std::string::npos)
       << outcome.err;
 }
 
@@ -116,7 +115,8 @@ TEST_F(Known, RadiiAreTakenAndOthersNoted) {
     const json model = json::parse(read_file(path("p.json")));
     for (const json& primitive : model["primitives"]) {
       if (primitive["type"] != "cylinder") continue;
-      return std::pair(primitive["radius"].get<double>(), outcome.err.find("none of those given") != std::string::npos);
+      return std::pair(primitive["radius"].get<double>(),
+                       outcome.err.find("none of the given ones") != std::string::npos);
     }
     return std::pair(0.0, false);
   };

@@ -55,7 +55,7 @@ TEST_F(Overwriting, TellsWhatToDo) {
   const std::string work = file("work.scad", "cube(1);\n");
   const Outcome refused = run({"convert", shipped("m1.json"), "-o", work});
   expect_failure(refused, 1,
-                 {"work.scad: is there already and is no OpenSCAD script of cloud2csg", "choose another name"});
+                 {"work.scad: already exists and is no OpenSCAD script of cloud2csg", "choose another name"});
   EXPECT_EQ(read_file(work), "cube(1);\n");
 }
 
@@ -77,8 +77,8 @@ TEST_F(Overwriting, ModelsAndStatisticsAreTwoKinds) {
   ASSERT_EQ(extract("m.json", "s.json").status, 0);
   EXPECT_NO_THROW(check_overwriting(path("m.json")));
   EXPECT_NO_THROW(check_overwriting(path("s.json"), true));
-  expect_failure(extract("s.json", "new.json"), 1, {"s.json: is there already and is no model of cloud2csg"});
-  expect_failure(extract("new.json", "m.json"), 1, {"m.json: is there already and is no file of statistics"});
+  expect_failure(extract("s.json", "new.json"), 1, {"s.json: already exists and is no model of cloud2csg"});
+  expect_failure(extract("new.json", "m.json"), 1, {"m.json: already exists and is no file of statistics"});
 }
 
 TEST_F(Overwriting, MeshesOfOtherProgramsAreOfTheirKind) {

@@ -131,7 +131,7 @@ TEST_F(Reports, NothingElseIsServed) {
   EXPECT_EQ(client.Get("/")->status, 200);
   const Outcome second = run({"view", shipped("m1.json"), "--no-browser", "--port", std::to_string(served.port)});
   EXPECT_EQ(second.status, 1);
-  EXPECT_NE(second.err.find("the port cannot be listened on"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("the port cannot be opened"), std::string::npos) << second.err;
   served.program.send_signal(SIGTERM);
   EXPECT_EQ(served.program.wait().status, 0);
 }

@@ -34,7 +34,7 @@ TEST_F(WrongKind, IsToldByTheEnding) {
   expect_told({"extract", shipped("m1.json"), "-o", path("x.scad")},
               {"m1.json: expected a point cloud or a mesh, found a model; 'convert' writes it"});
   expect_told({"convert", path("mesh.stl"), "-o", path("x.scad")},
-              {"mesh.stl: expected a model, found a mesh; 'extract' makes a model of it"});
+              {"mesh.stl: expected a model, found a mesh; 'extract' makes a model from it"});
   expect_told({"extract", path("cloud.ply"), "--primitives", path("mesh.stl"), "-o", path("x.scad")},
               {"mesh.stl: expected a model, found a mesh"});
   expect_told({"extract", path("mesh.stl"), "--primitives", path("mesh.stl"), "-o", path("x.scad")},
@@ -61,8 +61,9 @@ TEST_F(WrongKind, IsToldByTheContent) {
 
 TEST_F(WrongKind, AnEndingThatLiesIsToldTheRightOne) {
   expect_told({"extract", file("lies.ply", "solid part\n facet normal 0 0 1\n"), "-o", path("x.scad")},
-              {"lies.ply: its content is that of a STL file, its ending is not; name it lies.stl"});
-  expect_told({"info", file("unknown", "OFF\n3 1 0\n")}, {"unknown: its content is that of a OFF file", "unknown.off"});
+              {"lies.ply: its ending does not match its content (STL file); name it lies.stl"});
+  expect_told({"info", file("unknown", "OFF\n3 1 0\n")},
+              {"unknown: its ending does not match its content (OFF file)", "unknown.off"});
 }
 
 TEST_F(WrongKind, WhatIsNothingIsToldWhereItIsWrong) {
@@ -75,9 +76,9 @@ TEST_F(WrongKind, WhatIsNothingIsToldWhereItIsWrong) {
 
 TEST_F(WrongKind, OutputsAreToldBeforeAnyWork) {
   expect_failure(run({"sample", path("missing.json"), "-o", path("x.stl")}), 2,
-                 {"x.stl: a mesh ('.stl') is not written here; use one of .ply .pcd"});
+                 {"x.stl: a mesh ('.stl') cannot be written by this command; use one of .ply .pcd"});
   expect_failure(run({"convert", path("missing.json"), "-o", path("x.glb")}), 2,
-                 {"x.glb: a mesh ('.glb') is not written here"});
+                 {"x.glb: a mesh ('.glb') cannot be written by this command"});
   expect_failure(run({"detect", path("cloud.ply"), "-o", path("x.scad")}), 2, {"use one of .json .ply .png"});
 }
 

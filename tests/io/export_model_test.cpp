@@ -236,7 +236,7 @@ std::optional<AlignedBox> cut_of(const std::string& tree, const char* ending) {
   const std::filesystem::path file = temporary(std::string("cut") + ending);
   const ExportReport report = export_model(file, model, {.meshing = {.resolution = 16}});
   if (is_script(ending)) {
-    EXPECT_EQ(content_of(file).find("has no bounds") != std::string::npos, report.cut_at.has_value());
+    EXPECT_EQ(content_of(file).find("is unbounded") != std::string::npos, report.cut_at.has_value());
   }
   std::filesystem::remove(file);
   return report.cut_at;

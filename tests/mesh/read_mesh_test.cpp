@@ -203,13 +203,13 @@ TEST(Read3mf, Refuses) {
   expect_refused("a.3mf", threemf_of("<model>"), "", "found an error at its byte");
   expect_refused("a.3mf", threemf_of(object, ""), "", "expected triangles, found none");
   expect_refused("a.3mf", threemf_of(object, R"(<item objectid="2"/>)"), "", "the id of an object");
-  expect_refused("a.3mf", threemf_of(object + object, ""), "", "an id of its own");
+  expect_refused("a.3mf", threemf_of(object + object, ""), "", "a unique id");
   expect_refused("a.3mf", threemf_of(object, R"(<item objectid="1" transform="1 0 0"/>)"), "", "12 numbers");
   expect_refused("a.3mf", threemf_of(object, R"(<item objectid="1"/>)", "mile"), "", "found \"mile\"");
   expect_refused("a.3mf",
                  threemf_of(R"(<object id="1"><components><component objectid="1"/></components></object>)",
                             R"(<item objectid="1"/>)"),
-                 "", "an object that is not within itself");
+                 "", "an object that does not contain itself");
   std::string wrong = object;
   wrong.replace(wrong.find("v3=\"1\""), 6, "v3=\"4\"");
   expect_refused("a.3mf", threemf_of(wrong, R"(<item objectid="1"/>)"), "triangle 0", "one of the 4 vertices before");
@@ -300,8 +300,8 @@ TEST(ReadGlb, Refuses) {
   expect_refused("a.glb", good.substr(0, good.size() - 1), fmt::format("byte {}", good.size() - 60), "within a chunk");
   expect_refused("a.glb", good.substr(0, 12), "", "syntax error");
   refused({.nodes = R"([{"mesh":1}])"}, "array index 1 is out of range");
-  refused({.nodes = R"([{"children":[0]}])"}, "within itself");
-  refused({.nodes = R"([{"children":[1,1]},{"children":[0,0]}])"}, "within itself");
+  refused({.nodes = R"([{"children":[0]}])"}, "contains itself");
+  refused({.nodes = R"([{"children":[1,1]},{"children":[0,0]}])"}, "contains itself");
   refused({.nodes = R"([{"children":[9]}])"}, "array index 9 is out of range");
   refused({.nodes = R"([{"mesh":0,"scale":[1,2]}])"}, "expected 3 numbers");
   refused({.nodes = R"([{"mesh":0,"scale":[1e39,1,1]}])"}, "expected finite coordinates", "vertex 1");
@@ -310,7 +310,7 @@ TEST(ReadGlb, Refuses) {
   refused({.indices = R"({"bufferView":1,"componentType":5121,"count":4294967295,"type":"SCALAR"})"},
           "beyond the data");
   refused({.indices = R"({"bufferView":0,"componentType":5125,"count":12,"type":"SCALAR"})"},
-          "expected one of the 4 vertices", "triangle 1");
+          "expected the index of one of the 4 vertices", "triangle 1");
   refused({.positions = R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{}})"}, "sparse");
   refused({.positions = R"({"componentType":5126,"count":4,"type":"VEC3"})"}, "key 'bufferView' not found");
   refused({.positions = R"({"bufferView":0,"componentType":5121,"count":4,"type":"VEC3"})"}, "single precision");

@@ -79,7 +79,7 @@ TEST_F(OpenScadFallback, OpenScadFlattensWhatIsNotReadHere) {
     }
     ASSERT_FALSE(model.warnings.empty());
     EXPECT_NE(model.warnings[0].find(
-                  "OpenSCAD flattened part.scad: names, and digits beyond six, are lost. It has at line 1"),
+                  "OpenSCAD flattened part.scad, which loses names and digits beyond six. The reason is at line 1"),
               std::string::npos)
         << model.warnings[0];
   }

@@ -165,7 +165,7 @@ TEST(BadInput, PointsOffTheResultAreWarnedAbout) {
     const double tolerance = segmentation_tolerances({}, statistics.noise).distance;
     const bool is_off = statistics.fit.p95_distance > tolerance;
     const bool has_warning = std::ranges::any_of(statistics.warnings, [](const std::string& warning) {
-      return warning.starts_with("more than a twentieth of the points is farther than");
+      return warning.starts_with("more than a twentieth of the points are farther than");
     });
     EXPECT_EQ(has_warning, is_off) << seed;
     warned += has_warning ? 1 : 0;

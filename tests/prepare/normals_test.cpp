@@ -282,7 +282,7 @@ TEST(PrepareCloud, EstimatesRandomNormalsAnew) {
   }
   const PreparedCloud prepared = prepare_cloud(cloud);
   EXPECT_TRUE(prepared.normals_estimated);
-  EXPECT_TRUE(test::mentions(prepared.warnings, "estimated anew"));
+  EXPECT_TRUE(test::mentions(prepared.warnings, "estimated again"));
   EXPECT_EQ(rightly_oriented(prepared.cloud.normals, prepared.cloud.positions), 1.0);
   // Signs alone by chance are of no use, either.
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -23,22 +23,22 @@ struct BrepOptions {
 /// Shared by all scripts and files of exact solids.
 inline constexpr OptionField k_facet_resolution{
     "facet_resolution",
-    "STEP, BREP, .FCMacro, .py: cells along the longest side of what has no exact surface, and has facets. Displaced "
-    "solids, expressions, and nodes whose Boolean operation fails. Kernels of exact solids are slow with many.",
+    "STEP, BREP, .FCMacro, .py: cells along the longest side of solids without exact surfaces, which are written with "
+    "facets. These are displaced solids, expressions, and nodes whose Boolean operation fails. CAD kernels are slow "
+    "with many facets.",
     {.range = from_to(4, 256)}};
 void option_table(OptionsOf<BrepOptions>, auto&& field) {
   using O = BrepOptions;
   field(&O::name, "name", "Name of the part in the file; empty: the name of the file without its ending", k_library);
   field(&O::with_primitives, "with_primitives",
-        "STEP: the primitives, too, as components with their names, for building on them. Off, since they cover the "
-        "solid when the file is opened.");
+        "STEP: also write the primitives, as named components to build on. Off by default, since they cover the solid "
+        "when the file is opened.");
   field(&O::facet_resolution, k_facet_resolution);
-  field(
-      &O::volume_tolerance, "volume_tolerance",
-      "The part of its volume by which a node may differ from what the tree says before its operation counts as failed",
-      above_to(0, 1), k_library);
+  field(&O::volume_tolerance, "volume_tolerance",
+        "Share by which the volume of a node may differ from that of the tree before its operation counts as failed",
+        above_to(0, 1), k_library);
   field(&O::mesh_deviation, "mesh_deviation",
-        "How far the triangles of meshes may be from the surface, as a part of the model's extent", from_to(1e-6, 1),
+        "Largest distance of mesh triangles from the surface, as a share of the model's extent", from_to(1e-6, 1),
         k_library);
 }
 

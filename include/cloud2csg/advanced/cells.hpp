@@ -49,8 +49,8 @@ void option_table(OptionsOf<SampleCounts>, auto&& field) {
   using O = SampleCounts;
   field(&O::base, "base", "Samples of each primitive", at_least(1));
   field(&O::a_neighbour, "a_neighbour",
-        "So many more for each other one whose bounds meet its own: there it is cut in pieces");
-  field(&O::most, "most", "So many in all, at most");
+        "Additional samples for each other primitive whose bounds meet its own, since these cut it into pieces");
+  field(&O::most, "most", "Largest number of samples of a primitive");
 }
 
 struct CellOptions {
@@ -86,18 +86,18 @@ struct LabelOptions {
 };
 void option_table(OptionsOf<LabelOptions>, auto&& field) {
   using O = LabelOptions;
-  field(
-      &O::absence, "absence",
-      "Where a patch between a cell of the solid and one that is not has fewer points than this share of what its area "
-      "lets expect, those that are missing cost. A quarter: a surface of which most was not seen is still believed.",
-      at_least(0));
+  field(&O::absence, "absence",
+        "A patch between a cell in the solid and one out of it should have this share of the points expected for its "
+        "area; each missing point adds to the cost. 0.25: a surface that was mostly not seen is still believed.",
+        at_least(0));
   field(&O::absence_in_scans, "absence_in_scans",
-        "The same, where it is less, for clouds that say where their sensors stood. Of what these could see much is "
-        "lost at a slant, at edges and in clefts.",
+        "`absence` for clouds with sensor positions, if smaller. Of the surfaces that sensors could see, much is lost "
+        "at grazing angles, at edges and in clefts.",
         at_least(0));
   field(&O::presence, "presence",
-        "Points that a patch has stand for so many of those: where there are some, it was seen", at_least(0));
-  field(&O::sight, "sight", "Cost of a line of sight through a cell of the solid, in points", at_least(0));
+        "Number of expected points for which each point on a patch counts: a patch with some points was seen",
+        at_least(0));
+  field(&O::sight, "sight", "Cost of a line of sight through a cell in the solid, in points", at_least(0));
 }
 
 struct CellLabels {
@@ -127,16 +127,16 @@ struct CellSolveOptions {
 void option_table(OptionsOf<CellSolveOptions>, auto&& field) {
   using O = CellSolveOptions;
   field(&O::least_evidence, "least_evidence",
-        "The formula may do as it likes with cells whose labels cost fewer points to change. Descending; each is "
-        "tried, and that formula taken that costs least, leaves included.",
+        "The formula may ignore labels of cells that cost fewer points to change. Descending; each value is tried, and "
+        "the formula with the least cost, leaves included, is taken.",
         at_least(0));
   field(&O::leaf_cost, "leaf_cost", "Cost of a leaf, in points", at_least(0));
   field(&O::minimal, "minimal",
-        "Where the formula that was taken may not be minimal, a minimal one is looked for, core by core");
+        "Search for a minimal formula, core by core, where the formula that was taken may not be minimal");
   field(&O::climb, "climb",
-        "Where it is not proved to be minimal, or its cells cost more than the labels by a leaf, local searches go on "
-        "from all that was tried. By what the cells and leaves of a tree cost: over all of up to 64 primitives, of "
-        "more core by core. The limits are those of each search; no work, no climbing.");
+        "Local searches from all formulas tried, unless the formula is proved minimal and costs less than a leaf more "
+        "than the labels. They minimise the cost of cells and leaves: over all primitives for up to 64, core by core "
+        "for more. The limits apply to each search; a work_limit of 0 disables them.");
 }
 /// Refuses evidence that does not descend.
 [[nodiscard]] std::optional<OptionConflict> conflict_in(const CellSolveOptions& options);

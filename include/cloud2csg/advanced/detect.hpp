@@ -24,23 +24,23 @@ struct DetectOptions {
 void option_table(OptionsOf<DetectOptions>, auto&& field) {
   using O = DetectOptions;
   field(&O::distance_tolerance, "distance_tolerance",
-        "How far points may be from their surface, in the cloud's units. So the facets of a coarse mesh count as the "
-        "round surface that they stand for.",
+        "Largest distance of points from their surface, in the cloud's units. With the default, the facets of a coarse "
+        "mesh count as the round surface that they approximate.",
         above(0),
         {.absent = "3 x the measured noise, at least 0.15 % of the diagonal", .unit = "D", .option = "tolerance"});
   field(&O::angle_tolerance_deg, "angle_tolerance_deg",
-        "How many degrees the normals of points may be turned from the surface's. Generous: estimated normals are off "
-        "by 10 degrees, and those of facets by 6.",
+        "Largest angle between the normals of points and of their surface, in degrees. Generous: estimated normals are "
+        "off by 10 degrees, and those of facets by 6.",
         above_to(0, 90), {.unit = "DEG", .option = "normal-tolerance"});
-  field(&O::least_points, "least_points", "Surfaces with fewer points are left alone", at_least(1),
-        {.absent = "one in 2000 of the cloud's, at least 30"});
+  field(&O::least_points, "least_points", "Ignore surfaces with fewer points", at_least(1),
+        {.absent = "1 in 2000 of the cloud's points, at least 30"});
   field(&O::least_size, "least_size",
-        "Surfaces with a smaller radius, or whose points reach less far, are left out. In the cloud's units: the "
-        "radius of a sphere or cylinder, both radii of a torus, and the diagonal of the box around the largest piece "
-        "of its points. Points of those that are left out lie on no surface; but what is only round by a radius above "
-        "`most_size` may be found to be flat.",
+        "Leave out surfaces with a smaller radius or extent, in the cloud's units. The radius is that of a sphere or "
+        "cylinder, or both radii of a torus; the extent is the diagonal of the box around the largest connected piece "
+        "of the surface's points. Points of surfaces that are left out lie on no surface; but a surface whose only "
+        "possible radius is above `most_size` may be detected as flat.",
         above(0), {.absent = "no limit", .unit = "D", .option = "min-size"});
-  field(&O::most_size, "most_size", "Surfaces with a larger radius, or that reach farther, are left out", above(0),
+  field(&O::most_size, "most_size", "Leave out surfaces with a larger radius or extent, in the cloud's units", above(0),
         {.absent = "no limit", .unit = "D", .option = "max-size"});
   field(&O::seed, k_inner_seed);
 }

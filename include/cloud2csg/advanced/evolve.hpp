@@ -27,38 +27,42 @@ struct GaOptions {
 };
 void option_table(OptionsOf<GaOptions>, auto&& field) {
   using O = GaOptions;
-  field(&O::population, "population", "Trees a generation", at_least(2));
-  field(&O::elites, "elites", "Best trees that go to the next generation unchanged", at_least(0));
-  field(&O::tournament, "tournament", "A parent is the best of so many drawn at random", at_least(1));
-  field(&O::crossover_rate, "crossover_rate", "Chance that two parents swap random subtrees", k_share, {.unit = "P"});
-  field(&O::mutation_rate, "mutation_rate", "Chance that a child is mutated", k_share, {.unit = "P"});
-  field(&O::new_tree_rate, "new_tree_rate", "Share of the mutations that replace the whole tree, not a random subtree",
-        k_share, {.unit = "SHARE"});
-  field(&O::height_limit, "height_limit", "Edges on the longest path of a tree", at_least(1),
+  field(&O::population, "population", "Number of trees in a generation", at_least(2));
+  field(&O::elites, "elites", "Number of best trees that pass to the next generation unchanged", at_least(0));
+  field(&O::tournament, "tournament", "Number of trees drawn at random for each parent, of which the best is taken",
+        at_least(1));
+  field(&O::crossover_rate, "crossover_rate", "Probability that two parents swap random subtrees", k_share,
+        {.unit = "P"});
+  field(&O::mutation_rate, "mutation_rate", "Probability that a child is mutated", k_share, {.unit = "P"});
+  field(&O::new_tree_rate, "new_tree_rate",
+        "Share of mutations that replace the whole tree instead of a random subtree", k_share, {.unit = "SHARE"});
+  field(&O::height_limit, "height_limit", "Largest height of a tree: edges on its longest path", at_least(1),
         {.absent = "sqrt(pi / 2 * n (n - 1)) for n primitives"});
   field(&O::idle_generations, "idle_generations",
-        "Stop when the best score has not improved for so many generations. The paper stops after 10, and then misses "
-        "the true solid in some runs (bench/recovery counts them).",
+        "Stop when the best score has not improved for this many generations. The paper stops after 10, and then "
+        "misses the true solid in some runs (bench/recovery counts them).",
         at_least(1));
-  field(&O::generation_limit, "generation_limit", "Stop after so many generations in any case", at_least(1));
+  field(&O::generation_limit, "generation_limit", "Stop after this many generations in any case", at_least(1));
   field(&O::listing_limit, "listing_limit",
-        "Partitions of up to so many primitives are solved by listing all trees that use each at most once. The paper "
-        "lists up to 2. Each one more is about 20 times the work; at most 5.",
+        "Solve partitions of up to this many primitives by listing all trees that use each primitive at most once. The "
+        "paper lists up to 2. Each additional primitive takes about 20 times the work; at most 5.",
         from_to(0, 5));
   field(&O::trust, "trust",
-        "A tree that reaches less than this share of the score that none can exceed is searched for again. Where a "
-        "listed tree falls short, the genetic algorithm looks for one that uses a primitive more than once; where its "
-        "tree does, too, it is run anew; where a local search's tree does not on the points nearest to each primitive, "
-        "it is not run at all. 0: every listed tree is believed, and of larger partitions none before the algorithm "
-        "has run, as in the paper.",
+        "Search again if a tree reaches less than this share of the upper bound of the score. If a listed tree falls "
+        "short, the genetic algorithm looks for one that uses a primitive more than once; if its tree falls short too, "
+        "it runs again. If the tree of a local search does not fall short on the points nearest to each primitive, the "
+        "genetic algorithm does not run. 0: believe every listed tree, and no tree of a larger partition before the "
+        "algorithm has run, as in the paper.",
         k_share, {.unit = "SHARE"});
-  field(&O::restarts, "restarts", "How often a search is run anew at most, from other random trees", at_least(0));
+  field(&O::restarts, "restarts", "Largest number of repeated searches, each from other random trees", at_least(0));
   field(&O::restart_budget, "restart_budget",
-        "No search is run anew when so many trees were evaluated for the partition");
-  field(&O::seeds, "seeds", "The first generation also has results of local searches from simple trees",
-        {.option = "seeds", .opposite = "no-seeds", .otherwise = "The first generation is random"});
-  field(&O::polish, "polish", "Improve the best tree at the end by single changes; if that helps, go on from there",
-        {.option = "local-search", .opposite = "no-local-search", .otherwise = "Take the best tree as it is"});
+        "Do not repeat a search once this many trees were evaluated for the partition");
+  field(&O::seeds, "seeds", "Add results of local searches from simple trees to the first generation",
+        {.option = "seeds", .opposite = "no-seeds", .otherwise = "Use a random first generation"});
+  field(&O::polish, "polish", "Improve the best tree at the end by single changes; if that helps, continue from there",
+        {.option = "local-search",
+         .opposite = "no-local-search",
+         .otherwise = "Do not improve the best tree by single changes"});
   field(&O::seed, k_inner_seed);
 }
 /// Refuses more elites than trees.

@@ -53,10 +53,10 @@ struct MinimalFormulaOptions {
 void option_table(OptionsOf<MinimalFormulaOptions>, auto&& field) {
   using O = MinimalFormulaOptions;
   field(&O::table_limit, "table_limit",
-        "Functions of few leaves that are listed, some 30 bytes each and 8 more a word. All of up to five leaves over "
-        "eight variables are below 2^20.");
+        "Largest number of listed functions with few leaves, of about 30 bytes each plus 8 per word. All functions of "
+        "up to five leaves over eight variables are fewer than 2^20.");
   field(&O::combination_limit, "combination_limit",
-        "Pairs of such functions that are tried, times the words. 2e9 take two or three seconds.");
+        "Largest number of pairs of listed functions to try, times the words. 2e9 take two or three seconds.");
 }
 
 struct MinimalFormula {

@@ -14,11 +14,11 @@ struct LocalSearchOptions {
 };
 void option_table(OptionsOf<LocalSearchOptions>, auto&& field) {
   using O = LocalSearchOptions;
-  field(&O::shrink_only, "shrink_only", "Only changes that make the tree smaller: redundancy removal");
-  field(&O::evaluation_limit, "evaluation_limit", "Trees that are looked at, at most");
+  field(&O::shrink_only, "shrink_only", "Allow only changes that make the tree smaller (redundancy removal)");
+  field(&O::evaluation_limit, "evaluation_limit", "Largest number of trees to evaluate");
   field(&O::work_limit, "work_limit",
-        "Evaluations x classes x nodes, at most. Some ten seconds, however large the table is. On cells: evaluations x "
-        "(cells + patches + nodes x cells / 64).",
+        "Largest number of evaluations x classes x nodes. The default takes about ten seconds, however large the table "
+        "is. On cells: evaluations x (cells + patches + nodes x cells / 64).",
         at_least(0));
 }
 

@@ -21,14 +21,15 @@ struct ObjectiveOptions {
 void option_table(OptionsOf<ObjectiveOptions>, auto&& field) {
   using O = ObjectiveOptions;
   field(&O::alpha, "alpha",
-        "Cost of a node, in points. As in the paper, the points being those that the tree is judged by.", at_least(0),
-        {.absent = "ln of the points"});
+        "Cost of a node, in points. The default is the paper's, for the points by which the tree is judged.",
+        at_least(0), {.absent = "ln of the number of points"});
   field(&O::beta, "beta",
-        "Weight of distances, per unit of length. A point one sigma off counts exp(-1). The paper has 100, which is "
-        "this for its models and noise.",
+        "Weight of distances, per unit of length. A point one sigma off counts exp(-1). The paper's 100 is the default "
+        "for its models and noise.",
         above(0), {.absent = "1 / the measured noise"});
   field(&O::gamma, "gamma",
-        "Weight of angles, per radian. The paper's 18 / pi: a normal that is 10 degrees off counts exp(-1).", above(0));
+        "Weight of angles, per radian. The default is the paper's 18 / pi: a normal 10 degrees off counts exp(-1).",
+        above(0));
 }
 
 /// The objective's weights for one set of points, with all defaults resolved.

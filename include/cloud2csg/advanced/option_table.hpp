@@ -15,7 +15,7 @@
 ///
 ///     void option_table(OptionsOf<GaOptions>, auto&& field) {
 ///       using O = GaOptions;
-///       field(&O::population, "population", "Trees a generation", at_least(2));
+///       field(&O::population, "population", "Number of trees in a generation", at_least(2));
 ///       ...
 namespace cloud2csg {
 
@@ -74,7 +74,7 @@ struct OptionField : OptionDetails {
 inline constexpr OptionDetails k_library{.option = k_no_option};
 
 inline constexpr OptionField k_seed{
-    "seed", "The same seed gives the same result, for any number of threads", {.unit = "S"}};
+    "seed", "Random seed: the same seed gives the same result, for any number of threads", {.unit = "S"}};
 /// The entry of a seed in nested structs; the outermost struct has the seed for all.
 inline constexpr OptionField k_inner_seed{k_seed.name, k_seed.text, k_library};
 

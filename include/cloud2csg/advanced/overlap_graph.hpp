@@ -20,8 +20,8 @@ struct OverlapOptions {
 };
 void option_table(OptionsOf<OverlapOptions>, auto&& field) {
   field(&OverlapOptions::tolerance, "tolerance",
-        "Solids nearer than this count as overlapping, so that touching faces do; in the cloud's units. The pipeline "
-        "sets it from the measured noise.",
+        "Distance below which solids count as overlapping, in the cloud's units, so that touching faces overlap. The "
+        "pipeline sets it from the measured noise.",
         at_least(0));
 }
 /// Refuses extents that are not finite boxes.

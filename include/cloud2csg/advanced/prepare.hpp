@@ -37,10 +37,11 @@ struct CleanOptions {
 void option_table(OptionsOf<CleanOptions>, auto&& field) {
   using O = CleanOptions;
   field(&O::remove_outliers, "remove_outliers",
-        "Leave out points that no surface goes through. It takes most of the time of the preparation.",
-        {.opposite = "keep-outliers", .otherwise = "Do not look for outliers: the cloud is clean"});
+        "Remove points that no surface passes through. This takes most of the time of the preparation.",
+        {.opposite = "keep-outliers", .otherwise = "Do not remove outliers, for clean clouds"});
   field(&O::point_budget, "point_budget",
-        "More points than about so many are thinned. Beyond, later stages gain no accuracy, only take longer.",
+        "Thin clouds with more points to about this many. More points would not make later stages more accurate, only "
+        "slower.",
         at_least(1));
 }
 
@@ -104,14 +105,14 @@ struct PrepareOptions {
 };
 void option_table(OptionsOf<PrepareOptions>, auto&& field) {
   using O = PrepareOptions;
-  field(&O::clean, "clean", "Which points are left out");
+  field(&O::clean, "clean", "Removal of outliers and of points beyond the budget");
   field(&O::is_exact, "is_exact",
-        "The points lie on the surface and have its normals, as those drawn from a mesh: they are taken as they are, "
-        "and only measured",
+        "The points lie exactly on the surface and have its normals, such as those drawn from a mesh: measure the "
+        "cloud, but leave it unchanged",
         k_library);
   field(&O::keep_normals, "keep_normals",
-        "Keep given normals that are plausible: scanners know more than positions tell",
-        {.opposite = "estimate-normals", .otherwise = "Do not use the normals that the cloud has"});
+        "Keep normals of the cloud that are plausible: scanners know more than positions tell",
+        {.opposite = "estimate-normals", .otherwise = "Estimate normals even if the cloud has some"});
 }
 
 struct PreparedCloud {

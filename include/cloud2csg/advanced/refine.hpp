@@ -23,24 +23,23 @@ struct RefineOptions {
 void option_table(OptionsOf<RefineOptions>, auto&& field) {
   using O = RefineOptions;
   field(&O::noise, "noise", "Standard deviation of the points from the true surface, in the cloud's units", above(0),
-        {.absent = "measured while the primitives come nearer to the points"});
+        {.absent = "measured as the primitives approach the points"});
   field(&O::angle_tolerance_deg, "angle_tolerance_deg",
-        "A point tells of a primitive when its normal is within so many degrees of the surface's. As in the "
-        "segmentation.",
+        "Largest angle between the normals of a point and of its primitive, in degrees. As in the segmentation.",
         above_to(0, 90));
   field(&O::rounds, "rounds",
-        "Times that the points are dealt out to the primitives anew. Of primitives off by one percent, the points are "
-        "right after two or three.",
+        "Largest number of rounds, each of which assigns the points to the primitives again. For primitives off by one "
+        "percent, the points are right after two or three rounds.",
         at_least(1));
   field(&O::most_points, "most_points",
-        "So many of a primitive's points are taken, evenly over their order. Enough to place it to a fiftieth of "
-        "the noise.",
+        "Largest number of points per primitive, taken evenly in their order. Enough to place it to a fiftieth of the "
+        "noise.",
         at_least(100));
-  field(&O::regularise, "regularise", "Take what is nearly regular for regular");
+  field(&O::regularise, "regularise", "Make nearly regular directions, faces, centres and radii exactly regular");
   field(&O::regularity_angle_deg, "regularity_angle_deg",
-        "Directions within so many degrees of being parallel or orthogonal are made so. Those that are more uncertain "
-        "than that, within three of their standard deviations. Small: refined primitives are right to a tenth of a "
-        "degree.",
+        "Largest angle by which directions may miss being parallel or orthogonal to be made so, in degrees. Less "
+        "certain directions: three of their standard deviations. Small, since refined primitives are right to a tenth "
+        "of a degree.",
         above_to(0, 10));
 }
 

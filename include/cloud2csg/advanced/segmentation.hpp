@@ -18,12 +18,13 @@ struct SegmentationOptions {
 void option_table(OptionsOf<SegmentationOptions>, auto&& field) {
   using O = SegmentationOptions;
   field(&O::distance_tolerance, "distance_tolerance",
-        "Points nearer than this to a primitive's surface belong to it, in the cloud's units. Three sigmas keep 99.7 % "
-        "of the points of a Gaussian scan.",
+        "Distance below which points belong to a primitive, in the cloud's units. Three sigmas keep 99.7 % of the "
+        "points of a Gaussian scan.",
         above(0), {.absent = "3 x the measured noise", .unit = "D"});
   field(&O::angle_tolerance_deg, "angle_tolerance_deg",
-        "Their normal is within so many degrees of the surface's, whichever way round. A subtracted solid "
-        "shows its surface from inside. Generous, because the surface's normal is taken at the noisy point.",
+        "Largest angle between the normals of a point and of its primitive, in degrees, whatever their sign. A "
+        "subtracted solid shows its surface from inside. Generous, because the primitive's normal is taken at the "
+        "noisy point.",
         above_to(0, 90), {.unit = "DEG"});
 }
 

@@ -33,12 +33,12 @@ struct PlaceOptions {
 void option_table(OptionsOf<PlaceOptions>, auto&& field) {
   using O = PlaceOptions;
   field(&O::noise, "noise", "Standard deviation of the points from the surface, in the cloud's units", at_least(0),
-        {.absent = "a tenth of the spacing"});
-  field(&O::volume_places, "volume_places", "Places that are spread over the cloud's bounds, grown by `margin`",
-        at_least(1));
-  field(&O::surface_points, "surface_points", "Points that have a place on either side, at most", at_least(1));
-  field(&O::margin, "margin", "Share of the diagonal around the cloud: what is outside must be seen on all sides",
-        above_to(0, 1));
+        {.absent = "a tenth of the point spacing"});
+  field(&O::volume_places, "volume_places",
+        "Number of places spread over the cloud's bounds, which are grown by `margin`", at_least(1));
+  field(&O::surface_points, "surface_points", "Largest number of points that have a place on either side", at_least(1));
+  field(&O::margin, "margin",
+        "Margin around the cloud, as a share of its diagonal: the outside must be seen on all sides", above_to(0, 1));
   field(&O::seed, k_inner_seed);
 }
 
@@ -67,31 +67,31 @@ struct RegularityOptions {
 void option_table(OptionsOf<RegularityOptions>, auto&& field) {
   using O = RegularityOptions;
   field(&O::snap, "snap",
-        "Make surfaces like each other: directions, offsets and radii that nearly are. What is given below holds in "
+        "Make nearly equal directions, offsets and radii exactly equal. Values given by `radii` and `axes` apply in "
         "any case.",
         {.opposite = "no-snap",
-         .otherwise = "Keep directions, offsets and radii as they were measured: nothing is made parallel or equal, "
-                      "but for what `radii` and `axes` say"});
+         .otherwise = "Keep directions, offsets and radii as measured: make nothing parallel or equal, except by "
+                      "`radii` and `axes`"});
   field(&O::angle_tolerance_deg, "angle_tolerance_deg",
-        "Directions nearer than so many degrees to each other, or to an orthogonal one, are made so. See regularise().",
-        above(0), k_library);
+        "Angle below which directions are made equal or orthogonal, in degrees. See regularise().", above(0),
+        k_library);
   field(&O::distance_tolerance, "distance_tolerance",
-        "Offsets, centres and radii nearer than this are made equal, in the cloud's units", above(0),
+        "Difference below which offsets, centres and radii are made equal, in the cloud's units", above(0),
         {.absent = "twice the noise, at least 1e-3 of the cloud's diagonal", .option = k_no_option});
   field(&O::radii, "radii",
-        "Radii that spheres, cylinders and tori are known to have, as in 2.5,3,6: each takes the nearest of them, "
-        "unless its points contradict. It is put where it suits its points best with that radius.",
+        "Known radii of spheres, cylinders and tori, as in 2.5,3,6: each surface takes the nearest one, unless its "
+        "points contradict. It moves to where it fits its points best with that radius.",
         above(0), {.unit = "R,R..."});
   field(&O::axes, "axes",
-        "Directions that planes, cylinders, cones and tori are known to have, as in x,y,z or x,1,1,0: each takes one "
-        "that is within 5 degrees, unless its points contradict. Of any length, either way round. Within "
-        "`axis_tolerance_deg`; up to `angle_tolerance_deg` points are not asked.",
+        "Known directions of planes, cylinders, cones and tori, as in x,y,z or x,1,1,0: each surface takes one within "
+        "5 degrees, unless its points contradict. Length and sign do not matter. Within `axis_tolerance_deg`; within "
+        "`angle_tolerance_deg` whatever the points say.",
         above(0), {.unit = "A,A..."});
-  field(&O::axis_tolerance_deg, "axis_tolerance_deg",
-        "Surfaces nearer than so many degrees to a given direction take it", above(0), k_library);
+  field(&O::axis_tolerance_deg, "axis_tolerance_deg", "Angle within which surfaces take a given direction, in degrees",
+        above(0), k_library);
   field(&O::given_tolerance, "given_tolerance",
-        "How much farther points may be from a surface with given values, in the cloud's units. find_primitives() "
-        "takes the tolerance of the detection where it is absent.",
+        "Largest additional distance of points from a surface with given values, in the cloud's units. If absent, "
+        "find_primitives() uses the tolerance of the detection.",
         above(0), {.absent = "the distance tolerance in force", .option = k_no_option});
 }
 
@@ -152,22 +152,24 @@ struct SolidOptions {
 void option_table(OptionsOf<SolidOptions>, auto&& field) {
   using O = SolidOptions;
   field(&O::leaf_cost, "leaf_cost",
-        "What a leaf more must gain, as a share of volume and surface: more gives smaller trees. In the weight of "
-        "places. One permille: a hole of that share of the volume or of the surface is worth a leaf.",
+        "Share of volume and surface that an additional leaf must gain; larger values give smaller trees. In the "
+        "weight of places. 0.001: a hole with that share of the volume or the surface is worth a leaf.",
         above_to(0, 1), {.unit = "SHARE"});
-  field(&O::plane_cost, "plane_cost",
-        "Cost of a plane of a polytope beyond the sixth, in leaves. So a box is preferred where it is as good.",
-        above(0), k_library);
+  field(
+      &O::plane_cost, "plane_cost",
+      "Cost of each plane of a polytope beyond the sixth, in leaves. A box is therefore preferred where it is as good.",
+      above(0), k_library);
   field(&O::most_rules, "most_rules",
-        "Rules of the decision list; a guard, and a warning says where it ended the choice", at_least(1), k_library);
-  field(&O::places, "places", "Places by which solids are judged", k_library);
+        "Largest number of rules of the decision list; a safeguard, with a warning where it ends the choice",
+        at_least(1), k_library);
+  field(&O::places, "places", "Sample places by which solids are judged", k_library);
   field(&O::volume_places_a_surface, "volume_places_a_surface",
-        "Places in the volume for each surface, where that is more than `places` has. With fewer, a hole among "
-        "hundreds is a matter of chance.",
+        "Places in the volume per surface, if that gives more than `places`. With fewer, finding a hole among hundreds "
+        "is a matter of chance.",
         k_library);
   field(&O::surface_points_a_surface, "surface_points_a_surface",
-        "Points with places beside them for each surface, where that is more", k_library);
-  field(&O::regularity, "regularity", "What of the surfaces is made regular");
+        "Points with places beside them per surface, if that gives more than `places`", k_library);
+  field(&O::regularity, "regularity", "Regularity of the surfaces");
 }
 
 /// A known solid and the points on its surface, which should not belong to detected surfaces.

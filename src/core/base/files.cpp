@@ -146,7 +146,7 @@ void AtomicFile::commit() {
   if (flushed != 0 || (synced != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)) fail("cannot be written");
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot be written");
   if (!temporary_) return;
-  if (std::rename(temporary_->path().c_str(), place_.c_str()) != 0) fail("cannot be put in place");
+  if (std::rename(temporary_->path().c_str(), place_.c_str()) != 0) fail("cannot be moved into place");
   temporary_.reset();
 }
 
@@ -186,7 +186,7 @@ struct OutputSet::Entry {
   void put_in_place() {
     is_exchanged = exchange(staged.path(), place);
     if (!is_exchanged && std::rename(staged.path().c_str(), place.c_str()) != 0) {
-      refuse_output(target, "cannot be put in place", errno);
+      refuse_output(target, "cannot be moved into place", errno);
     }
   }
 

@@ -33,7 +33,7 @@ void check_sensor(const FileContent& content, FilePosition where, const Eigen::V
   content.fail(
       where,
       fmt::format("expected a finite position of the sensor, found ({}, {}, {})", sensor.x(), sensor.y(), sensor.z()),
-      "give every point the sensor's position, or leave these columns out");
+      "give the position of the sensor for every point, or leave these columns out");
 }
 
 /// Scales a normal to unit length. A normal of unit length keeps its bits, so writing and reading change nothing.
@@ -47,7 +47,7 @@ Eigen::Vector3d unit_normal(const FileContent& content, FilePosition where, Inva
   content.fail(where,
                fmt::format("expected a normal that is finite and not of length zero, found ({}, {}, {})", normal.x(),
                            normal.y(), normal.z()),
-               "give every point a normal, or leave the points without one out");
+               "give every point a normal, or remove the points without one");
 }
 
 [[noreturn]] void fail_empty(const FileContent& content) {

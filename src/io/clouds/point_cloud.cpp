@@ -59,7 +59,7 @@ RawCloud read_raw_cloud(const std::filesystem::path& file, const RunContext& run
     const bool has_direction = !raw.cloud.has_normals() || !raw.cloud.normals[i].isZero(0.0);
     if (raw.cloud.positions[i].allFinite() && has_direction) valid.push_back(static_cast<std::uint32_t>(i));
   }
-  if (valid.empty()) content.fail(fmt::format("expected finite coordinates, all {} points have others", count));
+  if (valid.empty()) content.fail(fmt::format("expected finite coordinates, found none in {} points", count));
   raw.invalid_points = count - valid.size();
   if (raw.invalid_points > 0) raw.cloud = select_points(raw.cloud, valid);
   return raw;
@@ -72,7 +72,7 @@ void write_point_cloud(const std::filesystem::path& file, const PointCloud& clou
   const CloudFormat& format = cloud_format(format_to_write(file, {FileKind::cloud}));
   if (format.id == FileFormat::Id::xyzn && !cloud.has_normals()) {
     throw Error({.file = file.string(),
-                 .expected = "a file of this ending holds normals, the cloud has none",
+                 .expected = "files with this ending need normals, and the cloud has none",
                  .remedy = "write .xyz, or estimate the normals first"});
   }
   AtomicFile out(file);

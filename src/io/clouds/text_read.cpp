@@ -45,7 +45,7 @@ PointCloud read_xyz(const FileContent& content, InvalidPoints invalid, const Run
   if (!first) content.fail("holds no points");
   if (first->size() != k_plain_columns && first->size() != k_normal_columns) {
     content.fail(rows.where(), fmt::format("expected 3 columns (x y z) or 6 (x y z nx ny nz), found {}", first->size()),
-                 "leave out other columns");
+                 "remove other columns");
   }
   return read_rows(content, rows, *first, invalid, run);
 }

@@ -71,7 +71,7 @@ std::span<const double> TextRows::numbers_in(std::string_view text) {
 
 void TextRows::fail_number(std::string_view word) const {
   content_.fail(where(), fmt::format("expected a number, found \"{}\"", visible_text(word, k_longest_quote)),
-                "lines that are no data must start with #");
+                "comment lines must start with #");
 }
 
 std::pair<std::string_view, std::string_view> first_word(std::string_view line) {

@@ -50,7 +50,7 @@ void append_record(std::string& block, std::span<const double> numbers, bool bin
   for (const double& number : numbers) {
     const T value = static_cast<T>(number);
     if (!std::isfinite(value)) {
-      throw Error({.expected = fmt::format("a point cloud that can be written has finite numbers, found {}", number),
+      throw Error({.expected = fmt::format("expected finite numbers to write, found {}", number),
                    .remedy = sizeof(T) < sizeof(double) ? "write in double precision" : ""});
     }
     if (binary) {

@@ -123,7 +123,7 @@ InputFile format_to_read(const std::filesystem::path& file, Kinds kinds) {
     throw WrongFile(std::move(parts), kind);
   }
   if (found != named) {
-    parts.expected = fmt::format("its content is that of a {}, its ending is not", found->name);
+    parts.expected = fmt::format("its ending does not match its content ({})", found->name);
     parts.remedy = fmt::format("name it {}{}", file.stem().string(), found->endings[0]);
     throw Error(std::move(parts));
   }
@@ -146,7 +146,7 @@ void check_overwriting(const std::filesystem::path& file, bool by_statistics) {
   const FileStart start = start_of(file);
   if (start.file_size == 0 || format->is_it(start)) return;
   throw Error({.file = file.string(),
-               .expected = fmt::format("is there already and is no {}", format->name),
+               .expected = fmt::format("already exists and is no {}", format->name),
                .remedy = "remove it, or choose another name"});
 }
 

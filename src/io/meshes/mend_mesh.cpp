@@ -264,24 +264,22 @@ void leave_out_repeated(MendedMesh& mended) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     if (goes[i] == 0) kept.push_back(triangles[i]);
   }
-  mended.warnings.push_back(
-      fmt::format("{} triangles of the mesh lie on others with the same corners and are left out.",
-                  triangles.size() - kept.size()));
+  mended.warnings.push_back(fmt::format("{} triangles of the mesh have the same corners as others and are left out.",
+                                        triangles.size() - kept.size()));
   triangles = std::move(kept);
 }
 
 void turn_outward(MendedMesh& mended) {
   const TurnedTriangles turned = orient_pieces(mended.mesh);
   if (turned.disagreeing > 0) {
-    mended.warnings.push_back(
-        fmt::format("{} triangles of the mesh disagreed with their neighbours on which side is "
-                    "outside. They were turned.",
-                    turned.disagreeing));
+    mended.warnings.push_back(fmt::format(
+        "{} triangles of the mesh disagreed with their neighbours on which side is outside and were turned.",
+        turned.disagreeing));
   }
-  if (turned.whole) mended.warnings.emplace_back("The mesh is inside out: its volume is negative. It was turned.");
+  if (turned.whole) mended.warnings.emplace_back("The mesh was inside out (its volume was negative) and was turned.");
   if (turned.pieces > 0) {
     mended.warnings.push_back(
-        fmt::format("Pieces of the mesh that were inside out, and not within others, were turned: {}", turned.pieces));
+        fmt::format("Pieces of the mesh that were inside out, but not within others, were turned: {}", turned.pieces));
   }
 }
 
@@ -289,7 +287,7 @@ void warn_of_faults(MendedMesh& mended, const RunContext& run) {
   const double diagonal = bounds_of(mended.mesh.vertices).diagonal().norm();
   const EdgeFaults edges = find_edge_faults(mended.mesh);
   if (edges.open.count > 0) {
-    mended.warnings.push_back(fmt::format("The mesh is open: {} edges have one triangle only, the first near {}.",
+    mended.warnings.push_back(fmt::format("The mesh is open: {} edges have only one triangle, the first near {}.",
                                           edges.open.count, place_text(edges.open.place, diagonal)));
   }
   if (edges.inconsistent.count > 0) {

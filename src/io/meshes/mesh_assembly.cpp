@@ -28,7 +28,7 @@ void MeshAssembly::start_part(const Eigen::Affine3d& motion) {
 void MeshAssembly::grow(std::size_t things) {
   size_ += things;
   if (size_ > k_most_repeated + content_.bytes().size() || size_ > std::numeric_limits<std::uint32_t>::max()) {
-    content_.fail("the mesh is too large: parts are repeated too often", "write each of them to a file");
+    content_.fail("the mesh is too large: parts are repeated too often", "write each part to its own file");
   }
 }
 
@@ -51,7 +51,7 @@ void MeshAssembly::add_polygon(std::span<const double> corners, FilePosition whe
   for (const double corner : corners) {
     const double index = corner - static_cast<double>(first);
     if (!(index >= 0.0 && index < static_cast<double>(vertex_count()) && index == std::floor(index))) {
-      content_.fail(where, fmt::format("expected one of the {} vertices before, counted from {}, found {}",
+      content_.fail(where, fmt::format("expected the index of one of the {} vertices so far, counted from {}, found {}",
                                        vertex_count(), first, corner));
     }
     ring_.push_back(static_cast<std::uint32_t>(part_begin_ + static_cast<std::size_t>(index)));
@@ -93,7 +93,7 @@ void MeshAssembly::cut_ring(FilePosition where) {
     looked_at_ += 1 + inward.size();
     if (looked_at_ > k_most_looks) {
       content_.fail(where, "the polygons have too many corners to cut them into triangles",
-                    "let the program that wrote them do it");
+                    "cut the polygons into triangles in the program that wrote them");
     }
     // A full round without an ear means the polygon is not simple. Then any cut will do.
     const bool is_simple = failures <= left;

@@ -35,7 +35,7 @@ class ThreeMfReader {
     const pugi::xml_document document = load(model_name());
     const pugi::xml_node model = document.child("model");
     for (const pugi::xml_node object : model.child("resources").children("object")) {
-      if (!objects_.emplace(object.attribute("id").value(), object).second) fail(object, "id", "an id of its own");
+      if (!objects_.emplace(object.attribute("id").value(), object).second) fail(object, "id", "a unique id");
     }
     place(model.child("build"), "item", Eigen::Affine3d(Eigen::Scaling(unit_of(model))), 0);
     return std::move(assembly_).finish();
@@ -87,7 +87,7 @@ class ThreeMfReader {
     for (const pugi::xml_node node : parent.children(name)) {
       const auto object = objects_.find(node.attribute("objectid").value());
       if (object == objects_.end()) fail(node, "objectid", "the id of an object");
-      if (level == k_most_levels) fail(node, "objectid", "an object that is not within itself");
+      if (level == k_most_levels) fail(node, "objectid", "an object that does not contain itself");
       const Eigen::Affine3d motion = outer * motion_of(node);
       assembly_.start_part(motion);
       add_mesh(object->second.child("mesh"));

@@ -87,7 +87,7 @@ class GlbReader {
 
   void place_nodes(const json& parent, const char* field, const Eigen::Affine3d& outer, std::size_t level) {
     if (level > k_most_levels) {
-      content_.fail(fmt::format("a node is within itself, or more than {} levels deep", k_most_levels));
+      content_.fail(fmt::format("a node contains itself, or is more than {} levels deep", k_most_levels));
     }
     if (!parent.contains(field)) return;
     for (const json& index : parent.at(field)) {
@@ -145,17 +145,17 @@ class GlbReader {
 
   [[nodiscard]] GlbView view_of(const json& index, std::string_view type, std::size_t components) const {
     const json& accessor = document_.at("accessors").at(whole(index));
-    if (accessor.contains("sparse")) content_.fail("a sparse accessor is not read", "write the mesh without");
+    if (accessor.contains("sparse")) content_.fail("sparse accessors are not supported", "write the mesh without them");
     if (accessor.at("type") != type)
       content_.fail(fmt::format("expected an accessor {} of type {}", index.dump(), type));
     const json& view = document_.at("bufferViews").at(whole(accessor.at("bufferView")));
     if (whole(view.at("buffer")) != 0 || document_.at("buffers").at(0).contains("uri")) {
-      content_.fail("expected all numbers in the file itself, found a reference to others", "write one .glb file");
+      content_.fail("expected all data in the file itself, found a reference to other data", "write one .glb file");
     }
     const std::size_t component_type = whole(accessor.at("componentType")) - 5120;  // wraps around
     const std::optional<ScalarType> scalar =
         component_type < k_component_types.size() ? k_component_types.at(component_type) : std::nullopt;
-    if (!scalar) content_.fail(fmt::format("expected an accessor {} of numbers that are known", index.dump()));
+    if (!scalar) content_.fail(fmt::format("expected an accessor {} with a known type of numbers", index.dump()));
     const std::size_t size = components * size_of(*scalar);
     const std::size_t stride = whole(view.value("byteStride", json(size)));
     const std::size_t count = whole(accessor.at("count"));

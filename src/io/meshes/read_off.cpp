@@ -25,7 +25,7 @@ OffCounts read_off_header(const FileContent& content, TextRows& rows) {
   const auto [word, rest] = first_word(rows.next_line().value_or(""));
   if (std::ranges::find(k_off_words, word) == k_off_words.end()) {
     content.fail(rows.where(), fmt::format(R"(expected "OFF" first, found "{}")", visible_text(word, k_longest_quote)),
-                 "is it a .off file, of text?");
+                 "is it a .off file in text form?");
   }
   const std::vector<std::string> words = split_words(rest.empty() ? rows.next_line().value_or("") : rest);
   const std::optional<std::size_t> vertices = words.size() < 2 ? std::nullopt : parse_count(words[0]);

@@ -56,7 +56,7 @@ std::string zip_archive(std::span<const ZipEntry> entries) {
     zip_source_close(bytes.get());
     if (got == static_cast<zip_int64_t>(all.size())) return all;
   }
-  throw Error({.expected = "an archive cannot be made in memory"});
+  throw Error({.expected = "an archive cannot be created in memory"});
 }
 
 std::string unzip_entry(const FileContent& file, const std::string& name, std::size_t limit) {

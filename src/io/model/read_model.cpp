@@ -111,7 +111,7 @@ class ParseGuard : public nlohmann::json_sax<json> {
     if (levels_.size() >= k_max_nesting) {
       throw Error({.where = levels_.front().is_list ? "" : "/" + levels_.front().field,
                    .expected = fmt::format("nested too deeply: a tree may have {} levels", k_max_tree_depth),
-                   .remedy = "write chains of the same union as one node with many children"});
+                   .remedy = "write nested unions as one union of many children, and so for intersections"});
     }
     levels_.push_back({.is_list = is_list});
     return true;
@@ -133,7 +133,7 @@ class ParseGuard : public nlohmann::json_sax<json> {
     if (object.fields.insert(name).second) return true;
     throw Error({.where = path(),
                  .expected = "expected each field of an object once, found this one twice",
-                 .remedy = "leave one of the two"});
+                 .remedy = "remove one of the two"});
   }
 
   std::string_view text_;
@@ -227,7 +227,7 @@ class ModelReader {
       const auto index = static_cast<PrimitiveIndex>(model.primitives.size());
       if (const auto [first, fresh] = index_of_id.emplace(primitive.id, index); !fresh) {
         throw Error({.where = where + "/id",
-                     .expected = fmt::format("expected an id of its own, found \"{}\" as in /primitives/{}",
+                     .expected = fmt::format("expected a unique id, found \"{}\" as in /primitives/{}",
                                              visible_text(primitive.id, k_longest_quote), first->second)});
       }
       model.primitives.push_back(std::move(primitive));

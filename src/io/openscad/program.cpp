@@ -116,7 +116,7 @@ class Program {
       } else if (first.kind == Token::Kind::name && reader_.take("=")) {
         // In OpenSCAD the last definition holds everywhere.
         if (!globals_.emplace(first.raw, reader_.value()).second) {
-          throw Refusal(first.offset, "expected one value of a variable, found a second");
+          throw Refusal(first.offset, "expected one value for a variable, found a second");
         }
         reader_.expect(";");
       } else {
@@ -142,7 +142,7 @@ class Program {
     calls_ += count;
     if (calls_ > k_most) {
       throw Refusal(reader_.peek().offset,
-                    fmt::format("expected at most {} calls and turns of loops in all, found more", k_most));
+                    fmt::format("expected at most {} calls and loop iterations in all, found more", k_most));
     }
   }
 
@@ -266,7 +266,7 @@ class Program {
   }
 
   [[noreturn]] static void refuse_profile(const Token& call) {
-    throw Refusal(call.offset, "expected a torus: a circle that is moved, and turned around wholly");
+    throw Refusal(call.offset, "expected a torus: a moved circle with a full turn");
   }
 
   /// A torus from a circle beside the axis, perhaps cut by a square that leaves a pinhole.
@@ -283,7 +283,7 @@ class Program {
     if (is_cut && !leaves_pinhole(flat_[1], flat_[0])) refuse_profile(call.call);
     const Vector3d centre = flat_[0].position;
     const double radius = flat_[0].size.x();
-    call.require(centre.x() >= radius, "a circle that is wholly to the right of the axis");
+    call.require(centre.x() >= radius, "a circle entirely to the right of the axis");
     const Eigen::Translation3d up(0, 0, centre.y());
     add_leaf(Torus{.major_radius = centre.x(), .minor_radius = radius}, "torus", frame * up, call.call.offset);
     return true;

@@ -58,8 +58,8 @@ Model read_flattened(const std::filesystem::path& file, Error::Parts refused) {
                                  said.path(), said.path(), k_limit);
   const std::string answer = read_text_file(said.path());
   const std::vector<std::string> errors = lines_after("ERROR: ", answer);
-  if (end == RunEnd::not_installed) fail("install OpenSCAD, which is asked to flatten what is not read here");
-  if (end == RunEnd::too_late) fail(fmt::format("OpenSCAD does not flatten it within {} s", k_limit.count()));
+  if (end == RunEnd::not_installed) fail("install OpenSCAD, which flattens files that cloud2csg cannot read");
+  if (end == RunEnd::too_late) fail(fmt::format("OpenSCAD did not flatten the file within {} s", k_limit.count()));
   if (end == RunEnd::failed || !errors.empty()) {
     constexpr std::size_t k_longest = 100;
     fail("OpenSCAD says: " + visible_text(errors.empty() ? answer.substr(0, answer.find('\n')) : errors[0], k_longest));
@@ -74,7 +74,7 @@ Model read_flattened(const std::filesystem::path& file, Error::Parts refused) {
     fail("extract a tree from a mesh of it (openscad -o part.stl)");
   }
   model.warnings.push_back(
-      fmt::format("OpenSCAD flattened {}: names, and digits beyond six, are lost. It has at {}: {}.",
+      fmt::format("OpenSCAD flattened {}, which loses names and digits beyond six. The reason is at {}: {}.",
                   file.filename().string(), refused.where, refused.expected));
   constexpr std::size_t k_most = 5;
   const std::vector<std::string> doubts = lines_after("WARNING: ", answer);

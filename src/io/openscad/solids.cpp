@@ -232,7 +232,7 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
   Matrix3d axes = frame.linear();
   const Vector3d scale = axes.colwise().norm();
   if (!frame.matrix().allFinite() || !(std::abs(axes.determinant()) > 1e-9 * scale.prod())) {
-    throw Refusal(offset, "expected a solid with a volume, found one that is scaled to none");
+    throw Refusal(offset, "expected a solid with a volume, found one scaled to zero volume");
   }
   axes = axes * scale.cwiseInverse().asDiagonal();
   const Vector3d cosines(axes.col(0).dot(axes.col(1)), axes.col(0).dot(axes.col(2)), axes.col(1).dot(axes.col(2)));
@@ -259,7 +259,7 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
   if (!std::visit(scaled, placed.shape)) {
     throw Refusal(
         offset,
-        fmt::format("expected a scaling that keeps what is round so, and upright, found one by {:.6g}, {:.6g}, {:.6g}",
+        fmt::format("expected a scaling that keeps round solids round and upright, found {:.6g}, {:.6g}, {:.6g}",
                     across, scale.y(), along));
   }
   // All these solids are symmetric in x. The SVD gives the nearest rotation, since the text rounds digits.

@@ -58,7 +58,7 @@ std::vector<Value> range_of(const std::vector<Value>& bounds) {
   const double steps = std::nextafter((end - begin) / step, std::numeric_limits<double>::max());
   // OpenSCAD reverses a falling range without a step, but has deprecated that.
   if (!(steps < k_most) || (bounds.size() == 2 && begin > end)) {
-    throw Refusal(bounds[0].offset, fmt::format("expected a range that rises, in at most {:.0f} steps", k_most));
+    throw Refusal(bounds[0].offset, fmt::format("expected a rising range of at most {:.0f} steps", k_most));
   }
   std::vector<Value> turns;
   for (std::size_t i = 0; static_cast<double>(i) <= steps; ++i) {
@@ -125,7 +125,7 @@ Level::Level(Reader& reader_of_it) : reader(reader_of_it) {
   constexpr std::size_t k_deepest = 1000;
   if (reader.level_ == k_deepest) {
     throw Refusal(reader.peek().offset,
-                  fmt::format("expected at most {} blocks, brackets and calls in each other, found more", k_deepest));
+                  fmt::format("expected at most {} nested blocks, brackets and calls, found more", k_deepest));
   }
   ++reader.level_;
 }
@@ -191,7 +191,7 @@ void Reader::advance() {
   token_.raw = text_.substr(token_.offset, place_ - token_.offset);
   read_ += place_ - before;
   if (read_ > 3 * text_.size() + k_most_again) {
-    throw Refusal(place_, "expected loops of fewer turns in all, or of fewer words");
+    throw Refusal(place_, "expected fewer or shorter loops in all");
   }
 }
 
@@ -227,7 +227,7 @@ void Reader::take_word() {
     token_.kind = Token::Kind::sign;
     ++place_;
   } else {
-    throw Refusal(place_, "expected a word that is read here, found another character");
+    throw Refusal(place_, "expected a supported character, found another");
   }
 }
 
@@ -276,7 +276,7 @@ Value Reader::variable(const Token& name) const {
     value.offset = name.offset;
     return value;
   }
-  throw Refusal(name.offset, fmt::format("expected a variable that has a value here, found '{}'",
+  throw Refusal(name.offset, fmt::format("expected a variable with a value here, found '{}'",
                                          visible_text(name.raw, k_longest_quote)));
 }
 
@@ -321,8 +321,8 @@ Arguments Reader::arguments(const Token& call) {
     const bool is_named = first.kind == Token::Kind::name && take("=");
     if (!is_named) go_to(first.offset);
     if (is_named && std::ranges::find(k_names, first.raw) == k_names.end()) {
-      throw Refusal(first.offset, fmt::format("expected an argument that is known here, found '{}'",
-                                              visible_text(first.raw, k_longest_quote)));
+      throw Refusal(first.offset,
+                    fmt::format("expected a known argument, found '{}'", visible_text(first.raw, k_longest_quote)));
     }
     arguments.values.emplace_back(is_named ? first.raw : "", value());
     if (!at(")")) expect(",");

@@ -12,7 +12,7 @@ namespace cloud2csg::brep {
 namespace {
 
 #ifdef CLOUD2CSG_KERNEL_MODULE
-constexpr const char* k_reinstall = "install cloud2csg anew, or name the module's folder in LD_LIBRARY_PATH";
+constexpr const char* k_reinstall = "install cloud2csg again, or add the module's folder to LD_LIBRARY_PATH";
 
 std::filesystem::path file_of(const void* symbol) {
   Dl_info info{};
@@ -43,7 +43,7 @@ Kernel find_kernel() {
   return {.run = run, .file = file_of(reinterpret_cast<const void*>(run))};
 #else
   return {.missing = "it was built without OpenCASCADE",
-          .remedy = "install libocct-data-exchange-dev and build it anew"};
+          .remedy = "install libocct-data-exchange-dev and build cloud2csg again"};
 #endif
 }
 

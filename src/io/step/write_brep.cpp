@@ -26,7 +26,7 @@ const brep::Kernel& kernel_for(const std::filesystem::path& file) {
   const brep::Kernel& kernel = brep::load_kernel();
   if (kernel.run != nullptr) return kernel;
   throw Error({.file = file.string(),
-               .expected = "exact solids need OpenCASCADE, which cloud2csg has not: " + kernel.missing,
+               .expected = "exact solids need OpenCASCADE, which this cloud2csg lacks: " + kernel.missing,
                .remedy = kernel.remedy});
 }
 

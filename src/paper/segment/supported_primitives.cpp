@@ -31,12 +31,12 @@ SupportedPrimitives without_unsupported(SupportedPrimitives supported,
       kept.original.push_back(supported.original[p]);
     } else if (dropped++ < k_named_warnings) {
       kept.warnings.push_back(
-          fmt::format("no point supports primitive '{}': it is left out", supported.primitives[p].id));
+          fmt::format("no point supports primitive '{}', so it is left out", supported.primitives[p].id));
     }
   }
   if (dropped > k_named_warnings) {
     kept.warnings.push_back(
-        fmt::format("no point supports {} more primitives: they are left out", dropped - k_named_warnings));
+        fmt::format("no point supports {} more primitives, so they are left out", dropped - k_named_warnings));
   }
   if (kept.primitives.empty()) {
     throw Error({.expected = "no point of the cloud is near any primitive",

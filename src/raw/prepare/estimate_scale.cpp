@@ -130,8 +130,8 @@ Scale estimate_scale(const PointCloud& cloud, const RunContext& run) {
   scale.box.translate(local.centre);
   if (!(scale.diagonal > 0.0) || !(scale.spacing > 0.0)) {
     throw Error({.where = "cloud",
-                 .expected = "expected points at different places, found most of them at the same",
-                 .remedy = "leave out repeated points"});
+                 .expected = "expected points at different places, found most of them at the same place",
+                 .remedy = "remove repeated points"});
   }
   return scale;
 }

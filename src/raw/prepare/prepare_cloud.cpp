@@ -44,10 +44,10 @@ bool keep_given_normals(PreparedCloud& prepared, const RunContext& run) {
       return true;
     case NormalsVerdict::inward:
       turn(prepared.cloud.normals);
-      prepared.warnings.emplace_back("The normals lead into the solid. They were turned.");
+      prepared.warnings.emplace_back("The normals pointed into the solid and were turned.");
       return true;
     case NormalsVerdict::unoriented:
-      prepared.warnings.emplace_back("The normals contradict the surface or each other. They were estimated anew.");
+      prepared.warnings.emplace_back("The normals contradicted the surface or each other and were estimated again.");
       return false;
   }
   return false;
@@ -59,7 +59,7 @@ void warn_of_normals(PreparedCloud& prepared, const EstimatedNormals& estimated)
   if (static_cast<double>(estimated.doubtful) > k_much_doubt * static_cast<double>(points)) {
     prepared.warnings.push_back(
         fmt::format("The orientation of the normals is doubtful for {:.3g} % of the points, near {}: give sensor "
-                    "positions or normals if there are any.",
+                    "positions or normals if you have them.",
                     100.0 * static_cast<double>(estimated.doubtful) / static_cast<double>(points),
                     place_text(estimated.doubtful_at, prepared.scale.diagonal)));
   }

@@ -67,7 +67,7 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   const bool is_any_seen =
       std::ranges::any_of(known, [](const KnownSolid& solid) { return !solid.own.points.empty(); });
   if (surfaces.empty() && !is_any_seen) {
-    throw Error({.where = "surfaces", .expected = "expected a surface or more, got none"});
+    throw Error({.where = "surfaces", .expected = "expected at least one surface, found none"});
   }
   PlaceOptions place_options = options.places;
   place_options.noise = noise_of(surfaces, known, options);
@@ -93,7 +93,7 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   choice.warnings = std::move(regular.warnings);
   if (list.size() >= options.most_rules) {
     choice.warnings.push_back(
-        fmt::format("the solid has more than {} parts: what is smaller than these is left out", options.most_rules));
+        fmt::format("the solid has more than {} parts: the smallest parts are left out", options.most_rules));
   }
   return choice;
 }

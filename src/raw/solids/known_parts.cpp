@@ -115,11 +115,11 @@ class GivenValues {
       if (candidate.has_points()) result_.surfaces[i].rms = candidate.rms();
     }
     if (!other_axes_.empty()) {
-      result_.warnings.push_back(
-          sentence("directions near those given, which their points contradict, stay as they are", other_axes_));
+      result_.warnings.push_back(sentence(
+          "directions near given ones stay unchanged, since the points contradict the given ones", other_axes_));
     }
     if (!other_radii_.empty()) {
-      result_.warnings.push_back(sentence("radii that are none of those given stay as they are", other_radii_));
+      result_.warnings.push_back(sentence("radii that match none of the given ones stay unchanged", other_radii_));
     }
     return std::move(result_);
   }

@@ -213,7 +213,7 @@ BoundedSolid bound_solid(const Model& model, const AlignedBox& bounds) {
   if (own_bounds.isEmpty() || solid.bounds.isEmpty()) return {};
   if (!is_finite(solid.bounds)) {
     throw Error({.where = "bounds",
-                 .expected = "expected finite bounds for a solid that is not bounded itself",
+                 .expected = "expected finite bounds for an unbounded solid",
                  .remedy = "intersect the solid with a box, or give bounds at which to cut it"});
   }
   if (!bounds.contains(own_bounds)) {

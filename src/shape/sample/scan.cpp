@@ -126,7 +126,7 @@ constexpr std::uint64_t k_thinning_stream = 0x7363616e'04;
 constexpr std::size_t k_block_rays = 4096;
 
 [[noreturn]] void refuse_invisible() {
-  throw Error({.expected = "no ray of the scanner returns: there is nothing to see"});
+  throw Error({.expected = "no ray of the scanner hits the part"});
 }
 
 class Scanner {

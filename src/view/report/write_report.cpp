@@ -34,7 +34,7 @@ std::string report_page(const Report& report, const ReportOptions& options, cons
     throw Error({.where = "/tree", .expected = "expected a model with a tree, found primitives only"});
   }
   if (!has_report_page()) {
-    throw Error({.expected = "this cloud2csg was built without the page of reports (.html)",
+    throw Error({.expected = "this cloud2csg was built without the report page (.html)",
                  .remedy = "install Node.js 18 or later with npm, and build again with -DCLOUD2CSG_VIEWER=ON"});
   }
   const std::string_view page = page_template();

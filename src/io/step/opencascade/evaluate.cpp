@@ -137,7 +137,7 @@ class Evaluator {
         continue;
       }
       const Healed after = healed(body.shape);
-      if (!is_valid(after.shape)) throw BooleanFailure("its result is invalid, and cannot be mended");
+      if (!is_valid(after.shape)) throw BooleanFailure("its result is invalid and cannot be repaired");
       result.healed_faces += after.faces;
       for (Body& part : bodies_of(after.shape)) mended.push_back(std::move(part));
     }
@@ -160,7 +160,7 @@ class Evaluator {
 
   void check_file(std::size_t node, const NodeResult& result) const {
     if (!file_test_ || result.bodies.empty() || file_test_(node, result.bodies)) return;
-    throw BooleanFailure("its result is invalid, or another solid, when it is read from the file");
+    throw BooleanFailure("its result is invalid or a different solid when read from the file");
   }
 
   /// Replaces a node whose operation failed by facets. Appends to the failure if these fail, too.
