@@ -163,8 +163,7 @@ void check_normals(const PointCloud& cloud, const std::string& file) {
   if (cloud.has_normals()) return;
   throw Error({.file = file,
                .expected = "the points have no normals, which extract needs to combine given primitives",
-               .remedy = "save outward normals with the points, add --detect-rest, or leave out --primitives to find "
-                         "the primitives in the cloud"});
+               .remedy = "save outward normals with the points, add --detect-rest, or leave out --primitives"});
 }
 
 PointCloud ExtractCommand::unexplained_part(const Extraction& result, int threads) const {

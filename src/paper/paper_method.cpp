@@ -40,7 +40,7 @@ std::vector<CsgTree> trees_of_few(std::size_t primitives) {
 }
 
 Evolution best_of_few(const TreeObjective& objective) {
-  ObjectiveEvaluator evaluator(objective);
+  TreeEvaluator evaluator(objective);
   Evolution best;
   best.score = -std::numeric_limits<double>::infinity();
   for (const CsgTree& tree : trees_of_few(objective.primitives)) {

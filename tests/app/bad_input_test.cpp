@@ -103,7 +103,7 @@ TEST_F(BadInput, OutputsAreCheckedFirst) {
 TEST_F(BadInput, CloudWithoutNormals) {
   const std::string cloud = file("cloud.xyz", "0 0 1\n0 1 0\n1 0 0\n");
   expect_failure(run({"extract", cloud, "--primitives", shipped("m1.json"), "-o", path("x.json"), "--quiet"}), 1,
-                 {cloud, "no normals", "estimate"});
+                 {cloud, "no normals", "save outward normals"});
   EXPECT_EQ(files(), std::vector<std::string>{"cloud.xyz"});
 }
 

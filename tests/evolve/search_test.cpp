@@ -75,7 +75,7 @@ TEST(GeneticAlgorithm, KeepsItsHeightLimit) {
   for (int limit = 1; limit <= 4; ++limit) {
     GaOptions options = short_search();
     options.height_limit = limit;
-    const Evolution evolution = run_genetic_algorithm(table, {}, options, 0, {});
+    const Evolution evolution = run_genetic_algorithm(objective_on(table), {}, options, 0, {});
     expect_consistent(evolution, table);
     EXPECT_LE(depth(evolution.tree), static_cast<std::size_t>(limit));
   }
@@ -86,10 +86,10 @@ TEST(GeneticAlgorithm, StopsAtTheGenerationLimitAndAfterIdleGenerations) {
   GaOptions options = short_search();
   options.generation_limit = 3;
   options.idle_generations = 100;
-  EXPECT_EQ(run_genetic_algorithm(table, {}, options, 0, {}).generations, 3U);
+  EXPECT_EQ(run_genetic_algorithm(objective_on(table), {}, options, 0, {}).generations, 3U);
   options.generation_limit = 1000;
   options.idle_generations = 4;
-  const Evolution idle = run_genetic_algorithm(table, {}, options, 0, {});
+  const Evolution idle = run_genetic_algorithm(objective_on(table), {}, options, 0, {});
   EXPECT_GE(idle.generations, 4U);
   EXPECT_LT(idle.generations, 1000U);
   EXPECT_TRUE(idle.complete);
@@ -100,7 +100,7 @@ TEST(GeneticAlgorithm, NeverLosesTheBestOfItsSeeds) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const RankClasses table = random_table(5, seed);
     const std::vector<CsgTree> seeds = test::random_formulas(5, 5, random);
-    const Evolution evolution = run_genetic_algorithm(table, seeds, short_search(seed), 0, {});
+    const Evolution evolution = run_genetic_algorithm(objective_on(table), seeds, short_search(seed), 0, {});
     RankScratch scratch;
     for (const CsgTree& tree : seeds) EXPECT_GE(evolution.score, table.score(tree, scratch));
   }
@@ -110,7 +110,7 @@ TEST(GeneticAlgorithm, CountsItsEvaluations) {
   const RankClasses table = random_table(4, 5);
   const GaOptions options = short_search();
   for (const int threads : {1, 4}) {
-    const Evolution evolution = run_genetic_algorithm(table, {}, options, 0, {.threads = threads});
+    const Evolution evolution = run_genetic_algorithm(objective_on(table), {}, options, 0, {.threads = threads});
     EXPECT_EQ(evolution.evaluations, 60 + evolution.generations * 58);
   }
 }
@@ -122,7 +122,7 @@ TEST(GeneticAlgorithm, TakesOddPopulationsAndNoElites) {
       GaOptions options = short_search();
       options.population = population;
       options.elites = elites;
-      expect_consistent(run_genetic_algorithm(table, {}, options, 0, {}), table);
+      expect_consistent(run_genetic_algorithm(objective_on(table), {}, options, 0, {}), table);
     }
   }
 }
@@ -150,7 +150,7 @@ TEST(EvolveTree, HasARandomStreamForEachSeedAndItem) {
   options.generation_limit = 1;
   const auto tree = [&](std::uint64_t seed, std::uint64_t item) {
     options.seed = seed;
-    return run_genetic_algorithm(table, {}, options, item, {}).tree;
+    return run_genetic_algorithm(objective_on(table), {}, options, item, {}).tree;
   };
   EXPECT_EQ(tree(1, 1), tree(1, 1));
   std::size_t different = 0;

@@ -75,8 +75,8 @@ TEST(ReadOff, RefusesNamingTheLine) {
   expect_refused("a.off", "OFF\n99999999999999999 1 0\n0 0 0\n", "line 3", "announces 99999999999999999 vertices");
   expect_refused("a.off", "OFF\n4 9 0\n" + k_tetrahedron_text + "3 0 1 2\n", "line 7",
                  "announces 9 faces but ends after 1");
-  expect_refused("a.off", "OFF\n4 1 0\n" + k_tetrahedron_text + "3 0 1 4\n", "line 7", "one of the 4 vertices before");
-  expect_refused("a.off", "OFF\n4 1 0\n" + k_tetrahedron_text + "3 0 1 -1\n", "line 7", "one of the 4 vertices before");
+  expect_refused("a.off", "OFF\n4 1 0\n" + k_tetrahedron_text + "3 0 1 4\n", "line 7", "one of the 4 vertices so far");
+  expect_refused("a.off", "OFF\n4 1 0\n" + k_tetrahedron_text + "3 0 1 -1\n", "line 7", "one of the 4 vertices so far");
   expect_refused("a.off", "OFF\n4 1 0\n" + k_tetrahedron_text + "3 0 1 0.5\n", "line 7", "found 0.5");
   expect_refused("a.off", "OFF\n4 1 0\n" + k_tetrahedron_text + "4 0 1 2\n", "line 7", "number of corners");
   expect_refused("a.off", "OFF\n4 1 0\n" + k_tetrahedron_text + "4294967296 0 1 2\n", "line 7", "number of corners");
@@ -157,8 +157,8 @@ TEST(ReadPlyMesh, RefusesNamingTheLine) {
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string points = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
   const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
-  expect_refused("a.ply", head + face + points + "3 0 1 3\n", "line 13", "one of the 3 vertices before");
-  expect_refused("a.ply", head + face + points + "3 0 1 -1\n", "line 13", "one of the 3 vertices before");
+  expect_refused("a.ply", head + face + points + "3 0 1 3\n", "line 13", "one of the 3 vertices so far");
+  expect_refused("a.ply", head + face + points + "3 0 1 -1\n", "line 13", "one of the 3 vertices so far");
   expect_refused("a.ply", head + face + points + "3 0 1\n", "line 13", "1 properties");
   expect_refused("a.ply", head + face + points + "-1\n", "line 13", "properties");
   expect_refused("a.ply", head + face + points, "line 12", "announces 1 records but ends after 0");
@@ -212,7 +212,7 @@ TEST(Read3mf, Refuses) {
                  "", "an object that does not contain itself");
   std::string wrong = object;
   wrong.replace(wrong.find("v3=\"1\""), 6, "v3=\"4\"");
-  expect_refused("a.3mf", threemf_of(wrong, R"(<item objectid="1"/>)"), "triangle 0", "one of the 4 vertices before");
+  expect_refused("a.3mf", threemf_of(wrong, R"(<item objectid="1"/>)"), "triangle 0", "one of the 4 vertices so far");
   wrong.replace(wrong.find("x=\"1\""), 5, "x=\"a\"");
   expect_refused("a.3mf", threemf_of(wrong, R"(<item objectid="1"/>)"), "",
                  "expected a number as x of vertex, found \"a\"");

@@ -140,7 +140,8 @@ TEST(Reconstruct, NamesWhatItLeavesOut) {
   }
   const Extraction result = reconstruct(cloud);
   EXPECT_EQ(leaf_count(result.tree()), 1U);
-  EXPECT_TRUE(test::mentions(result.statistics.warnings, "1 are not on the result, the largest a sphere of"));
+  EXPECT_TRUE(
+      test::mentions(result.statistics.warnings, "1 detected surfaces are not on the result, the largest a sphere of"));
   EXPECT_FALSE(test::mentions(reconstruct(raw_cloud(plate(), 0.008)).statistics.warnings, "not on the result"));
 }
 

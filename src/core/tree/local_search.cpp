@@ -14,13 +14,13 @@ CsgTree joined(Operation operation, const CsgTree& a, const CsgTree& b) {
   return operation == Operation::intersection ? intersect(a, b) : subtract(a, b);
 }
 
-bool is_spent(const ObjectiveEvaluator& evaluator, const LocalSearchOptions& options) {
+bool is_spent(const TreeEvaluator& evaluator, const LocalSearchOptions& options) {
   return evaluator.evaluations() >= options.evaluation_limit || evaluator.work() >= options.work_limit;
 }
 
 class Neighbours {
  public:
-  Neighbours(ObjectiveEvaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options,
+  Neighbours(TreeEvaluator& evaluator, const ScoredTree& centre, const LocalSearchOptions& options,
              std::stop_token stop)
       : evaluator_(evaluator), centre_(centre), options_(options), stop_(std::move(stop)), best_(centre) {}
 
@@ -83,7 +83,7 @@ class Neighbours {
     consider(node, subtract(leaf, here));
   }
 
-  ObjectiveEvaluator& evaluator_;
+  TreeEvaluator& evaluator_;
   const ScoredTree& centre_;
   const LocalSearchOptions& options_;
   std::stop_token stop_;
@@ -94,7 +94,7 @@ class Neighbours {
 
 LocalOptimum local_search(const TreeObjective& objective, const CsgTree& start, const LocalSearchOptions& options,
                           const RunContext& run) {
-  ObjectiveEvaluator evaluator(objective);
+  TreeEvaluator evaluator(objective);
   ScoredTree current{start, evaluator.score(start)};
   bool complete = true;
   while (!is_spent(evaluator, options)) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <utility>
 
 #include "cloud2csg/advanced/local_search.hpp"
 #include "cloud2csg/csg_tree.hpp"
@@ -16,7 +17,7 @@ struct ScoredTree {
 
 struct TreeObjective {
   std::size_t primitives = 0;  ///< trees are over 0 .. primitives - 1
-  /// The score without the cost of nodes. A genetic algorithm calls it on several threads at a time.
+  /// The score without the cost of nodes. Each thread calls a copy of its own, which may hold scratch memory.
   std::function<double(const CsgTree&)> geometry;
   double alpha = 0;  ///< cost of a node
   /// Work of an evaluation, for limits: a part for every tree and a part for each node.
@@ -24,9 +25,9 @@ struct TreeObjective {
 };
 
 /// Evaluates trees on a TreeObjective and counts evaluations and work. Each thread needs its own.
-class ObjectiveEvaluator {
+class TreeEvaluator {
  public:
-  explicit ObjectiveEvaluator(const TreeObjective& objective) : objective_(objective) {}
+  explicit TreeEvaluator(TreeObjective objective) : objective_(std::move(objective)) {}
 
   [[nodiscard]] double score(const CsgTree& tree) {
     ++evaluations_;
@@ -39,7 +40,7 @@ class ObjectiveEvaluator {
   [[nodiscard]] std::size_t primitives() const { return objective_.primitives; }
 
  private:
-  const TreeObjective& objective_;
+  TreeObjective objective_;
   std::size_t evaluations_ = 0;
   double work_ = 0;
 };

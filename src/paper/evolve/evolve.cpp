@@ -74,7 +74,7 @@ void climb(const RankClasses& table, std::vector<CsgTree> seeds, const GaOptions
   for (int round = 0; round < k_rounds; ++round) {
     GaOptions round_options = options;
     round_options.seed += static_cast<std::uint64_t>(round) << 32U;
-    improve(best, run_genetic_algorithm(table, seeds, round_options, item, run));
+    improve(best, run_genetic_algorithm(objective_on(table), seeds, round_options, item, run));
     if (!options.polish || !best.complete) return;
     const double before = best.score;
     improve(best, local_search(table, best.tree, {}, run));
@@ -207,15 +207,11 @@ CsgTree evolve_tree(const PointCloud& cloud, const PrimitiveSet& primitives, con
 
 Evolution local_search(const RankClasses& table, const CsgTree& start, const LocalSearchOptions& options,
                        const RunContext& run) {
-  RankScratch scratch;
-  const TreeObjective objective{.primitives = table.primitive_count(),
-                                .geometry = [&](const CsgTree& tree) { return table.geometry(tree, scratch); },
-                                .alpha = table.objective().alpha,
-                                .work_per_node = static_cast<double>(table.class_count())};
+  const TreeObjective objective = objective_on(table);
   const LocalOptimum best = local_search(objective, start, options, run);
   return {.tree = best.tree,
           .score = best.score,
-          .geometry = table.geometry(best.tree, scratch),
+          .geometry = objective.geometry(best.tree),
           .evaluations = best.evaluations,
           .complete = best.complete};
 }

@@ -27,20 +27,17 @@ CsgTree with_subtree(const CsgTree& tree, std::size_t node, std::span<const CsgN
 enum class Stream : std::uint64_t { first_generation = 0x6761'0001, breeding = 0x6761'0002 };
 
 /// Every child is a pure function of (seed, item, generation, place), so any number of threads may breed.
-template <typename TreeEvaluator>
 class GeneticAlgorithm {
  public:
-  /// Each thread evaluates with a copy of `evaluator`.
-  GeneticAlgorithm(std::size_t primitives, const TreeEvaluator& evaluator, const GaOptions& options, std::uint64_t item,
-                   const RunContext& run)
-      : primitives_(primitives),
+  GeneticAlgorithm(const TreeObjective& objective, const GaOptions& options, std::uint64_t item, const RunContext& run)
+      : primitives_(objective.primitives),
         options_(options),
         item_(item),
         run_(run),
-        height_limit_(options.height_limit.value_or(default_height_limit(primitives))),
+        height_limit_(options.height_limit.value_or(default_height_limit(primitives_))),
         population_(static_cast<std::size_t>(options.population)),
         next_(population_.size()),
-        evaluators_(evaluator) {}
+        evaluators_(TreeEvaluator(objective)) {}
 
   Evolution run(std::span<const CsgTree> seeds) {
     first_generation(seeds);
@@ -171,14 +168,17 @@ CsgTree mutate_subtree(const CsgTree& tree, std::size_t primitives, int height_l
   return child;
 }
 
-Evolution run_genetic_algorithm(const RankClasses& table, std::span<const CsgTree> seeds, const GaOptions& options,
-                                std::uint64_t item, const RunContext& run) {
-  return GeneticAlgorithm(table.primitive_count(), Evaluator(table), options, item, run).run(seeds);
+TreeObjective objective_on(const RankClasses& table) {
+  return {.primitives = table.primitive_count(),
+          .geometry = [&table,
+                       scratch = RankScratch()](const CsgTree& tree) mutable { return table.geometry(tree, scratch); },
+          .alpha = table.objective().alpha,
+          .work_per_node = static_cast<double>(table.class_count())};
 }
 
 Evolution run_genetic_algorithm(const TreeObjective& objective, std::span<const CsgTree> seeds,
                                 const GaOptions& options, std::uint64_t item, const RunContext& run) {
-  return GeneticAlgorithm(objective.primitives, ObjectiveEvaluator(objective), options, item, run).run(seeds);
+  return GeneticAlgorithm(objective, options, item, run).run(seeds);
 }
 
 }  // namespace cloud2csg
