@@ -28,20 +28,24 @@ LEAST_POINTS = 5  # smaller pieces are points at an edge that belong to a neighb
 
 def pieces_of(points, spacing):
     """Lists of indices into `points`, one a connected piece."""
-    links = cKDTree(points).sparse_distance_matrix(cKDTree(points), LINK_SPACINGS * spacing)
+    tree = cKDTree(points)
+    links = tree.sparse_distance_matrix(tree, LINK_SPACINGS * spacing)
     count, label = connected_components(links, directed=False)
     pieces = [np.flatnonzero(label == k) for k in range(count)]
     return [piece for piece in pieces if len(piece) >= min(LEAST_POINTS, len(points))]
 
 
 def surfaces_of(result, positions):
-    """One a piece, with indices into `positions`. Cleaning drops points, but moves none."""
+    """One a piece, with indices into `positions`. Cleaning moves no point; points added on unseen sides are left out."""
     tree = cKDTree(positions)
     spacing = np.median(tree.query(positions, k=2)[0][:, 1])
-    original = tree.query(result.cloud.positions)[1]
+    distance, original = tree.query(result.cloud.positions)
     for surface in result.surfaces:
-        own = np.unique(original[surface.points])
-        for piece in pieces_of(positions[own], spacing) if len(own) else []:
+        measured = surface.points[distance[surface.points] == 0]
+        if not len(measured):
+            continue
+        own = np.unique(original[measured])
+        for piece in pieces_of(positions[own], spacing):
             yield {"type": surface.type, "position": surface.position.tolist(), "axis": surface.axis.tolist(),
                    "radius": surface.radius, "minor_radius": surface.minor_radius, "half_angle": surface.half_angle,
                    "points": own[piece].tolist()}
