@@ -43,8 +43,7 @@ std::string cells_line(const CellStatistics& cells) {
 
 std::string way_line(const ExtractStatistics& s) {
   if (s.cells) return cells_line(*s.cells);
-  if (s.finding && s.finding->is_tree_of_choice)
-    return "tree from    the choice of solids, which costs less than the extracted tree";
+  if (s.finding && s.finding->is_tree_of_choice) return "tree from    the choice of solids";
   return partitions_line(s);
 }
 

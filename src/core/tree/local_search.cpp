@@ -76,8 +76,8 @@ class Neighbours {
 
   void insert(std::size_t node, const CsgTree& leaf) {
     const Operation now = centre_.tree.nodes()[node].operation();
-    if (now == Operation::empty || now == Operation::full)
-      return;  // nothing to join, and tables evaluate a constant only as a whole tree
+    // A constant has nothing to join, and tables evaluate it only as a whole tree.
+    if (now == Operation::empty || now == Operation::full) return;
     const CsgTree here = child(node);
     for (const Operation operation : k_binary) consider(node, joined(operation, here, leaf));
     consider(node, subtract(leaf, here));

@@ -82,7 +82,6 @@ bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Stric
   return static_cast<double>(witnesses.agreeing) >= least * static_cast<double>(witnesses.count);
 }
 
-using Eigen::Vector3d;
 using Indices = std::vector<std::uint32_t>;
 
 /// Neighbours a plane among many outliers. With fewer, noise and chance look alike.
