@@ -31,7 +31,8 @@ function(cloud2csg_test stage)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/${target}_labels.cmake)
 endfunction()
 
-# With sanitizers a process takes longer to start than most tests take: all tests of a label are one entry of ctest.
+# With sanitizers a process takes longer to start than most tests take: all tests of a label are two entries of ctest,
+# which share the tests. Programs of many sources begin first, so that both cores have work until the end.
 function(cloud2csg_tests_by_label stage threads)
   cmake_parse_arguments(arg "" "" "SLOW;EXTERNAL" ${ARGN})
   foreach(label SLOW EXTERNAL)
@@ -45,7 +46,6 @@ function(cloud2csg_tests_by_label stage threads)
     endforeach()
     list(JOIN filter ":" ${label})
   endforeach()
-  # Programs of many sources begin first, so that none runs alone at the end.
   get_target_property(cost test_${stage} SOURCES)
   list(LENGTH cost cost)
   set(fast "-${SLOW}:${EXTERNAL}")
@@ -55,8 +55,12 @@ function(cloud2csg_tests_by_label stage threads)
   foreach(label fast SLOW EXTERNAL THREADS)
     if(${label})
       string(TOLOWER ${label} name)
-      add_test(NAME ${stage}.${name} COMMAND test_${stage} --gtest_brief=1 --gtest_filter=${${label}})
-      set_tests_properties(${stage}.${name} PROPERTIES LABELS ${name} TIMEOUT 1800 COST ${cost})
+      foreach(shard RANGE 1)
+        set(entry ${stage}.${name}.${shard})
+        add_test(NAME ${entry} COMMAND test_${stage} --gtest_brief=1 --gtest_filter=${${label}})
+        set_tests_properties(${entry} PROPERTIES LABELS ${name} TIMEOUT 1800 COST ${cost}
+                                                 ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${shard}")
+      endforeach()
     endif()
   endforeach()
 endfunction()

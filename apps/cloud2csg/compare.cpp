@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "field_arguments.hpp"
+#include "io/formats/formats.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -68,8 +69,9 @@ void CompareCommand::run(std::stop_token stop) const {
 }
 
 void add_options(CLI::App& app, CompareCommand& command, FieldArguments& fields) {
-  add_file(app, "truth", command.truth, "Model, mesh or cloud of the true shape")->type_name("TRUTH");
-  add_file(app, "result", command.result, "Model, mesh or cloud to compare with it")->type_name("RESULT");
+  const std::string kinds = endings_read({FileKind::model, FileKind::mesh, FileKind::cloud});
+  add_file(app, "truth", command.truth, "Model, mesh or cloud of the true shape: " + kinds)->type_name("TRUTH");
+  add_file(app, "result", command.result, "Model, mesh or cloud to compare with it: " + kinds)->type_name("RESULT");
   app.add_flag("--json", command.is_json, "Print JSON instead of a table; values that cannot be computed are null")
       ->group("Output");
   fields.add(command.comparing, {.group = "Accuracy"});

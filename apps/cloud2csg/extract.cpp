@@ -304,7 +304,8 @@ void add_options(CLI::App& app, ExtractCommand& command, FieldArguments& fields)
       ->type_name("STATS.json")
       ->group("Output");
   app.add_option("--unexplained", command.unexplained,
-                 "File for the points that the tree contradicts: off its surface, or with a different normal")
+                 "File for the points that the tree contradicts, off its surface or with a different normal: " +
+                     cloud_endings())
       ->check(file_name())
       ->type_name("CLOUD")
       ->group("Output");

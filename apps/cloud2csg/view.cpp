@@ -61,7 +61,9 @@ void ViewCommand::run(const std::stop_token& stop) const {
 void add_options(CLI::App& app, ViewCommand& command, FieldArguments& /*fields*/) {
   add_file(app, "model", command.model, "Model file with a tree: " + endings_read({FileKind::model}))
       ->type_name("MODEL");
-  app.add_option("--cloud", command.cloud, "Points to show beside the solid, with their distances from it")
+  app.add_option("--cloud", command.cloud,
+                 "Points to show beside the solid, with their distances from it: " +
+                     endings_read({FileKind::cloud, FileKind::mesh}))
       ->check(file_name())
       ->type_name("CLOUD|MESH");
   app.add_option("--port", command.port, "Port on 127.0.0.1; 0 = any free port")

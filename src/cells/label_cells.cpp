@@ -122,13 +122,12 @@ class MinimumCut {
 };
 
 std::vector<bool> cheapest_labels(const CellComplex& complex, const LabelCosts& costs) {
-  constexpr double k_forbidden_label = 1e12;  // more than any cloud has points
   MinimumCut cut(complex.cells.size());
   for (CellIndex cell = 0; cell < complex.cells.size(); ++cell) {
     cut.add_source(cell, costs.if_out(cell));
     cut.add_sink(cell, costs.if_in(cell));
   }
-  for (const CellIndex cell : complex.unbounded) cut.add_sink(cell, k_forbidden_label);
+  for (const CellIndex cell : complex.unbounded) cut.add_sink(cell, LabelCosts::k_forbidden);
   for (const LabelCosts::Border& border : costs.borders()) cut.add_edge(border.first, border.second, border.cost);
   return cut.solve();
 }

@@ -11,6 +11,9 @@ namespace cloud2csg {
 /// The costs of labels, in points: see cost_of().
 class LabelCosts {
  public:
+  /// More than any cloud has points.
+  static constexpr double k_forbidden = 1e12;
+
   /// Two cells that meet where nothing was seen, and the cost when only one of them is in the solid.
   struct Border {
     CellIndex first, second;

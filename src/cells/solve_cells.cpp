@@ -25,9 +25,6 @@ struct SolvedCores {
   std::vector<std::size_t> least_leaves = {};
 };
 
-/// More than any cloud has points.
-constexpr double k_forbidden = 1e12;
-
 bool is_set(std::span<const std::uint64_t> column, CellIndex cell) {
   return (column[cell / 64] >> (cell % 64) & 1U) != 0;
 }
@@ -49,11 +46,11 @@ class PartObjective {
     for (CellIndex row = 0; row < part.cells.size(); ++row) {
       const CellIndex cell = part.cells[row];
       rows_.add(places(complex.cells[cell], part.primitives), false);
-      if (labels.evidence[cell] >= most_evidence) costs_.add(row, !labels.is_in[cell], k_forbidden);
+      if (labels.evidence[cell] >= most_evidence) costs_.add(row, !labels.is_in[cell], LabelCosts::k_forbidden);
     }
     if (!part.is_bounded) return;
     rows_.add({}, false);
-    costs_.add(costs_.add_cell(), !is_inverted_, k_forbidden);
+    costs_.add(costs_.add_cell(), !is_inverted_, LabelCosts::k_forbidden);
   }
 
   [[nodiscard]] double operator()(const CsgTree& tree) const {

@@ -117,8 +117,8 @@ constexpr double k_much_unexplained = 0.1;
 constexpr double k_coarse = 0.05;  ///< tolerance as a share of the diagonal
 constexpr double k_much_disagreement = 0.1;
 constexpr double k_much_bare_surface = 0.05;
-constexpr std::size_t k_noted_surface = 200;  ///< no warning for surfaces with fewer than 1 in 200 points
-constexpr double k_bare_spacings = 6;         ///< a surface this many spacings from all points is bare
+constexpr double k_noted_surface = 0.005;  ///< no warning for surfaces with a smaller share of the points
+constexpr double k_bare_spacings = 6;      ///< a surface this many spacings from all points is bare
 
 double share(std::size_t part, std::size_t all) {
   return static_cast<double>(part) / static_cast<double>(all);
@@ -219,9 +219,9 @@ std::vector<std::string> bare_surface_warnings(const CsgTree& tree, const FoundP
 
 std::vector<std::string> unused_surface_warnings(const CsgTree& tree, const FoundPrimitives& found) {
   const PointCloud& cloud = found.prepared.cloud;
-  const UnusedSurfaces unused =
-      find_unused_surfaces(tree, found.choice.solids, cloud, found.detection.surfaces,
-                           2 * found.detection.distance_tolerance, cloud.size() / k_noted_surface);
+  const auto least_points = static_cast<std::size_t>(k_noted_surface * static_cast<double>(cloud.size()));
+  const UnusedSurfaces unused = find_unused_surfaces(tree, found.choice.solids, cloud, found.detection.surfaces,
+                                                     2 * found.detection.distance_tolerance, least_points);
   if (unused.count == 0) return {};
   const DetectedSurface& largest = found.detection.surfaces[unused.largest];
   const Eigen::Vector3d middle = bounds_of(select_points(cloud, largest.points).positions).center();

@@ -9,14 +9,28 @@
 
 namespace cloud2csg {
 
+/// Step of splitmix64: 2^64 by the golden ratio.
+constexpr std::uint64_t k_golden = 0x9e3779b97f4a7c15ULL;
+
+/// What splitmix64 (Steele, Lea, Flood 2014) returns from state x: every input bit reaches every output bit.
+[[nodiscard]] constexpr std::uint64_t mix(std::uint64_t x) {
+  x += k_golden;
+  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31U);
+}
+
 /// Random numbers as a pure function of (seed, stage, item, step): xoshiro256** (Blackman, Vigna 2018) seeded by
 /// splitmix64. The distributions are our own, because the standard library's differ between implementations.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed, std::uint64_t stage = 0, std::uint64_t item = 0, std::uint64_t step = 0) {
     std::uint64_t x = seed;
-    for (const std::uint64_t key : {stage, item, step}) x = mix(mix(x + k_golden) + key);
-    for (std::uint64_t& word : state_) word = mix(x += k_golden);
+    for (const std::uint64_t key : {stage, item, step}) x = mix(mix(x) + key - k_golden);
+    for (std::uint64_t& word : state_) {
+      word = mix(x);
+      x += k_golden;
+    }
   }
 
   std::uint64_t next() {
@@ -48,13 +62,6 @@ class RandomStream {
   }
 
  private:
-  static constexpr std::uint64_t k_golden = 0x9e3779b97f4a7c15ULL;
-  static std::uint64_t mix(std::uint64_t x) {
-    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-    return x ^ (x >> 31U);
-  }
-
   std::array<std::uint64_t, 4> state_;
 };
 

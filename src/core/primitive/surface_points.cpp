@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/primitive/polytope.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -118,7 +120,7 @@ class LocalSurface {
   }
 
   PrimitiveSurface operator()(const Polytope& polytope) const {
-    TriangleSampler sampler(faces_of(polytope));
+    TriangleSampler sampler(triangles_of(polytope));
     const double area = sampler.area();
     const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
       const TriangleSampler::Draw drawn = sampler.draw(random);
@@ -146,34 +148,16 @@ class LocalSurface {
             .normal = (cone.height * outward + (bottom - top) * Vector3d::UnitZ()) / slant};
   }
 
-  /// The faces as fans of triangles, counter-clockwise seen from outside.
-  static std::vector<Triangle> faces_of(const Polytope& polytope) {
-    const std::vector<Vector3d> vertices = corners(polytope);
-    double scale = 0.0;
-    for (const Vector3d& vertex : vertices) scale = std::max(scale, vertex.norm());
+  /// The faces as fans.
+  static std::vector<Triangle> triangles_of(const Polytope& polytope) {
+    const auto [corners, faces] = faces_of(polytope);
     std::vector<Triangle> triangles;
-    for (const Plane& plane : polytope.planes) {
-      constexpr double k_on_plane = 1e-9;
-      std::vector<Vector3d> face;
-      for (const Vector3d& vertex : vertices) {
-        if (std::abs(plane.normal.dot(vertex) - plane.offset) <= k_on_plane * scale) face.push_back(vertex);
+    for (const std::vector<std::size_t>& face : faces) {
+      for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+        triangles.push_back({corners[face[0]], corners[face[i]], corners[face[i + 1]]});
       }
-      if (face.size() < 3) continue;
-      sort_around(face, plane.normal);
-      for (std::size_t i = 1; i + 1 < face.size(); ++i) triangles.push_back({face[0], face[i], face[i + 1]});
     }
     return triangles;
-  }
-
-  static void sort_around(std::vector<Vector3d>& face, const Vector3d& normal) {
-    Vector3d centre = Vector3d::Zero();
-    for (const Vector3d& vertex : face) centre += vertex / static_cast<double>(face.size());
-    const Vector3d first = (face[0] - centre).normalized();
-    const Vector3d second = normal.cross(first);
-    const auto angle = [&](const Vector3d& vertex) {
-      return std::atan2((vertex - centre).dot(second), (vertex - centre).dot(first));
-    };
-    std::ranges::sort(face, [&](const Vector3d& a, const Vector3d& b) { return angle(a) < angle(b); });
   }
 
   const Pose& pose_;

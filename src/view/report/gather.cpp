@@ -84,8 +84,8 @@ int resolution_of_parts(std::size_t parts, const ReportOptions& options) {
 /// Order of importance: the whole solid, primitives (by which people read a tree), inner nodes from the root down.
 MeshOfNode add_meshes(const CsgTree& tree, const std::vector<ShownNode>& nodes, const ReportOptions& options,
                       MeshBudget& budget) {
-  constexpr std::size_t k_share_of_part = 8;  // divisor of the whole solid's triangles
-  const std::size_t most_of_part = std::max<std::size_t>(options.most_triangles / k_share_of_part, 1);
+  constexpr std::size_t k_parts = 8;  // that get as many triangles together as the whole solid
+  const std::size_t most_of_part = std::max<std::size_t>(options.most_triangles / k_parts, 1);
   const int part_resolution = resolution_of_parts(nodes.size(), options);
   MeshOfNode meshes(nodes.size());
   meshes[0] = budget.add(tree, options.resolution, options.most_triangles);
