@@ -120,6 +120,29 @@ TEST(DetectSurfaces, KeepsTheFacesOfAHexagonalPrism) {
   }
 }
 
+/// An exact surface is not one with the next, although they are nearer than the form error of a mesh.
+TEST(DetectSurfaces, TellsTwoFacesAtAThinStepApart) {
+  PrimitiveSet primitives{test::placed("block", Box{{4, 3, 1}}, {0, 0, 0}),
+                          test::placed("step", Box{{2, 4, 1}}, {1.5, 0, 0.995})};
+  const test::Part part = test::without_others(std::move(primitives));
+  const Detection detection = detect(cloud_of(part, 0), 0);
+  EXPECT_GT(detection.distance_tolerance, 0.005);
+  EXPECT_EQ(count_of(detection, SurfaceType::plane), 7U);
+  EXPECT_EQ(detection.surfaces.size(), 7U);  // the riser is too low to be a surface
+}
+
+TEST(DetectSurfaces, TakesAShortConeForNoSphere) {
+  // A wide chamfer, which is within the form error of a sphere.
+  const test::Part part{
+      .primitives = {test::placed("cone", Cone{.radius_bottom = 2, .radius_top = 1.9, .height = 0.2}, {0, 0, 0}),
+                     test::placed("shaft", Cylinder{1.5, 3}, {0, 0, -1.5})},
+      .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
+  const Detection detection = detect(cloud_of(part, 0), 0);
+  ASSERT_EQ(count_of(detection, SurfaceType::cone), 1U);
+  EXPECT_EQ(count_of(detection, SurfaceType::sphere), 0U);
+  EXPECT_NEAR(by_radius(detection, SurfaceType::cone)[0].half_angle, std::atan(0.5), 1e-3);
+}
+
 TEST(DetectSurfaces, TakesAManyFacetedPrismForACylinder) {
   Polytope prism;
   constexpr int k_facets = 40;

@@ -23,15 +23,25 @@ struct Agreement {
 
 /// Limits within which a point lies on a surface.
 struct AgreementLimits {
-  double distance;         ///< greatest absolute value
+  double distance;         ///< greatest absolute value: the noise, or the form error, such as that of facets
+  double noise;            ///< standard deviation of exact surfaces; at most `distance`
   double cosine;           ///< least value
   double most_radius = 3;  ///< in a cloud of diagonal 1; a larger surface counts as flat
 
-  /// Weight of the point: 1 on the surface with its normal, falling to 0 at either limit.
+  /// Weight of the point: 1 on the surface with its normal, falling to 0 at either limit. Over the distance it is the
+  /// logarithm of a density whose scale is unknown between noise and form error (Jeffreys' prior): a surface that
+  /// passes through the points within the noise is much better than one that passes by them within the form error.
   [[nodiscard]] double support(const Agreement& agreement) const {
     if (!hold(agreement)) return 0;
-    const double off = agreement.distance / distance;
-    return (1 - off * off) * (agreement.cosine - cosine) / (1 - cosine);
+    const double off = agreement.distance / noise;
+    const double most = distance / noise;
+    return (1 - std::log1p(off * off) / std::log1p(most * most)) * (agreement.cosine - cosine) / (1 - cosine);
+  }
+  /// The same for a surface whose own points reach less far.
+  [[nodiscard]] AgreementLimits within(double reach) const {
+    AgreementLimits result = *this;
+    result.distance = reach;
+    return result;
   }
   [[nodiscard]] bool hold(const Agreement& agreement) const {
     return std::abs(agreement.distance) <= distance && agreement.cosine >= cosine;
@@ -82,7 +92,7 @@ auto with_agreement(const Surface& s, const Function& f) {
 }
 
 /// Sum of the points' support. Unlike the number of agreeing points, it prefers a surface through the middle of the
-/// points (MSAC: Torr and Zisserman 2000). O(n)
+/// points (after MLESAC: Torr and Zisserman 2000). O(n)
 [[nodiscard]] double support_of(const Surface& surface, std::span<const OrientedPoint> points,
                                 const AgreementLimits& limits);
 

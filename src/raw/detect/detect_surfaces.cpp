@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -27,7 +28,8 @@ bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, 
 
 /// One surface for the points of both, if it exists.
 std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b, const WorkCloud& cloud,
-                                   const AgreementLimits& limits) {
+                                   const AgreementLimits& all_limits) {
+  const AgreementLimits limits = all_limits.within(std::max(a.reach, b.reach));
   if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
   const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_equal_sample);
   const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_equal_sample);
@@ -41,7 +43,7 @@ std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b,
   if (!fitted || !explains(*fitted, of_a, limits, k_nearly_all) || !explains(*fitted, of_b, limits, k_nearly_all)) {
     return std::nullopt;
   }
-  GrownSurface both{.surface = *fitted, .points = {}};
+  GrownSurface both{.surface = *fitted, .points = {}, .reach = limits.distance};
   std::set_union(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both.points));
   return both;
 }
@@ -66,14 +68,15 @@ void claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, cons
                const RunContext& run) {
   for_each_index(surfaces.size(), run, [&](std::size_t k) {
     GrownSurface& surface = surfaces[k];
+    const AgreementLimits own = limits.within(surface.reach);
     with_agreement(surface.surface, [&](const auto& rule) {
       surface.points.clear();
       surface.support = 0;
       for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-        const double support = limits.support(rule(cloud.points[i].position, cloud.points[i].normal));
-        if (support <= 0) continue;
+        const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
+        if (!own.hold(agreement)) continue;
         surface.points.push_back(i);
-        surface.support += support;
+        surface.support += limits.support(agreement);
       }
     });
   });
@@ -89,8 +92,9 @@ void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
     const std::size_t count = left.size();
     for (std::size_t other = 0; other < surfaces.size() && !left.empty(); ++other) {
       if (other == k) continue;
+      const AgreementLimits own = limits.within(surfaces[other].reach);
       with_agreement(surfaces[other].surface, [&](const auto& rule) {
-        std::erase_if(left, [&](const OrientedPoint& p) { return limits.hold(rule(p.position, p.normal)); });
+        std::erase_if(left, [&](const OrientedPoint& p) { return own.hold(rule(p.position, p.normal)); });
       });
     }
     if (static_cast<double>(left.size()) < (1 - k_nearly_all) * static_cast<double>(count)) {
@@ -107,12 +111,13 @@ std::vector<std::uint32_t> nearest_surfaces(const std::vector<GrownSurface>& sur
   for_each_index((cloud.size() + k_block - 1) / k_block, run, [&](std::size_t block) {
     const std::size_t first = block * k_block;
     const std::size_t last = std::min(first + k_block, cloud.size());
-    std::vector<double> distance(last - first, limits.distance);
+    std::vector<double> distance(last - first, std::numeric_limits<double>::infinity());
     for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
+      const AgreementLimits own = limits.within(surfaces[s].reach);
       with_agreement(surfaces[s].surface, [&](const auto& rule) {
         for (std::size_t i = first; i < last; ++i) {
           const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
-          if (agreement.cosine < limits.cosine || std::abs(agreement.distance) >= distance[i - first]) continue;
+          if (!own.hold(agreement) || std::abs(agreement.distance) >= distance[i - first]) continue;
           distance[i - first] = std::abs(agreement.distance);
           nearest[i] = s;
         }
@@ -137,7 +142,10 @@ void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const 
   constexpr std::size_t k_most = 4000;
   for_each_index(surfaces.size(), run, [&](std::size_t k) {
     GrownSurface& s = surfaces[k];
-    if (const auto fitted = fit_plausible(s.surface, cloud.some_of(s.points, k_most), limits)) s.surface = *fitted;
+    const auto fitted = fit_plausible(s.surface, cloud.some_of(s.points, k_most), limits.within(s.reach));
+    if (!fitted) return;
+    s.surface = *fitted;
+    s.reach = reach_of(s.surface, cloud, s.points, limits);
   });
 }
 
@@ -260,9 +268,18 @@ DetectedSurface detected(const GrownSurface& grown, const WorkCloud& work) {
   return result;
 }
 
+constexpr double k_noise_factor = 3;
+
+/// The noise that tells surfaces apart. Files give at least five digits, so less counts as exact.
+double detection_noise(const DetectOptions& options, const Scale& scale) {
+  constexpr double k_exact_share = 1e-5;
+  if (options.distance_tolerance) return *options.distance_tolerance / k_noise_factor;
+  return std::max(scale.noise, k_exact_share * scale.diagonal);
+}
+
 /// In a cloud of diagonal 1: the option's value, up to the radius that counts as flat.
 double most_radius_of(const DetectOptions& options, double diagonal) {
-  const double flat = AgreementLimits{.distance = 0, .cosine = 0}.most_radius;
+  const double flat = AgreementLimits{.distance = 0, .noise = 0, .cosine = 0}.most_radius;
   return options.most_size ? std::min(flat, *options.most_size / diagonal) : flat;
 }
 
@@ -298,7 +315,6 @@ std::size_t detection_least_points(const DetectOptions& options, std::size_t poi
 }
 
 double detection_tolerance(const DetectOptions& options, const Scale& scale) {
-  constexpr double k_noise_factor = 3;
   constexpr double k_least_share = 0.0015;
   return options.distance_tolerance.value_or(std::max(k_noise_factor * scale.noise, k_least_share * scale.diagonal));
 }
@@ -310,6 +326,7 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
   const double tolerance = detection_tolerance(options, scale);
   constexpr double k_link_in_spacings = 4;
   const SearchLimits limits{.agreement = {.distance = tolerance / work.diagonal,
+                                          .noise = detection_noise(options, scale) / work.diagonal,
                                           .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180),
                                           .most_radius = most_radius_of(options, work.diagonal)},
                             .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/disjoint_sets.hpp"
+#include "core/base/robust_deviation.hpp"
 #include "raw/detect/propose.hpp"
 
 namespace cloud2csg {
@@ -42,6 +43,8 @@ DisjointSets join_cubes(const std::vector<std::uint64_t>& cubes) {
   }
   return groups;
 }
+
+constexpr double k_deviations = 3;  // of normally distributed points, 1 in 370 is farther
 
 /// This many points suffice to fit a surface.
 constexpr std::size_t k_sample = 400;
@@ -114,21 +117,41 @@ double preference(SurfaceType type) {
   return 0;
 }
 
+double reach_of(const Surface& surface, const WorkCloud& cloud, std::span<const std::uint32_t> points,
+                const AgreementLimits& limits) {
+  const double least = k_deviations * limits.noise;
+  if (points.empty() || least >= limits.distance) return limits.distance;
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  with_agreement(surface, [&](const auto& rule) {
+    for (const std::uint32_t i : points) {
+      distances.push_back(std::abs(rule(cloud.points[i].position, cloud.points[i].normal).distance));
+    }
+  });
+  return std::clamp(k_deviations * robust_deviation(distances), least, limits.distance);
+}
+
 std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints& points, const SearchLimits& limits) {
   // Loose limits at first, because a start from few points is still inaccurate.
   SearchLimits wide = limits;
   wide.agreement.distance *= 1.5;
   std::vector<std::uint32_t> seen = connected_points(start, points, wide);
-  GrownSurface best{.surface = start, .points = {}};
+  GrownSurface best{.surface = start, .points = {}, .reach = reach_of(start, points.cloud(), seen, limits.agreement)};
   constexpr int k_rounds = 4;
   for (int round = 0; round < k_rounds && !seen.empty(); ++round) {
     const std::optional<Surface> fitted =
-        fit_plausible(best.surface, points.cloud().some_of(seen, k_sample), limits.agreement);
+        fit_plausible(best.surface, points.cloud().some_of(seen, k_sample), limits.agreement.within(best.reach));
     if (!fitted) break;
     seen = connected_points(*fitted, points, limits);
     const double support = support_by(seen, *fitted, points, limits.agreement);
     if (support <= best.support) break;
-    best = {.surface = *fitted, .points = seen, .support = support};
+    const double reach = reach_of(*fitted, points.cloud(), seen, limits.agreement);
+    best = {.surface = *fitted, .points = seen, .support = support, .reach = reach};
+  }
+  if (best.reach < limits.agreement.distance) {
+    SearchLimits own = limits;
+    own.agreement.distance = best.reach;
+    best.points = connected_points(best.surface, points, own);
   }
   return best.points.empty() ? std::nullopt : std::optional(std::move(best));
 }

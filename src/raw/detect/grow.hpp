@@ -27,7 +27,13 @@ struct GrownSurface {
   Surface surface;
   std::vector<std::uint32_t> points;
   double support = 0;  ///< see support_of()
+  double reach = 0;    ///< distance within which its points lie: see reach_of()
 };
+
+/// Three robust standard deviations of the points that agree with the surface, between those of the noise and the
+/// limit. A surface with form errors, such as facets, reaches farther than an exact one. O(n)
+[[nodiscard]] double reach_of(const Surface& surface, const WorkCloud& cloud, std::span<const std::uint32_t> points,
+                              const AgreementLimits& limits);
 
 /// Weight of a type. A simpler type wins over a more flexible one that explains a few more points.
 [[nodiscard]] double preference(SurfaceType type);
