@@ -113,6 +113,7 @@ UnusedSurfaces find_unused_surfaces(const CsgTree& tree, const PrimitiveSet& sol
   return unused;
 }
 
+constexpr double k_many_outliers = 0.01;
 constexpr double k_much_unexplained = 0.1;
 constexpr double k_coarse = 0.05;  ///< tolerance as a share of the diagonal
 constexpr double k_much_disagreement = 0.1;
@@ -178,6 +179,12 @@ std::vector<std::string> tolerance_warnings(double tolerance, double diagonal) {
   if (tolerance <= k_coarse * diagonal) return {};
   return {fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost", tolerance,
                       100 * tolerance / diagonal)};
+}
+
+std::vector<std::string> outlier_warnings(const CleanReport& report, std::size_t points) {
+  const std::size_t outliers = report.isolated + report.off_surface;
+  if (share(outliers, points) <= k_many_outliers) return {};
+  return {fmt::format("{} of {} points are outliers and are left out", outliers, points)};
 }
 
 std::vector<std::string> detection_warnings(const RestDetection& found, const PreparedCloud& prepared) {

@@ -21,6 +21,9 @@ inline void append(std::vector<std::string>& warnings, std::span<const std::stri
 /// @throws Error for a tolerance as large as the cloud
 [[nodiscard]] std::vector<std::string> tolerance_warnings(double tolerance, double diagonal);
 
+/// `points`: the number in the raw cloud
+[[nodiscard]] std::vector<std::string> outlier_warnings(const CleanReport& report, std::size_t points);
+
 /// @throws Error without surfaces and without points on known primitives
 [[nodiscard]] std::vector<std::string> detection_warnings(const RestDetection& found, const PreparedCloud& prepared);
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -109,6 +110,32 @@ void add_evidence(FoundPrimitives& found, const DetectOptions& options, const Ru
   }
 }
 
+/// Leaves out the doubted points that are on no surface and on no known primitive: they are outliers.
+std::pair<PreparedCloud, RestDetection> without_doubted(PreparedCloud prepared, RestDetection rest) {
+  std::vector<bool> is_outlier(prepared.cloud.size(), false);
+  for (const std::uint32_t i : prepared.doubted) is_outlier[i] = true;
+  const auto for_each_list = [&rest](const auto& function) {
+    for (DetectedSurface& surface : rest.detection.surfaces) function(surface.points);
+    for (SurfacePoints& known : rest.known) function(known.points);
+  };
+  for_each_list([&](const std::vector<std::uint32_t>& points) {
+    for (const std::uint32_t i : points) is_outlier[i] = false;
+  });
+  const std::vector<std::uint32_t> kept = places_where(is_outlier, false);
+  std::vector<std::uint32_t> place(is_outlier.size());
+  for (std::uint32_t k = 0; k < kept.size(); ++k) place[kept[k]] = k;
+  const std::size_t outliers = is_outlier.size() - kept.size();
+  prepared.doubted.clear();
+  if (outliers == 0) return {std::move(prepared), std::move(rest)};
+  for_each_list([&](std::vector<std::uint32_t>& points) {
+    for (std::uint32_t& i : points) i = place[i];
+  });
+  prepared.cloud = select_points(prepared.cloud, kept);
+  prepared.cleaning.off_surface += outliers;
+  rest.detection.unexplained -= outliers;
+  return {std::move(prepared), std::move(rest)};
+}
+
 /// find_primitives() without warnings about known primitives.
 FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   check_known(options.known);
@@ -121,6 +148,8 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   const std::optional<double>& tolerance = options.detection.distance_tolerance;
   if (tolerance) append(found.warnings, tolerance_warnings(*tolerance, found.prepared.scale.diagonal));
   RestDetection rest = detect_rest(found.prepared.cloud, found.prepared.scale, options.known, options.detection, run);
+  std::tie(found.prepared, rest) = without_doubted(std::move(found.prepared), std::move(rest));
+  append(found.warnings, outlier_warnings(found.prepared.cleaning, cloud.size()));
   append(found.warnings, detection_warnings(rest, found.prepared));
   found.detection = std::move(rest.detection);
   // Known primitives have ends of their own.
@@ -155,10 +184,9 @@ RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const Pri
   RestDetection result{.known = deal_points(cloud, known, tolerances_of(options, scale), run), .detection = {}};
   const std::vector<std::uint32_t> rest = points_of_none(result.known, cloud.size());
   DetectOptions of_rest = options;
-  of_rest.distance_tolerance = detection_tolerance(options, scale);
   of_rest.least_points = detection_least_points(options, cloud.size());
   if (rest.empty()) {
-    result.detection.distance_tolerance = *of_rest.distance_tolerance;
+    result.detection.distance_tolerance = detection_tolerance(options, scale);
     return result;
   }
   result.detection = detect_surfaces(select_points(cloud, rest), scale, of_rest, run);

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/geometry/subset.hpp"
 #include "prepare/clouds.hpp"
 
 namespace cloud2csg {
@@ -34,7 +37,7 @@ double distance_to_box(const Vector3d& place, const Vector3d& size) {
   return beyond.cwiseMax(0.0).norm() + std::min(0.0, beyond.maxCoeff());
 }
 
-TEST(CleanCloud, LeavesOutUniformOutliers) {
+TEST(CleanCloud, LeavesOutOrDoubtsUniformOutliers) {
   const Vector3d size(1, 0.8, 0.4);
   const double noise = 0.0015;
   RandomStream random(3);
@@ -55,11 +58,33 @@ TEST(CleanCloud, LeavesOutUniformOutliers) {
     return far;
   };
   const CleanCloud clean = clean_cloud(cloud, estimate_scale(cloud));
-  EXPECT_LT(count_far(clean.cloud), 0.05 * count_far(cloud));
+  const PointCloud sure = without_points(clean.cloud, clean.doubted);
+  EXPECT_LT(count_far(sure), 0.05 * count_far(cloud));
   std::size_t outliers = 0;
-  for (std::size_t i = 0; i < clean.cloud.size(); ++i) outliers += clean.cloud.normals[i].isZero() ? 1 : 0;
-  EXPECT_GT(clean.cloud.size() - outliers, points - points / 200);
+  for (std::size_t i = 0; i < sure.size(); ++i) outliers += sure.normals[i].isZero() ? 1 : 0;
+  EXPECT_GT(sure.size() - outliers, points - points / 100);
   EXPECT_EQ(clean.report.isolated + clean.report.off_surface, cloud.size() - clean.cloud.size());
+}
+
+/// Its points are on no plane of their neighbours, but dense.
+TEST(CleanCloud, KeepsABoreOfAFewSpacings) {
+  constexpr double k_radius = 0.05;  // one and a half spacings
+  constexpr std::size_t k_points = 126;
+  RandomStream random(7);
+  PointCloud cloud;
+  add_box(cloud, {-1, -1, -0.2}, {1, 1, 0.2}, 1000, false, random);
+  std::vector<bool> is_outside(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) is_outside[i] = cloud.positions[i].head<2>().norm() > k_radius;
+  cloud = select_points(cloud, places_where(is_outside, true));
+  const std::size_t faces = cloud.size();
+  for (std::size_t i = 0; i < k_points; ++i) {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const Vector3d normal(-std::cos(angle), -std::sin(angle), 0);
+    cloud.positions.push_back(-k_radius * normal + random.uniform(-0.2, 0.2) * Vector3d::UnitZ());
+    cloud.normals.push_back(normal);
+  }
+  const CleanCloud clean = clean_cloud(cloud, estimate_scale(cloud));
+  EXPECT_GE(clean.cloud.size(), faces + k_points - k_points / 20);
 }
 
 TEST(CleanCloud, CountsDuplicates) {

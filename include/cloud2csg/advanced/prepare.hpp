@@ -56,14 +56,18 @@ struct CleanReport {
 struct CleanCloud {
   PointCloud cloud;  ///< remaining points in the order of the input, with normals and sensor positions
   CleanReport report;
+  /// Ascending indices of points that are on no plane of their neighbours, but as densely surrounded as a surface: of a
+  /// small round feature, or outliers beside a face. Whoever knows the surfaces can tell.
+  std::vector<std::uint32_t> doubted = {};
 };
 
 /// Leaves out repeated points, outliers, and points beyond the budget. An outlier is a point that few of its
 /// neighbours' local planes pass through (within three times the noise), so sparse regions, thin walls and edges stay.
-/// If the first pass finds many outliers, later passes are stricter with distant points and with planes, since some
-/// planes arise by chance. With as many uniform outliers as points, 94 % or more of those off the surface go, with a
-/// few points where walls are thinner than some spacings. Thinning keeps one point per voxel. Voxels are at most three
-/// spacings or four times the noise wide, so the result may exceed the budget. O(n log n)
+/// Other points as densely surrounded as a surface stay, too, as `doubted`. If the first pass finds many outliers,
+/// later passes are stricter with distant points and with planes, since some planes arise by chance. With as many
+/// uniform outliers as points, 94 % or more of those off the surface go or are doubted. Thinning keeps one point per
+/// voxel. Voxels are at most three spacings or four times the noise wide, so the result may exceed the budget. O(n log
+/// n)
 /// @throws Error for a budget of 0; Cancelled.
 [[nodiscard]] CleanCloud clean_cloud(const PointCloud& cloud, const Scale& scale, const CleanOptions& options = {},
                                      const RunContext& run = {});
@@ -119,6 +123,7 @@ struct PreparedCloud {
   PointCloud cloud;  ///< with outward normals
   Scale scale;       ///< scale of the cleaned cloud
   CleanReport cleaning;
+  std::vector<std::uint32_t> doubted = {};  ///< as in CleanCloud
   bool normals_estimated = false;
   double clean_seconds = 0, normals_seconds = 0;
   std::vector<std::string> warnings = {};  ///< sentences for the user: changes and remaining doubts, with places

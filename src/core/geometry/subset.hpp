@@ -34,6 +34,13 @@ template <std::ranges::sized_range Indices>
 /// The indices where `chosen` equals `says`, ascending.
 [[nodiscard]] std::vector<std::uint32_t> places_where(const std::vector<bool>& chosen, bool says = true);
 
+/// The cloud without the points of these indices. O(n)
+[[nodiscard]] inline PointCloud without_points(const PointCloud& cloud, const std::vector<std::uint32_t>& left_out) {
+  std::vector<bool> is_out(cloud.size(), false);
+  for (const std::uint32_t i : left_out) is_out[i] = true;
+  return select_points(cloud, places_where(is_out, false));
+}
+
 /// A sample of 0 .. count - 1: a random one out of every few, `most` at most, ascending. The choice is random because
 /// scans come in rows, and a fixed step may follow a column of them. Precondition: most > 0. O(most)
 [[nodiscard]] std::vector<std::uint32_t> one_of_every_few(std::size_t count, std::size_t most, RandomStream random);

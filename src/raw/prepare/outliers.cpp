@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -109,7 +111,13 @@ Indices without_duplicates(const Points& points) {
 constexpr double k_fitting = 0.9;
 
 /// Several passes, because many outliers bend the planes that judge them.
-Indices without_outliers(const Points& points, Indices kept, Scale scale, CleanReport& report, const RunContext& run) {
+KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, const RunContext& run) {
+  KeptPoints result;
+  std::vector<bool> is_dense(points.size());
+  const auto in_the_cloud = [&kept](Indices indices) {
+    for (std::uint32_t& i : indices) i = kept[i];
+    return indices;
+  };
   Strictness strictness = Strictness::trusting;
   const StageShare cleaning("clean", points.size(), "points");
   for (int pass = 0; pass < k_passes && kept.size() > k_judges; ++pass) {
@@ -121,21 +129,25 @@ Indices without_outliers(const Points& points, Indices kept, Scale scale, CleanR
     const std::size_t width = strictness == Strictness::trusting ? k_judges : k_suspicious_neighbours;
     const LocalFits fits = fit_locally(remaining, width, scale.noise, run, of_pass.part(0, k_fitting));
     const std::vector<Verdict> verdicts = judge_points(fits, scale, strictness, run, of_pass.part(k_fitting, 1));
-    Indices next;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      if (verdicts[i] == Verdict::stays) next.push_back(kept[fits.order[i]]);
-      report.isolated += verdicts[i] == Verdict::isolated ? 1 : 0;
-      report.off_surface += verdicts[i] == Verdict::off_surface ? 1 : 0;
+    if (pass == 0) {
+      const std::vector<bool> dense = dense_points(fits, scale);
+      for (std::size_t i = 0; i < kept.size(); ++i) is_dense[kept[i]] = dense[i];
     }
-    std::sort(next.begin(), next.end());
-    const std::size_t gone = kept.size() - next.size();
+    const KeptPoints now = kept_points(verdicts, fits, [&](std::uint32_t i) { return is_dense[kept[i]]; });
+    result.isolated += now.isolated;
+    result.off_surface += now.off_surface;
+    const Indices doubted = in_the_cloud(now.doubted);
+    result.doubted.insert(result.doubted.end(), doubted.begin(), doubted.end());
+    const std::size_t gone = kept.size() - now.sure.size();
     if (static_cast<double>(gone) >= k_many * static_cast<double>(kept.size())) strictness = Strictness::suspicious;
     const bool is_settled = static_cast<double>(gone) < k_settled * static_cast<double>(kept.size());
-    kept = std::move(next);
+    kept = in_the_cloud(now.sure);
     if (is_settled) break;
   }
   cleaning.report(run, 1);
-  return kept;
+  result.sure = std::move(kept);
+  std::sort(result.doubted.begin(), result.doubted.end());
+  return result;
 }
 
 /// The first point of each voxel, in the order of the points.
@@ -186,18 +198,61 @@ std::vector<Verdict> judge_points(const LocalFits& fits, const Scale& scale, Str
   return verdicts;
 }
 
+std::vector<bool> dense_points(const LocalFits& fits, const Scale& scale) {
+  const double usual_gap = scale.spacing * std::sqrt(k_gap_neighbours / std::numbers::pi);
+  std::vector<bool> is_dense(fits.order.size());
+  for (std::size_t i = 0; i < fits.order.size(); ++i) {
+    is_dense[fits.order[i]] = gap_of(fits, i) <= k_suspect_gap * usual_gap;
+  }
+  return is_dense;
+}
+
+KeptPoints kept_points(std::span<const Verdict> verdicts, const LocalFits& fits,
+                       const std::function<bool(std::uint32_t point)>& is_dense) {
+  KeptPoints kept;
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    const std::uint32_t point = fits.order[i];
+    if (verdicts[i] == Verdict::stays) {
+      kept.sure.push_back(point);
+    } else if (is_dense(point)) {
+      kept.doubted.push_back(point);
+    } else {
+      (verdicts[i] == Verdict::isolated ? kept.isolated : kept.off_surface) += 1;
+    }
+  }
+  std::sort(kept.sure.begin(), kept.sure.end());
+  std::sort(kept.doubted.begin(), kept.doubted.end());
+  return kept;
+}
+
+std::vector<std::uint32_t> both(const KeptPoints& kept) {
+  std::vector<std::uint32_t> all;
+  std::merge(kept.sure.begin(), kept.sure.end(), kept.doubted.begin(), kept.doubted.end(), std::back_inserter(all));
+  return all;
+}
+
+std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> all, std::span<const std::uint32_t> some) {
+  std::vector<std::uint32_t> places;
+  for (const std::uint32_t i : some) {
+    const auto found = std::lower_bound(all.begin(), all.end(), i);
+    if (found != all.end() && *found == i) places.push_back(static_cast<std::uint32_t>(found - all.begin()));
+  }
+  return places;
+}
+
 CleanCloud clean_cloud(const PointCloud& cloud, const Scale& scale, const CleanOptions& options,
                        const RunContext& run) {
   validate(options);
   const CentredPoints local = centred(cloud.positions);
-  CleanReport report;
-  Indices kept = without_duplicates(local.points);
-  report.duplicates = cloud.size() - kept.size();
-  if (options.remove_outliers) kept = without_outliers(local.points, std::move(kept), scale, report, run);
-  const std::size_t before = kept.size();
-  kept = thinned(local.points, std::move(kept), scale, options.point_budget, run);
-  report.thinned = before - kept.size();
-  return {.cloud = select_points(cloud, kept), .report = report};
+  KeptPoints kept{.sure = without_duplicates(local.points), .doubted = {}};
+  CleanReport report{.duplicates = cloud.size() - kept.sure.size()};
+  if (options.remove_outliers) kept = without_outliers(local.points, std::move(kept.sure), scale, run);
+  report.isolated = kept.isolated;
+  report.off_surface = kept.off_surface;
+  const Indices all = both(kept);
+  const Indices thin = thinned(local.points, all, scale, options.point_budget, run);
+  report.thinned = all.size() - thin.size();
+  return {.cloud = select_points(cloud, thin), .report = report, .doubted = places_in(thin, kept.doubted)};
 }
 
 }  // namespace cloud2csg

@@ -7,6 +7,7 @@
 #include "cloud2csg/advanced/prepare.hpp"
 #include "core/base/run.hpp"
 #include "core/geometry/place_text.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/prepare/orientation.hpp"
 #include "raw/prepare/outliers.hpp"
 
@@ -15,15 +16,9 @@ namespace {
 
 /// Relative to the diagonal: more noise hides typical details of a part.
 constexpr double k_much_noise = 0.01;
-constexpr double k_many_outliers = 0.01;
 constexpr double k_much_doubt = 0.01;
 
-void warn_of_cleaning(PreparedCloud& prepared, std::size_t points) {
-  const CleanReport& report = prepared.cleaning;
-  const std::size_t outliers = report.isolated + report.off_surface;
-  if (static_cast<double>(outliers) > k_many_outliers * static_cast<double>(points)) {
-    prepared.warnings.push_back(fmt::format("{} of {} points are outliers and are left out.", outliers, points));
-  }
+void warn_of_noise(PreparedCloud& prepared) {
   if (prepared.scale.noise > k_much_noise * prepared.scale.diagonal) {
     prepared.warnings.push_back(
         fmt::format("The noise is {:.2g} % of the cloud's diagonal: details below {:.3g} are lost.",
@@ -90,25 +85,22 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
   if (has_duplicates(fits)) return false;
   const std::vector<Verdict> verdicts =
       judge_points(fits, prepared.scale, Strictness::trusting, run, trial.part(0.9, 1));
-  std::vector<std::uint32_t> kept;
-  CleanReport report;
-  for (std::size_t i = 0; i < verdicts.size(); ++i) {
-    if (verdicts[i] == Verdict::stays) kept.push_back(fits.order[i]);
-    report.isolated += verdicts[i] == Verdict::isolated ? 1 : 0;
-    report.off_surface += verdicts[i] == Verdict::off_surface ? 1 : 0;
-  }
-  if (is_much(cloud.size() - kept.size(), cloud.size())) return false;
+  const std::vector<bool> is_dense = dense_points(fits, prepared.scale);
+  const KeptPoints kept = kept_points(verdicts, fits, [&](std::uint32_t i) { return is_dense[i]; });
+  if (is_much(cloud.size() - kept.sure.size(), cloud.size())) return false;
   cleaning.report(run, 1);
   prepared.clean_seconds = watch.lap();
-  std::sort(kept.begin(), kept.end());
   EstimatedNormals estimated =
       orient_fits(cloud, fits, prepared.scale, run, StageShare("normals", cloud.size(), "points"));
   PointCloud oriented = cloud;
   oriented.normals = std::move(estimated.normals);
   prepared.normals_seconds = watch.lap();
-  prepared.cloud = select_points(oriented, kept);
-  prepared.cleaning = report;
-  warn_of_cleaning(prepared, cloud.size());
+  const std::vector<std::uint32_t> left = both(kept);
+  prepared.cloud = select_points(oriented, left);
+  prepared.doubted = places_in(left, kept.doubted);
+  prepared.cleaning.isolated = kept.isolated;
+  prepared.cleaning.off_surface = kept.off_surface;
+  warn_of_noise(prepared);
   warn_of_normals(prepared, estimated);
   return true;
 }
@@ -128,9 +120,11 @@ PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& optio
   CleanCloud clean = clean_cloud(cloud, prepared.scale, options.clean, run);
   prepared.cloud = std::move(clean.cloud);
   prepared.cleaning = clean.report;
+  prepared.doubted = std::move(clean.doubted);
   // Outliers and duplicates distorted the first estimate.
-  if (is_much(cloud.size() - prepared.cloud.size(), cloud.size())) prepared.scale = estimate_scale(prepared.cloud, run);
-  warn_of_cleaning(prepared, cloud.size());
+  const PointCloud sure = without_points(prepared.cloud, prepared.doubted);
+  if (is_much(cloud.size() - sure.size(), cloud.size())) prepared.scale = estimate_scale(sure, run);
+  warn_of_noise(prepared);
   prepared.clean_seconds = watch.lap();
   const bool are_good = has_given_normals && keep_given_normals(prepared, run);
   prepared.normals_seconds = watch.seconds();
