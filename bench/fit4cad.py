@@ -23,6 +23,7 @@ import cloud2csg
 # Points of one piece are linked within so many spacings. At half, sparse pieces fall apart; at double, faces across a
 # narrow slot become one.
 LINK_SPACINGS = 3
+EXACT = 1e-5  # of the diagonal: the clouds have no noise, and files give six digits
 LEAST_POINTS = 5  # smaller pieces are points at an edge that belong to a neighbour
 
 
@@ -35,10 +36,34 @@ def pieces_of(points, spacing):
     return [piece for piece in pieces if len(piece) >= min(LEAST_POINTS, len(points))]
 
 
+def distances(surface, positions):
+    """From the surface, without its sign."""
+    v = positions - surface.position
+    if surface.type == "plane":
+        return np.abs(v @ surface.axis)
+    if surface.type == "sphere":
+        return np.abs(np.linalg.norm(v, axis=1) - surface.radius)
+    height = v @ surface.axis
+    across = np.linalg.norm(v - np.outer(height, surface.axis), axis=1)
+    if surface.type == "cylinder":
+        return np.abs(across - surface.radius)
+    if surface.type == "cone":
+        return np.abs(across * np.cos(surface.half_angle) - height * np.sin(surface.half_angle))
+    return np.abs(np.hypot(across - surface.radius, height) - surface.minor_radius)
+
+
+def with_edges(surface, piece, positions, tree, spacing, exact):
+    """The piece and the points beside it that lie on the surface, too: in the truth, an edge belongs to both its faces."""
+    beside = np.unique(np.concatenate(tree.query_ball_point(positions[piece], LINK_SPACINGS * spacing)).astype(int))
+    on = beside[distances(surface, positions[beside]) <= max(3 * surface.rms, exact)]
+    return np.union1d(piece, on)
+
+
 def surfaces_of(result, positions):
     """One a piece, with indices into `positions`. Cleaning moves no point; points added on unseen sides are left out."""
     tree = cKDTree(positions)
     spacing = np.median(tree.query(positions, k=2)[0][:, 1])
+    exact = EXACT * np.linalg.norm(np.ptp(positions, axis=0))
     distance, original = tree.query(result.cloud.positions)
     for surface in result.surfaces:
         measured = surface.points[distance[surface.points] == 0]
@@ -48,7 +73,7 @@ def surfaces_of(result, positions):
         for piece in pieces_of(positions[own], spacing):
             yield {"type": surface.type, "position": surface.position.tolist(), "axis": surface.axis.tolist(),
                    "radius": surface.radius, "minor_radius": surface.minor_radius, "half_angle": surface.half_angle,
-                   "points": own[piece].tolist()}
+                   "points": with_edges(surface, own[piece], positions, tree, spacing, exact).tolist()}
 
 
 def main():
