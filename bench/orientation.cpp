@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < truth.size(); ++i) right += found.normals[i].dot(truth[i]) > 0.0 ? 1 : 0;
     const auto count = static_cast<double>(truth.size());
     fmt::print("| {} | {:.2f} % | {:.2f} % | {} | {:.2f} | {:.2f} |\n", named.name,
-               100.0 * static_cast<double>(right) / count, 100.0 * static_cast<double>(found.doubtful) / count,
+               100.0 * static_cast<double>(right) / count, 100.0 * static_cast<double>(found.doubtful.size()) / count,
                found.bodies, seconds, cpu_seconds);
     std::fflush(stdout);
     if (!options.pictures.empty()) {

@@ -18,6 +18,7 @@
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/sample.hpp"
 #include "core/base/random.hpp"
+#include "core/geometry/subset.hpp"
 
 namespace {
 
@@ -106,7 +107,7 @@ void print_normals(const std::vector<std::filesystem::path>& files, double noise
     c2c::PreparedCloud prepared;
     const double all = seconds_of([&] { prepared = c2c::prepare_cloud(cloud, {}, k_run); });
     fmt::print("| {} | {:.3f} % | {:.2f} | {} | {} | {:.2f} | {} | {:.2f} |\n", file.filename().string(),
-               100.0 * errors.right, errors.median_deg, found.bodies, found.doubtful, seconds,
+               100.0 * errors.right, errors.median_deg, found.bodies, found.doubtful.size(), seconds,
                cloud.size() - prepared.cloud.size(), all);
   }
 }
@@ -118,7 +119,8 @@ void print_scans(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     const c2c::PointCloud cloud = scan(file, k_points);
     // Cleaning ignores normals, so the same points remain without them.
-    const c2c::PointCloud known = c2c::clean_cloud(cloud, c2c::estimate_scale(cloud, k_run), {}, k_run).cloud;
+    const c2c::CleanCloud cleaned = c2c::clean_cloud(cloud, c2c::estimate_scale(cloud, k_run), {}, k_run);
+    const c2c::PointCloud known = c2c::without_points(cleaned.cloud, cleaned.doubted);
     c2c::PointCloud plain = known;
     plain.normals = {};
     c2c::EstimatedNormals found;
@@ -126,7 +128,7 @@ void print_scans(const std::vector<std::filesystem::path>& files) {
         seconds_of([&] { found = c2c::estimate_normals(plain, c2c::estimate_scale(plain, k_run), k_run); });
     const NormalErrors errors = compare_normals(found.normals, known.normals);
     fmt::print("| {} | {:.3f} % | {:.2f} | {} | {} | {:.2f} |\n", file.filename().string(), 100.0 * errors.right,
-               errors.median_deg, found.doubtful, cloud.size() - known.size(), seconds);
+               errors.median_deg, found.doubtful.size(), cloud.size() - known.size(), seconds);
   }
 }
 
@@ -191,16 +193,16 @@ void print_cleaning(const std::vector<std::filesystem::path>& files, double nois
     c2c::CleanCloud clean;
     const c2c::Scale scale = c2c::estimate_scale(cloud, k_run);
     const double seconds = seconds_of([&] { clean = c2c::clean_cloud(cloud, scale, {}, k_run); });
+    const c2c::PointCloud sure = c2c::without_points(clean.cloud, clean.doubted);
     const auto left = [](const std::vector<double>& marks) {
       return static_cast<double>(std::count(marks.begin(), marks.end(), 1.0));
     };
     const auto far = static_cast<double>(std::count(is_far.begin(), is_far.end(), 1));
-    const double kept =
-        static_cast<double>(clean.cloud.size()) - left(clean.cloud.normals.x) - left(clean.cloud.normals.y);
+    const double kept = static_cast<double>(sure.size()) - left(sure.normals.x) - left(sure.normals.y);
     fmt::print("| {} | {:.2f} % | {:.2f} x true, {:.4f} | {:.2f} % | {:.3f} % | {:.2f} |\n", file.filename().string(),
-               100.0 - 100.0 * left(clean.cloud.normals.x) / far, scale.noise / sigma,
-               scale.spacing / box.diagonal().norm(), 100.0 - 100.0 * kept / k_points,
-               100.0 - 100.0 * static_cast<double>(alone.cloud.size()) / k_points, seconds);
+               100.0 - 100.0 * left(sure.normals.x) / far, scale.noise / sigma, scale.spacing / box.diagonal().norm(),
+               100.0 - 100.0 * kept / k_points,
+               100.0 - 100.0 * static_cast<double>(alone.cloud.size() - alone.doubted.size()) / k_points, seconds);
   }
 }
 

@@ -1,7 +1,7 @@
 # cloud2csg_test(stage [THREADS] [SLOW tests...] [EXTERNAL tests...] [LINK stages and libraries...])
 #
 # One test program a stage, from tests/<stage>/*.cpp. Its tests have labels:
-#   slow      takes seconds, or a minute with sanitizers: left out with them. Tests of other stages go the same ways.
+#   slow      takes seconds, or a minute with sanitizers: left out with them. Fast tests of other stages run the same code.
 #   external  needs a program that is not ours (OpenSCAD, FreeCAD, a browser, Python, gnuplot): run once, in release
 #   fast      all others
 #   threads   besides: works on several threads, or is stopped while it does; what the thread sanitizer is for. THREADS says that the

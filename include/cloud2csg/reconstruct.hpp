@@ -48,7 +48,8 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
 [[nodiscard]] ReconstructOptions with_seed(ReconstructOptions options, std::uint64_t seed);
 
 /// Cleans and orients the cloud, detects its surfaces, and chooses solids bounded by them with a tree: prepare_cloud(),
-/// detect_surfaces(), choose_solids(). Detection skips points on known primitives. The tree leaves out known primitives
+/// detect_surfaces(), choose_solids(). Doubted points that are then on no surface are left out as outliers. Detection
+/// skips points on known primitives. The tree leaves out known primitives
 /// that the points do not support, and a warning names them. The same seed gives the same result for any number of
 /// threads. A time limit that ends after the detection of surfaces gives the best solids so far, with a warning.
 /// @throws Error when the cloud has too few points, no surface or no inside was found, a known primitive is invalid or

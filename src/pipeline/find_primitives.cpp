@@ -8,7 +8,6 @@
 #include <numeric>
 #include <optional>
 #include <set>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -147,8 +146,9 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
 
   const std::optional<double>& tolerance = options.detection.distance_tolerance;
   if (tolerance) append(found.warnings, tolerance_warnings(*tolerance, found.prepared.scale.diagonal));
-  RestDetection rest = detect_rest(found.prepared.cloud, found.prepared.scale, options.known, options.detection, run);
-  std::tie(found.prepared, rest) = without_doubted(std::move(found.prepared), std::move(rest));
+  RestDetection all = detect_rest(found.prepared.cloud, found.prepared.scale, options.known, options.detection, run);
+  auto [prepared, rest] = without_doubted(std::move(found.prepared), std::move(all));
+  found.prepared = std::move(prepared);
   append(found.warnings, outlier_warnings(found.prepared.cleaning, cloud.size()));
   append(found.warnings, detection_warnings(rest, found.prepared));
   found.detection = std::move(rest.detection);

@@ -37,9 +37,8 @@ double distance_to_box(const Vector3d& place, const Vector3d& size) {
   return beyond.cwiseMax(0.0).norm() + std::min(0.0, beyond.maxCoeff());
 }
 
-TEST(CleanCloud, LeavesOutOrDoubtsUniformOutliers) {
-  const Vector3d size(1, 0.8, 0.4);
-  const double noise = 0.0015;
+/// A box, and as many outliers, which have no normals.
+PointCloud box_among_outliers(const Vector3d& size, double noise) {
   RandomStream random(3);
   PointCloud cloud;
   add_box(cloud, Vector3d::Zero(), size, 3000, false, random);
@@ -50,6 +49,14 @@ TEST(CleanCloud, LeavesOutOrDoubtsUniformOutliers) {
     cloud.positions.push_back(share.cwiseProduct(size));
     cloud.normals.push_back(Vector3d::Zero());
   }
+  return cloud;
+}
+
+TEST(CleanCloud, LeavesOutOrDoubtsUniformOutliers) {
+  const Vector3d size(1, 0.8, 0.4);
+  const double noise = 0.0015;
+  const PointCloud cloud = box_among_outliers(size, noise);
+  const std::size_t points = cloud.size() / 2;
   const auto count_far = [&](const PointCloud& some) {
     double far = 0.0;
     for (std::size_t i = 0; i < some.size(); ++i) {
@@ -64,6 +71,24 @@ TEST(CleanCloud, LeavesOutOrDoubtsUniformOutliers) {
   for (std::size_t i = 0; i < sure.size(); ++i) outliers += sure.normals[i].isZero() ? 1 : 0;
   EXPECT_GT(sure.size() - outliers, points - points / 100);
   EXPECT_EQ(clean.report.isolated + clean.report.off_surface, cloud.size() - clean.cloud.size());
+}
+
+TEST(CleanCloud, ThinsDoubtedPointsFirst) {
+  const PointCloud cloud = box_among_outliers({1, 0.8, 0.4}, 0.0015);
+  const Scale scale = estimate_scale(cloud);
+  const std::size_t sure = clean_cloud(cloud, scale).cloud.size() - clean_cloud(cloud, scale).doubted.size();
+  const CleanCloud thin = clean_cloud(cloud, scale, {.point_budget = sure / 2});
+  EXPECT_LE(thin.cloud.size() - thin.doubted.size(), sure / 2);
+  EXPECT_GT(thin.cloud.size() - thin.doubted.size(), sure / 3);
+}
+
+TEST(PrepareCloud, KeepsGoodNormalsAmongOutliers) {
+  PointCloud cloud = box_among_outliers({1, 0.8, 0.4}, 0.0015);
+  RandomStream random(4);
+  for (std::size_t i = cloud.size() / 2; i < cloud.size(); ++i) {
+    cloud.normals.set(i, Vector3d(random.normal(), random.normal(), random.normal()).normalized());
+  }
+  EXPECT_FALSE(prepare_cloud(cloud).normals_estimated);
 }
 
 /// Its points are on no plane of their neighbours, but dense.

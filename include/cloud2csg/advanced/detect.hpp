@@ -25,7 +25,8 @@ void option_table(OptionsOf<DetectOptions>, auto&& field) {
   using O = DetectOptions;
   field(&O::distance_tolerance, "distance_tolerance",
         "Largest distance of points from their surface, in the cloud's units. With the default, the facets of a coarse "
-        "mesh count as the round surface that they approximate.",
+        "mesh count as the round surface that they approximate. A given value counts as three times the noise: nearer "
+        "surfaces of one kind are one.",
         above(0),
         {.absent = "3 x the measured noise, at least 0.15 % of the diagonal", .unit = "D", .option = "tolerance"});
   field(&O::angle_tolerance_deg, "angle_tolerance_deg",

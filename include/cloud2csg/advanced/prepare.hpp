@@ -49,21 +49,21 @@ void option_table(OptionsOf<CleanOptions>, auto&& field) {
 struct CleanReport {
   std::size_t duplicates = 0;   ///< at exactly the same place as another point
   std::size_t isolated = 0;     ///< far from all others
-  std::size_t off_surface = 0;  ///< near others, but on none of their local planes
+  std::size_t off_surface = 0;  ///< near others, but on none of their local planes, or doubted and on no surface
   std::size_t thinned = 0;      ///< removed by down-sampling to the budget
 };
 
 struct CleanCloud {
   PointCloud cloud;  ///< remaining points in the order of the input, with normals and sensor positions
   CleanReport report;
-  /// Ascending indices of points that are on no plane of their neighbours, but as densely surrounded as a surface: of a
-  /// small round feature, or outliers beside a face. Whoever knows the surfaces can tell.
+  /// Ascending indices of points that are on no plane of their neighbours, but as densely surrounded as a surface. They
+  /// belong to a small round feature or are outliers beside a face. Only the surfaces tell.
   std::vector<std::uint32_t> doubted = {};
 };
 
 /// Leaves out repeated points, outliers, and points beyond the budget. An outlier is a point that few of its
 /// neighbours' local planes pass through (within three times the noise), so sparse regions, thin walls and edges stay.
-/// Other points as densely surrounded as a surface stay, too, as `doubted`. If the first pass finds many outliers,
+/// Outliers as densely surrounded as a surface are only `doubted`. If the first pass finds many outliers,
 /// later passes are stricter with distant points and with planes, since some planes arise by chance. With as many
 /// uniform outliers as points, 94 % or more of those off the surface go or are doubted. Thinning keeps one point per
 /// voxel. Voxels are at most three spacings or four times the noise wide, so the result may exceed the budget. O(n log
@@ -74,10 +74,10 @@ struct CleanCloud {
 
 /// Normals from positions, with the certainty of their orientation.
 struct EstimatedNormals {
-  Points normals;            ///< unit length, out of the solid
-  std::size_t bodies = 0;    ///< parts not connected by neighbours; 0 with sensors
-  std::size_t doubtful = 0;  ///< points whose neighbours or winding number contradict their orientation
-  Eigen::Vector3d doubtful_at = Eigen::Vector3d::Zero();
+  Points normals;          ///< unit length, out of the solid
+  std::size_t bodies = 0;  ///< parts not connected by neighbours; 0 with sensors
+  /// Points whose neighbours or winding number contradict their orientation, ascending.
+  std::vector<std::uint32_t> doubtful = {};
 };
 
 /// Estimates normals from robust local planes, which follow the faces at edges, and orients them out of the material:
@@ -121,7 +121,7 @@ void option_table(OptionsOf<PrepareOptions>, auto&& field) {
 
 struct PreparedCloud {
   PointCloud cloud;  ///< with outward normals
-  Scale scale;       ///< scale of the cleaned cloud
+  Scale scale;       ///< scale of the cleaned cloud without the doubted points
   CleanReport cleaning;
   std::vector<std::uint32_t> doubted = {};  ///< as in CleanCloud
   bool normals_estimated = false;

@@ -23,8 +23,8 @@ struct Agreement {
 
 /// Limits within which a point lies on a surface.
 struct AgreementLimits {
-  double distance;         ///< greatest absolute value: the noise, or the form error, such as that of facets
-  double noise;            ///< standard deviation of exact surfaces; at most `distance`
+  double distance;         ///< greatest absolute value, for the noise and a form error, such as that of facets
+  double noise;            ///< standard deviation of the points of an exact surface; at most `distance`
   double cosine;           ///< least value
   double most_radius = 3;  ///< in a cloud of diagonal 1; a larger surface counts as flat
 

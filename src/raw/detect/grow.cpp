@@ -148,10 +148,11 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
     const double reach = reach_of(*fitted, points.cloud(), seen, limits.agreement);
     best = {.surface = *fitted, .points = seen, .support = support, .reach = reach};
   }
-  if (best.reach < limits.agreement.distance) {
+  if (!best.points.empty() && best.reach < limits.agreement.distance) {
     SearchLimits own = limits;
     own.agreement.distance = best.reach;
     best.points = connected_points(best.surface, points, own);
+    best.support = support_by(best.points, best.surface, points, limits.agreement);
   }
   return best.points.empty() ? std::nullopt : std::optional(std::move(best));
 }

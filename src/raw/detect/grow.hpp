@@ -39,7 +39,7 @@ struct GrownSurface {
 [[nodiscard]] double preference(SurfaceType type);
 
 /// Alternates between taking the connected agreeing points and fitting to them, while the points increase. Absent if
-/// there are fewer than the limit. O(free points)
+/// there are fewer than the limit. The points are those within the surface's reach. O(free points)
 [[nodiscard]] std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints& points,
                                                        const SearchLimits& limits);
 

@@ -57,17 +57,16 @@ double mean_agreement(const Points& places, const Points& normals, std::size_t i
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-/// Counts points whose neighbours or (without sensors) winding number contradict them. Records the median one's place.
-void count_doubtful(EstimatedNormals& result, const Points& places, const Points& normals,
-                    const NeighbourTable& neighbours, const std::vector<char>& is_doubtful) {
+/// Entries whose neighbours or (without sensors) winding number contradict them.
+std::vector<std::uint32_t> contradicted(const Points& places, const Points& normals, const NeighbourTable& neighbours,
+                                        const std::vector<char>& is_doubtful) {
   std::vector<std::uint32_t> doubtful;
   for (std::uint32_t i = 0; i < places.size(); ++i) {
     const std::span<const std::uint32_t> near = neighbours.of(i).first(std::min(k_doubt_links, neighbours.width));
     const bool is_contradicted = !is_doubtful.empty() && is_doubtful[i] != 0;
     if (is_contradicted || mean_agreement(places, normals, i, near) < 0.0) doubtful.push_back(i);
   }
-  result.doubtful = doubtful.size();
-  if (!doubtful.empty()) result.doubtful_at = places[doubtful[doubtful.size() / 2]];
+  return doubtful;
 }
 
 /// Uses sensor positions if the cloud has them, else the whole surface.
@@ -106,8 +105,10 @@ EstimatedNormals orient_fits(const PointCloud& cloud, const LocalFits& fits, con
     if (orientation.flipped[i] != 0) normals.set(i, -normals[i]);
   }
   result.bodies = orientation.bodies;
-  count_doubtful(result, places, normals, fits.neighbours, orientation.is_doubtful);
-  result.doubtful_at += fits.centre;
+  for (const std::uint32_t i : contradicted(places, normals, fits.neighbours, orientation.is_doubtful)) {
+    result.doubtful.push_back(fits.order[i]);
+  }
+  std::sort(result.doubtful.begin(), result.doubtful.end());
   for (std::size_t i = 0; i < cloud.size(); ++i) result.normals.set(fits.order[i], normals[i]);
   share.report(run, 1);
   return result;

@@ -150,36 +150,46 @@ KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, con
   return result;
 }
 
-/// The first point of each voxel, in the order of the points.
-Indices one_a_voxel(const Points& points, const Indices& kept, double width) {
+/// The first point of each voxel, a sure one where there is any.
+KeptPoints one_a_voxel(const Points& points, const KeptPoints& kept, double width) {
   using Key = std::array<std::int64_t, 3>;
-  std::vector<std::pair<Key, std::uint32_t>> entries;
-  entries.reserve(kept.size());
-  for (const std::uint32_t i : kept) {
-    const Vector3d cell = (points[i] / width).array().floor();
-    entries.emplace_back(Key{static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
-                             static_cast<std::int64_t>(cell.z())},
-                         i);
-  }
+  std::vector<std::tuple<Key, bool, std::uint32_t>> entries;
+  entries.reserve(kept.sure.size() + kept.doubted.size());
+  const auto enter = [&](const Indices& indices, bool is_doubted) {
+    for (const std::uint32_t i : indices) {
+      const Vector3d cell = (points[i] / width).array().floor();
+      entries.emplace_back(Key{static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
+                               static_cast<std::int64_t>(cell.z())},
+                           is_doubted, i);
+    }
+  };
+  enter(kept.sure, false);
+  enter(kept.doubted, true);
   std::sort(entries.begin(), entries.end());
-  Indices result;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (i == 0 || entries[i].first != entries[i - 1].first) result.push_back(entries[i].second);
+  KeptPoints result = kept;
+  result.sure.clear();
+  result.doubted.clear();
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const auto& [cell, is_doubted, i] = entries[k];
+    if (k == 0 || cell != std::get<Key>(entries[k - 1])) (is_doubted ? result.doubted : result.sure).push_back(i);
   }
-  std::sort(result.begin(), result.end());
+  std::sort(result.sure.begin(), result.sure.end());
+  std::sort(result.doubted.begin(), result.doubted.end());
   return result;
 }
 
-Indices thinned(const Points& points, Indices kept, const Scale& scale, std::size_t budget, const RunContext& run) {
-  if (kept.size() <= budget) return kept;
+/// The budget is that of the sure points: most of the others may be left out later.
+KeptPoints thinned(const Points& points, KeptPoints kept, const Scale& scale, std::size_t budget,
+                   const RunContext& run) {
+  if (kept.sure.size() <= budget) return kept;
   const double widest = std::max(k_widest_voxel_spacings * scale.spacing, k_widest_voxel_noise * scale.noise);
-  double width = scale.spacing * std::sqrt(static_cast<double>(kept.size()) / static_cast<double>(budget));
+  double width = scale.spacing * std::sqrt(static_cast<double>(kept.sure.size()) / static_cast<double>(budget));
   while (true) {
     run.throw_if_stopped();
     width = std::min(width, widest);
-    Indices result = one_a_voxel(points, kept, width);
-    if (result.size() <= budget || width >= widest) return result;
-    width *= 1.02 * std::sqrt(static_cast<double>(result.size()) / static_cast<double>(budget));
+    KeptPoints result = one_a_voxel(points, kept, width);
+    if (result.sure.size() <= budget || width >= widest) return result;
+    width *= 1.02 * std::sqrt(static_cast<double>(result.sure.size()) / static_cast<double>(budget));
   }
 }
 
@@ -249,10 +259,11 @@ CleanCloud clean_cloud(const PointCloud& cloud, const Scale& scale, const CleanO
   if (options.remove_outliers) kept = without_outliers(local.points, std::move(kept.sure), scale, run);
   report.isolated = kept.isolated;
   report.off_surface = kept.off_surface;
-  const Indices all = both(kept);
-  const Indices thin = thinned(local.points, all, scale, options.point_budget, run);
-  report.thinned = all.size() - thin.size();
-  return {.cloud = select_points(cloud, thin), .report = report, .doubted = places_in(thin, kept.doubted)};
+  const std::size_t before = kept.sure.size() + kept.doubted.size();
+  kept = thinned(local.points, std::move(kept), scale, options.point_budget, run);
+  const Indices left = both(kept);
+  report.thinned = before - left.size();
+  return {.cloud = select_points(cloud, left), .report = report, .doubted = places_in(left, kept.doubted)};
 }
 
 }  // namespace cloud2csg

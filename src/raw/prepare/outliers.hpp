@@ -23,8 +23,8 @@ enum class Verdict : std::uint8_t { stays, isolated, off_surface };
 /// Whether each point of the cloud is as densely surrounded as most points of surfaces. O(n)
 [[nodiscard]] std::vector<bool> dense_points(const LocalFits& fits, const Scale& scale);
 
-/// What the verdicts leave of a cloud, as indices into it. Doubted: on none of its neighbours' planes, but dense. The
-/// points of a small bore look like this, and so does an outlier beside a face; only surfaces can tell.
+/// What the verdicts leave of a cloud, as indices into it. A doubted point is on none of its neighbours' planes, but
+/// dense. The points of a small bore look like this, and so does an outlier beside a face; only surfaces can tell.
 struct KeptPoints {
   std::vector<std::uint32_t> sure, doubted;   ///< ascending
   std::size_t isolated = 0, off_surface = 0;  ///< left out

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -32,9 +34,9 @@ void turn(Points& normals) {
   }
 }
 
-/// Keeps the given normals if they are good, and returns whether they are.
-bool keep_given_normals(PreparedCloud& prepared, const RunContext& run) {
-  switch (check_normals(prepared.cloud, prepared.scale, run)) {
+/// Keeps the given normals if those of the sure points are good, and returns whether they are.
+bool keep_given_normals(PreparedCloud& prepared, const PointCloud& sure, const RunContext& run) {
+  switch (check_normals(sure, prepared.scale, run)) {
     case NormalsVerdict::outward:
       return true;
     case NormalsVerdict::inward:
@@ -48,15 +50,20 @@ bool keep_given_normals(PreparedCloud& prepared, const RunContext& run) {
   return false;
 }
 
-void warn_of_normals(PreparedCloud& prepared, const EstimatedNormals& estimated) {
+/// `doubted`: points that may yet be left out, so that their normals do not count.
+void warn_of_normals(PreparedCloud& prepared, const PointCloud& cloud, const EstimatedNormals& estimated,
+                     std::span<const std::uint32_t> doubted) {
   prepared.normals_estimated = true;
-  const std::size_t points = prepared.cloud.size();
-  if (static_cast<double>(estimated.doubtful) > k_much_doubt * static_cast<double>(points)) {
+  std::vector<std::uint32_t> doubtful;
+  std::set_difference(estimated.doubtful.begin(), estimated.doubtful.end(), doubted.begin(), doubted.end(),
+                      std::back_inserter(doubtful));
+  const std::size_t points = cloud.size() - doubted.size();
+  if (static_cast<double>(doubtful.size()) > k_much_doubt * static_cast<double>(points)) {
     prepared.warnings.push_back(
         fmt::format("The orientation of the normals is doubtful for {:.3g} % of the points, near {}: give sensor "
                     "positions or normals if you have them.",
-                    100.0 * static_cast<double>(estimated.doubtful) / static_cast<double>(points),
-                    place_text(estimated.doubtful_at, prepared.scale.diagonal)));
+                    100.0 * static_cast<double>(doubtful.size()) / static_cast<double>(points),
+                    place_text(cloud.positions[doubtful[doubtful.size() / 2]], prepared.scale.diagonal)));
   }
 }
 
@@ -101,7 +108,7 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
   prepared.cleaning.isolated = kept.isolated;
   prepared.cleaning.off_surface = kept.off_surface;
   warn_of_noise(prepared);
-  warn_of_normals(prepared, estimated);
+  warn_of_normals(prepared, cloud, estimated, kept.doubted);
   return true;
 }
 
@@ -126,13 +133,13 @@ PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& optio
   if (is_much(cloud.size() - sure.size(), cloud.size())) prepared.scale = estimate_scale(sure, run);
   warn_of_noise(prepared);
   prepared.clean_seconds = watch.lap();
-  const bool are_good = has_given_normals && keep_given_normals(prepared, run);
+  const bool are_good = has_given_normals && keep_given_normals(prepared, sure, run);
   prepared.normals_seconds = watch.seconds();
   if (are_good) return prepared;
   EstimatedNormals estimated = estimate_normals(prepared.cloud, prepared.scale, run);
   prepared.cloud.normals = std::move(estimated.normals);
   prepared.normals_seconds = watch.seconds();
-  warn_of_normals(prepared, estimated);
+  warn_of_normals(prepared, prepared.cloud, estimated, prepared.doubted);
   return prepared;
 }
 
