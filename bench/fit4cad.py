@@ -36,26 +36,10 @@ def pieces_of(points, spacing):
     return [piece for piece in pieces if len(piece) >= min(LEAST_POINTS, len(points))]
 
 
-def distances(surface, positions):
-    """From the surface, without its sign."""
-    v = positions - surface.position
-    if surface.type == "plane":
-        return np.abs(v @ surface.axis)
-    if surface.type == "sphere":
-        return np.abs(np.linalg.norm(v, axis=1) - surface.radius)
-    height = v @ surface.axis
-    across = np.linalg.norm(v - np.outer(height, surface.axis), axis=1)
-    if surface.type == "cylinder":
-        return np.abs(across - surface.radius)
-    if surface.type == "cone":
-        return np.abs(across * np.cos(surface.half_angle) - height * np.sin(surface.half_angle))
-    return np.abs(np.hypot(across - surface.radius, height) - surface.minor_radius)
-
-
 def with_edges(surface, piece, positions, tree, spacing, exact):
     """The piece and the points beside it that lie on the surface, too: in the truth, an edge belongs to both its faces."""
     beside = np.unique(np.concatenate(tree.query_ball_point(positions[piece], LINK_SPACINGS * spacing)).astype(int))
-    on = beside[distances(surface, positions[beside]) <= max(3 * surface.rms, exact)]
+    on = beside[np.abs(surface.distance(positions[beside])) <= max(3 * surface.rms, exact)]
     return np.union1d(piece, on)
 
 

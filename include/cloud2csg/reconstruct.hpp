@@ -49,9 +49,9 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
 
 /// Cleans and orients the cloud, detects its surfaces, and chooses solids bounded by them with a tree: prepare_cloud(),
 /// detect_surfaces(), choose_solids(). Doubted points that are then on no surface are left out as outliers. Detection
-/// skips points on known primitives. The tree leaves out known primitives
-/// that the points do not support, and a warning names them. The same seed gives the same result for any number of
-/// threads. A time limit that ends after the detection of surfaces gives the best solids so far, with a warning.
+/// skips points on known primitives. The tree leaves out known primitives that the points do not support, and a warning
+/// names them. The same seed gives the same result for any number of threads. A time limit that ends after the
+/// detection of surfaces gives the best solids so far, with a warning.
 /// @throws Error when the cloud has too few points, no surface or no inside was found, a known primitive is invalid or
 /// has the id of another, or the extraction's time limit ends before surfaces were found; Cancelled.
 [[nodiscard]] Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},

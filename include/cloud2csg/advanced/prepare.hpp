@@ -63,11 +63,11 @@ struct CleanCloud {
 
 /// Leaves out repeated points, outliers, and points beyond the budget. An outlier is a point that few of its
 /// neighbours' local planes pass through (within three times the noise), so sparse regions, thin walls and edges stay.
-/// Outliers as densely surrounded as a surface are only `doubted`. If the first pass finds many outliers,
-/// later passes are stricter with distant points and with planes, since some planes arise by chance. With as many
-/// uniform outliers as points, 94 % or more of those off the surface go or are doubted. Thinning keeps one point per
-/// voxel. Voxels are at most three spacings or four times the noise wide, so the result may exceed the budget. O(n log
-/// n)
+/// Outliers as densely surrounded as a surface are only `doubted`. If the first pass finds many outliers, later passes
+/// are stricter with distant points and with planes, since some planes arise by chance. With as many uniform outliers
+/// as points, 94 % or more of those off the surface go or are doubted. Thinning keeps one point per voxel. Voxels are
+/// at most three spacings or four times the noise wide, and the budget is that of points that are not doubted, so the
+/// result may exceed it. O(n log n)
 /// @throws Error for a budget of 0; Cancelled.
 [[nodiscard]] CleanCloud clean_cloud(const PointCloud& cloud, const Scale& scale, const CleanOptions& options = {},
                                      const RunContext& run = {});

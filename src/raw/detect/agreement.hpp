@@ -21,6 +21,9 @@ struct Agreement {
   double distance, cosine;
 };
 
+/// Of normally distributed points, 1 in 370 is more standard deviations off its surface.
+constexpr double k_deviations = 3;
+
 /// Limits within which a point lies on a surface.
 struct AgreementLimits {
   double distance;         ///< greatest absolute value, for the noise and a form error, such as that of facets

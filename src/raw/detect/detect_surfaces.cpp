@@ -268,12 +268,10 @@ DetectedSurface detected(const GrownSurface& grown, const WorkCloud& work) {
   return result;
 }
 
-constexpr double k_noise_factor = 3;
-
 /// The noise that tells surfaces apart. Files give at least five digits, so less counts as exact.
 double detection_noise(const DetectOptions& options, const Scale& scale) {
   constexpr double k_exact_share = 1e-5;
-  if (options.distance_tolerance) return *options.distance_tolerance / k_noise_factor;
+  if (options.distance_tolerance) return *options.distance_tolerance / k_deviations;
   return std::max(scale.noise, k_exact_share * scale.diagonal);
 }
 
@@ -316,7 +314,7 @@ std::size_t detection_least_points(const DetectOptions& options, std::size_t poi
 
 double detection_tolerance(const DetectOptions& options, const Scale& scale) {
   constexpr double k_least_share = 0.0015;
-  return options.distance_tolerance.value_or(std::max(k_noise_factor * scale.noise, k_least_share * scale.diagonal));
+  return options.distance_tolerance.value_or(std::max(k_deviations * scale.noise, k_least_share * scale.diagonal));
 }
 
 Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const DetectOptions& options,

@@ -44,8 +44,6 @@ DisjointSets join_cubes(const std::vector<std::uint64_t>& cubes) {
   return groups;
 }
 
-constexpr double k_deviations = 3;  // of normally distributed points, 1 in 370 is farther
-
 /// This many points suffice to fit a surface.
 constexpr std::size_t k_sample = 400;
 
@@ -150,7 +148,7 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
   }
   if (!best.points.empty() && best.reach < limits.agreement.distance) {
     SearchLimits own = limits;
-    own.agreement.distance = best.reach;
+    own.agreement = limits.agreement.within(best.reach);
     best.points = connected_points(best.surface, points, own);
     best.support = support_by(best.points, best.surface, points, limits.agreement);
   }
