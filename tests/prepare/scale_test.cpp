@@ -4,6 +4,7 @@
 
 #include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/random.hpp"
 #include "prepare/clouds.hpp"
 
 namespace cloud2csg {
@@ -28,6 +29,18 @@ TEST(EstimateScale, FindsTheNoiseOfModelsWithEdges) {
       EXPECT_NEAR(scale.noise / (noise * scale.diagonal), 1.0, 0.3) << name << ' ' << noise;
     }
   }
+}
+
+/// A tube whose wall is thinner than the distance of its points: of each neighbourhood, half is on the other side.
+TEST(EstimateScale, SeesNoNoiseInAThinWall) {
+  PointCloud tube;
+  RandomStream random(3);
+  for (int i = 0; i < 20'000; ++i) {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const double radius = i % 2 == 0 ? 1.0 : 1.03;
+    tube.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), random.uniform(-1, 1)});
+  }
+  EXPECT_LT(estimate_scale(tube).noise, 1e-4);
 }
 
 TEST(EstimateScale, FindsTheSpacing) {

@@ -26,20 +26,25 @@ constexpr std::size_t k_check_sample = 2048;
 constexpr std::size_t k_check_field = 16'384;  ///< points whose winding numbers separate inside from outside
 constexpr std::uint64_t k_field_stage = 0x6669'656c'64;
 constexpr double k_inward_level = -0.2;  ///< mean winding number on the surface; inward normals give less
-constexpr double k_wall_cosine = 0.7;    ///< least, between opposed normals on the two sides of a wall
+constexpr double k_wall_cosine = 0.7;    ///< least, between normals on the two sides of a wall
 constexpr double k_wall_rise = 0.35;     ///< least sine of the step across a wall
 constexpr std::uint64_t k_check_stage = 0x6e6f'726d;
 
-/// Whether the normals of most neighbours are on the same side. Ignores neighbours across a thin wall: beside the point
-/// along its normal, with the opposite normal.
+/// Whether the normals of most neighbours are on the same side. A neighbour across a thin wall, above or below the point
+/// along its normal, must have the opposite normal. Within three deviations of the noise, the wall may be chance.
 bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::size_t i,
-                            std::span<const std::uint32_t> near) {
+                            std::span<const std::uint32_t> near, double noise) {
   double votes = 0.0;
   for (const std::uint32_t j : near) {
     const double cosine = cloud.normals[i].dot(cloud.normals[j]);
     const Eigen::Vector3d step = places[j] - places[i];
-    const bool is_across = cosine < -k_wall_cosine && std::abs(step.dot(cloud.normals[i])) > k_wall_rise * step.norm();
-    if (!is_across) votes += cosine > 0.0 ? 1.0 : -1.0;
+    const double rise = std::abs(step.dot(cloud.normals[i]));
+    const bool is_across = std::abs(cosine) > k_wall_cosine && rise > k_wall_rise * step.norm();
+    if (!is_across) {
+      votes += cosine > 0.0 ? 1.0 : -1.0;
+    } else if (cosine > 0.0) {
+      votes += rise > 3.0 * noise ? -1.0 : 1.0;
+    }
   }
   return votes >= 0.0;
 }
@@ -140,7 +145,7 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
     const LocalPlane plane = fit_local_plane(local.points, i, near, tolerance);
     const double cosine = std::abs(plane.normal.dot(cloud.normals[i]));
     across += cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0) ? 1 : 0;
-    alike += agrees_with_neighbours(cloud, local.points, i, near) ? 1 : 0;
+    alike += agrees_with_neighbours(cloud, local.points, i, near, scale.noise) ? 1 : 0;
   }
   run.throw_if_stopped();
   const auto count = static_cast<double>(checked);

@@ -4,6 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
@@ -21,6 +23,7 @@ constexpr double k_most_neighbours = 96.0;
 constexpr double k_neighbours_a_noise = 60.0;
 constexpr int k_trials = 16;
 constexpr int k_refinements = 3;
+constexpr double k_tukey = 4.685;  // deviations beyond which the biweight is zero: 95 % efficient for normal noise
 /// In tolerances: with less deviation there is only one plane.
 constexpr double k_flat = 0.5;
 constexpr std::uint64_t k_trial_stage = 0x706c'616e'65;
@@ -70,6 +73,17 @@ double truncated_cost(const Places& places, const Plane& plane, double tolerance
   return cost;
 }
 
+/// Through three of the places, in every second trial through the central one, which is the first.
+std::optional<Plane> plane_of_trial(const Places& places, int trial, RandomStream& random) {
+  const Vector3d& a = places[random.below(places.size())];
+  const Vector3d& b = places[random.below(places.size())];
+  const Vector3d& c = trial % 2 == 0 ? places[random.below(places.size())] : places[0];
+  const Vector3d normal = (b - a).cross(c - a);
+  const double length = normal.norm();
+  if (!(length > 0.05 * (b - a).norm() * (c - a).norm())) return std::nullopt;
+  return Plane{a, normal / length};
+}
+
 /// The best plane through three of the places. The central point (the origin) must be near it.
 Plane best_of_trials(const Places& places, const Plane& start, double tolerance, RandomStream& random) {
   Plane best = start;
@@ -77,20 +91,40 @@ Plane best_of_trials(const Places& places, const Plane& start, double tolerance,
   double least = std::abs(start.height(Vector3d::Zero())) > tolerance ? static_cast<double>(places.size())
                                                                       : truncated_cost(places, start, tolerance);
   for (int trial = 0; trial < k_trials; ++trial) {
-    const Vector3d& a = places[random.below(places.size())];
-    const Vector3d& b = places[random.below(places.size())];
-    const Vector3d& c = trial % 2 == 0 ? places[random.below(places.size())] : places[0];
-    const Vector3d normal = (b - a).cross(c - a);
-    const double length = normal.norm();
-    if (!(length > 0.05 * (b - a).norm() * (c - a).norm())) continue;
-    const Plane plane{a, normal / length};
-    if (std::abs(plane.height(Vector3d::Zero())) > tolerance) continue;
-    const double cost = truncated_cost(places, plane, tolerance);
+    const std::optional<Plane> plane = plane_of_trial(places, trial, random);
+    if (!plane || std::abs(plane->height(Vector3d::Zero())) > tolerance) continue;
+    const double cost = truncated_cost(places, *plane, tolerance);
     if (cost < least) {
       least = cost;
-      best = plane;
+      best = *plane;
     }
   }
+  return best;
+}
+
+struct HalfPlane {
+  Plane plane;
+  double deviation;
+};
+
+/// The plane through three of the places with the least median distance (least median of squares: Rousseeuw 1984). Half
+/// of the places determine it, so it follows one side of a wall that is thinner than the neighbourhood.
+HalfPlane plane_of_half(const Places& places, RandomStream& random) {
+  Moments moments;
+  for (const Vector3d& place : places) moments.add(place, 1.0);
+  HalfPlane best{.plane = moments.plane(), .deviation = std::numeric_limits<double>::infinity()};
+  std::vector<double> heights(places.size());
+  const auto consider = [&](const Plane& plane) {
+    for (std::size_t i = 0; i < places.size(); ++i) heights[i] = std::abs(plane.height(places[i]));
+    const double deviation = robust_deviation(heights);
+    if (deviation < best.deviation) best = {.plane = plane, .deviation = deviation};
+  };
+  consider(best.plane);
+  for (int trial = 0; trial < k_trials; ++trial) {
+    if (const std::optional<Plane> plane = plane_of_trial(places, trial, random)) consider(*plane);
+  }
+  // Three points fit a small sample better than its truth does (Rousseeuw and Leroy 1987, chapter 5).
+  best.deviation *= 1.0 + 5.0 / static_cast<double>(places.size() - 3);
   return best;
 }
 
@@ -188,9 +222,10 @@ LocalFits fit_locally(const PointCloud& cloud, std::size_t width, double noise, 
 
 double quadric_deviation(const Points& points, std::span<const std::uint32_t> indices) {
   const Vector3d first = points[indices[0]];
-  Moments moments;
-  for (const std::uint32_t i : indices) moments.add(points[i] - first, 1.0);
-  const Plane plane = moments.plane();
+  Places around;
+  for (const std::uint32_t i : indices) around.emplace_back(points[i] - first);
+  RandomStream random(0, k_trial_stage, indices[0]);
+  const auto [plane, start] = plane_of_half(around, random);
   const Vector3d u = plane.normal.unitOrthogonal();
   const Vector3d v = plane.normal.cross(u);
   double radius = 0.0;
@@ -203,7 +238,7 @@ double quadric_deviation(const Points& points, std::span<const std::uint32_t> in
   }
   std::vector<double> residuals(places.size());
   Vector6d quadric = Vector6d::Zero();
-  double reach = 1e300;
+  double reach = std::max(k_tukey * start / radius, 1e-14);
   double deviation = 0.0;
   for (int step = 0; step <= k_refinements; ++step) {
     Matrix6d normal_matrix = 1e-12 * Matrix6d::Identity();
@@ -211,7 +246,7 @@ double quadric_deviation(const Points& points, std::span<const std::uint32_t> in
     for (const Vector3d& place : places) {
       const Vector6d terms = monomials(place.x(), place.y());
       const double ratio = (place.z() - quadric.dot(terms)) / reach;
-      const double rest = step == 0 ? 1.0 : std::max(0.0, 1.0 - ratio * ratio);
+      const double rest = std::max(0.0, 1.0 - ratio * ratio);
       normal_matrix += rest * rest * terms * terms.transpose();
       right += rest * rest * place.z() * terms;
     }
@@ -220,7 +255,7 @@ double quadric_deviation(const Points& points, std::span<const std::uint32_t> in
       residuals[i] = std::abs(places[i].z() - quadric.dot(monomials(places[i].x(), places[i].y())));
     }
     deviation = robust_deviation(residuals);
-    reach = std::max(4.685 * deviation, 1e-14);
+    reach = std::max(k_tukey * deviation, 1e-14);
   }
   const auto count = static_cast<double>(places.size());
   return radius * deviation * std::sqrt(count / (count - 6.0));
