@@ -183,13 +183,11 @@ RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const Pri
   if (known.empty()) return {.known = {}, .detection = detect_surfaces(cloud, scale, options, run)};
   RestDetection result{.known = deal_points(cloud, known, tolerances_of(options, scale), run), .detection = {}};
   const std::vector<std::uint32_t> rest = points_of_none(result.known, cloud.size());
-  DetectOptions of_rest = options;
-  of_rest.least_points = detection_least_points(options, cloud.size());
   if (rest.empty()) {
     result.detection.distance_tolerance = detection_tolerance(options, scale);
     return result;
   }
-  result.detection = detect_surfaces(select_points(cloud, rest), scale, of_rest, run);
+  result.detection = detect_surfaces(select_points(cloud, rest), scale, options, run);
   for (DetectedSurface& surface : result.detection.surfaces) {
     for (std::uint32_t& i : surface.points) i = rest[i];
   }

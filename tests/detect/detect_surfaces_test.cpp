@@ -223,6 +223,54 @@ TEST(DetectSurfaces, SharesThePointsOut) {
   EXPECT_EQ(static_cast<std::size_t>(std::count(owners.begin(), owners.end(), 0)), detection.unexplained);
 }
 
+/// A boss of three rows of points, between a disc and the plate around it. The first and the last row lie on the
+/// planes; the normals of the other are useless, as are those that are estimated from twenty neighbours.
+TEST(DetectSurfaces, FindsANarrowBandBetweenTwoFaces) {
+  constexpr double k_row = 0.13;  // about the distance of the points in a row
+  PointCloud cloud;
+  RandomStream random(2);
+  const auto ring = [&](double radius, double height) {
+    const int count = std::max(1, static_cast<int>(2 * std::numbers::pi * radius / k_row));
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.37 * height) / count;
+      cloud.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), height});
+      cloud.normals.push_back(height == k_row ? test::random_direction(random) : Eigen::Vector3d::UnitZ());
+    }
+  };
+  for (int k = 0; k <= 8; ++k) ring(k * k_row, 2 * k_row);
+  ring(8 * k_row, k_row);
+  for (int k = 8; k <= 30; ++k) ring(k * k_row, 0);
+  const Detection detection = detect(cloud, 0);
+  const std::vector<Surface> bands = by_radius(detection, SurfaceType::cylinder);
+  ASSERT_EQ(bands.size(), 1U);
+  EXPECT_NEAR(bands[0].radius, 8 * k_row, 1e-6);
+  EXPECT_FALSE(bands[0].concave);
+  EXPECT_EQ(detection.surfaces.size(), 3U);
+  EXPECT_EQ(detection.unexplained, 0U);
+}
+
+/// Sixteen points of an exact surface are no chance; in noise that exceeds the spacing, they are.
+TEST(DetectSurfaces, NeedsMorePointsInMoreNoise) {
+  const auto patch = [](double noise) {
+    RandomStream random(5);
+    PointCloud cloud;
+    const auto add = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+      cloud.positions.push_back(position + noise * random.normal() * normal);
+      cloud.normals.push_back(normal);
+    };
+    for (int i = 0; i < 2000; ++i) add({random.uniform(-1, 1), random.uniform(-1, 1), 0}, {0, 0, 1});
+    for (int i = 0; i < 16; ++i) add({random.uniform(0.9, 1), 1.1, random.uniform(0.2, 0.3)}, {0, 1, 0});
+    return cloud;
+  };
+  const auto found = [&](double noise) {
+    const PointCloud cloud = patch(noise);
+    const Scale scale{.box = bounds_of(cloud.positions), .diagonal = 2.9, .spacing = 0.045, .noise = noise};
+    return detect_surfaces(cloud, scale).surfaces.size();
+  };
+  EXPECT_EQ(found(0), 2U);
+  EXPECT_EQ(found(0.02), 1U);
+}
+
 TEST(DetectSurfaces, FindsNothingInAFogOfPoints) {
   RandomStream random(9);
   PointCloud cloud;

@@ -33,8 +33,9 @@ void option_table(OptionsOf<DetectOptions>, auto&& field) {
         "Largest angle between the normals of points and of their surface, in degrees. Generous: estimated normals are "
         "off by 10 degrees, and those of facets by 6.",
         above_to(0, 90), {.unit = "DEG", .option = "normal-tolerance"});
-  field(&O::least_points, "least_points", "Ignore surfaces with fewer points", at_least(1),
-        {.absent = "1 in 2000 of the cloud's points, at least 30"});
+  field(
+      &O::least_points, "least_points", "Ignore surfaces with fewer points", at_least(1),
+      {.absent = "as many as cannot be chance: 13 in a sparse exact cloud, more the more spacings the tolerance has"});
   field(&O::least_size, "least_size",
         "Leave out surfaces with a smaller radius or extent, in the cloud's units. The radius is that of a sphere or "
         "cylinder, or both radii of a torus; the extent is the diagonal of the box around the largest connected piece "
@@ -63,9 +64,6 @@ struct Detection {
 
 /// The distance tolerance in force: the option or its default. In the cloud's units.
 [[nodiscard]] double detection_tolerance(const DetectOptions& options, const Scale& scale);
-
-/// The least number of points of a surface in a cloud of `points`: the option or its default.
-[[nodiscard]] std::size_t detection_least_points(const DetectOptions& options, std::size_t points);
 
 /// Finds planes, spheres, cylinders, cones and tori, convex and concave, from random samples of neighbouring points, in
 /// the manner of Schnabel, Wahl, Klein: Efficient RANSAC for Point-Cloud Shape Detection (2007). It takes the largest

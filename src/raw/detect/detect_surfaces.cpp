@@ -14,6 +14,7 @@
 #include "core/base/random.hpp"
 #include "raw/detect/grow.hpp"
 #include "raw/detect/propose.hpp"
+#include "raw/detect/unexplained.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -207,15 +208,15 @@ std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimit
   const auto value = [](const std::optional<GrownSurface>& g) { return preference(g->surface.type) * g->support; };
   const auto best =
       std::max_element(grown.begin(), grown.end(), [&](const auto& a, const auto& b) { return value(a) < value(b); });
-  return with_simplest_type(with_widest_type(std::move(**best), points, limits), points, limits);
+  return with_simplest_type(with_best_round_type(std::move(**best), points, limits), points, limits);
 }
 
 /// Finds one surface after another until many draws in a row find none.
-std::vector<GrownSurface> find_all(const WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
+std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limits, std::uint64_t seed,
                                    const RunContext& run) {
   constexpr std::size_t k_draws = 64;
   constexpr std::size_t k_most_draws = 512;
-  FreePoints points(cloud);
+  const WorkCloud& cloud = points.cloud();
   std::vector<GrownSurface> found;
   std::size_t draws = k_draws;
   for (std::uint64_t round = 0; draws <= k_most_draws && points.list().size() >= limits.least_points; ++round) {
@@ -226,6 +227,29 @@ std::vector<GrownSurface> find_all(const WorkCloud& cloud, const SearchLimits& l
     if (!surface) continue;
     points.take(surface->points);
     found.push_back(std::move(*surface));
+  }
+  return found;
+}
+
+/// Finds all surfaces, then more among the points that are left, by normals of their own. Of a surface that is found
+/// so, points that others explain are no evidence. These points get the new normals.
+std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
+                                             const RunContext& run) {
+  FreePoints points(cloud);
+  std::vector<GrownSurface> found = find_all(points, limits, seed, run);
+  const WorkCloud part = unexplained_part(points, limits.agreement.noise, run);
+  FreePoints of_part(part);
+  const RunContext silent{.stop = run.stop, .on_progress = {}, .threads = run.threads};  // its total is another
+  for (GrownSurface& surface : find_all(of_part, limits, seed, silent)) {
+    std::size_t unexplained = 0;
+    for (const std::uint32_t k : surface.points) unexplained += points.is_free(part.index[k]) ? 1 : 0;
+    if (unexplained < limits.least_points) continue;
+    for (std::uint32_t& k : surface.points) {
+      const std::uint32_t i = part.index[k];
+      if (points.is_free(i)) cloud.points[i].normal = part.points[k].normal;
+      k = i;
+    }
+    found.push_back(std::move(surface));
   }
   return found;
 }
@@ -275,6 +299,24 @@ double detection_noise(const DetectOptions& options, const Scale& scale) {
   return std::max(scale.noise, k_exact_share * scale.diagonal);
 }
 
+/// The option's value, or the fewest points that are no chance. A patch of n points is sqrt(n) spacings wide. A point
+/// at random in it lies within the tolerance of a surface with the chance p, the band's share of the width. The
+/// parameters fit some of the points anyway; all others must be as unlikely as one in a million.
+std::size_t least_points_of(const DetectOptions& options, const Scale& scale, std::size_t cloud_points) {
+  // ln(10^6). 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal; 10 at half of it, 18 at double.
+  constexpr double k_evidence = 14;
+  constexpr std::size_t k_parameters = 7;  // of a torus
+  if (options.least_points) return *options.least_points;
+  const double band = 2 * detection_tolerance(options, scale);
+  std::size_t points = k_parameters + 1;
+  const auto evidence = [&] {
+    return static_cast<double>(points - k_parameters) *
+           std::log(std::sqrt(static_cast<double>(points)) * scale.spacing / band);
+  };
+  while (points < cloud_points && !(evidence() >= k_evidence)) ++points;
+  return points;
+}
+
 /// In a cloud of diagonal 1: the option's value, up to the radius that counts as flat.
 double most_radius_of(const DetectOptions& options, double diagonal) {
   const double flat = AgreementLimits{.distance = 0, .noise = 0, .cosine = 0}.most_radius;
@@ -306,12 +348,6 @@ std::optional<OptionConflict> conflict_in(const DetectOptions& options) {
                                                   *options.least_size, *options.most_size)};
 }
 
-std::size_t detection_least_points(const DetectOptions& options, std::size_t points) {
-  constexpr std::size_t k_least_points = 30;
-  constexpr std::size_t k_least_share = 2000;
-  return options.least_points.value_or(std::max(k_least_points, points / k_least_share));
-}
-
 double detection_tolerance(const DetectOptions& options, const Scale& scale) {
   constexpr double k_least_share = 0.0015;
   return options.distance_tolerance.value_or(std::max(k_deviations * scale.noise, k_least_share * scale.diagonal));
@@ -320,7 +356,7 @@ double detection_tolerance(const DetectOptions& options, const Scale& scale) {
 Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const DetectOptions& options,
                           const RunContext& run) {
   validate(options);
-  const WorkCloud work = make_work_cloud(cloud);
+  WorkCloud work = make_work_cloud(cloud);
   const double tolerance = detection_tolerance(options, scale);
   constexpr double k_link_in_spacings = 4;
   const SearchLimits limits{.agreement = {.distance = tolerance / work.diagonal,
@@ -328,10 +364,11 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
                                           .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180),
                                           .most_radius = most_radius_of(options, work.diagonal)},
                             .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
-                            .least_points = detection_least_points(options, cloud.size())};
+                            .least_points = least_points_of(options, scale, cloud.size())};
 
   Detection result{.surfaces = {}, .unexplained = cloud.size(), .distance_tolerance = tolerance};
-  for (const GrownSurface& grown : settle_surfaces(find_all(work, limits, options.seed, run), work, limits, run)) {
+  for (const GrownSurface& grown :
+       settle_surfaces(find_in_two_passes(work, limits, options.seed, run), work, limits, run)) {
     if (!has_allowed_size(grown, work, options, limits.link)) continue;
     result.surfaces.push_back(detected(grown, work));
     result.unexplained -= grown.points.size();

@@ -155,8 +155,8 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
   return best.points.empty() ? std::nullopt : std::optional(std::move(best));
 }
 
-GrownSurface with_widest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
-  constexpr std::array k_most_flexible{SurfaceType::cone, SurfaceType::torus};
+GrownSurface with_best_round_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
+  constexpr std::array k_round{SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone, SurfaceType::torus};
   if (grown.surface.type == SurfaceType::plane) return grown;
   // Uses a wider band, because the own points fit the surface too well to show its true type.
   SearchLimits wide = limits;
@@ -164,8 +164,8 @@ GrownSurface with_widest_type(GrownSurface grown, const FreePoints& points, cons
   const std::vector<OrientedPoint> around =
       points.cloud().some_of(connected_points(grown.surface, points, wide), k_sample);
   const auto value = [](const Surface& surface, double support) { return preference(surface.type) * support; };
-  for (const SurfaceType type : k_most_flexible) {
-    if (preference(type) >= preference(grown.surface.type)) continue;
+  for (const SurfaceType type : k_round) {
+    if (type == grown.surface.type) continue;
     const std::optional<Surface> other = estimate_plausible(type, around, limits.agreement);
     if (!other || value(*other, support_of(*other, around, limits.agreement)) <=
                       value(grown.surface, support_of(grown.surface, around, limits.agreement))) {

@@ -43,8 +43,10 @@ struct GrownSurface {
 [[nodiscard]] std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints& points,
                                                        const SearchLimits& limits);
 
-/// A cone or torus that explains more, with the surface as a strip of it: locally a slender cone looks like a cylinder.
-[[nodiscard]] GrownSurface with_widest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits);
+/// The surface, or one of another round type that explains its points and those around it better. Locally a slender
+/// cone looks like a cylinder, and a narrow band of a cylinder like a sphere.
+[[nodiscard]] GrownSurface with_best_round_type(GrownSurface grown, const FreePoints& points,
+                                                const SearchLimits& limits);
 
 /// The same points as a surface of a simpler type, if it explains nearly as many.
 [[nodiscard]] GrownSurface with_simplest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits);

@@ -42,6 +42,7 @@ class FreePoints {
 
   [[nodiscard]] const WorkCloud& cloud() const { return cloud_; }
   [[nodiscard]] const std::vector<std::uint32_t>& list() const { return list_; }  ///< ascending
+  [[nodiscard]] bool is_free(std::uint32_t i) const { return is_free_[i]; }
   [[nodiscard]] const OrientedPoint& operator[](std::uint32_t i) const { return cloud_.points[i]; }
 
   /// O(n)

@@ -1,0 +1,120 @@
+#include "raw/detect/unexplained.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/geometry/neighbour_tree.hpp"
+#include "raw/prepare/local_fit.hpp"
+#include "raw/prepare/neighbours.hpp"
+#include "raw/prepare/orientation.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Few enough for a band of three rows. 8 find as many surfaces of Fit4CAD, 20 lose one in a hundred.
+constexpr std::size_t k_near = 12;
+/// Free points among the nearest of a free point, without which it strayed from a surface. At 1, points that the noise
+/// carried off their surfaces take time; at 4, bands of one row are lost.
+constexpr std::size_t k_least_free = 2;
+/// Tolerance of a local plane, relative to its radius. Bands are often as narrow as their curvature is sharp.
+constexpr double k_bend = 0.25;
+/// The second sweep orients points whose neighbours were all free.
+constexpr int k_sweeps = 2;
+
+using Neighbours = std::vector<std::vector<std::uint32_t>>;
+
+/// The nearest points to each of `some`, without the point itself. O(some log all) @throws Cancelled
+Neighbours neighbours_of(std::span<const std::uint32_t> some, const Points& all, const RunContext& run) {
+  const NeighbourTree tree(all);
+  std::vector<std::uint32_t> near(std::min(k_near + 1, all.size()));
+  std::vector<double> squares(near.size());
+  Neighbours result;
+  result.reserve(some.size());
+  for (const std::uint32_t i : some) {
+    run.throw_if_stopped();
+    const std::size_t found = tree.find(all[i], near, squares);
+    auto& own = result.emplace_back(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(found));
+    std::erase(own, i);
+  }
+  return result;
+}
+
+/// The free points that lie together, and all nearest points of these. Ascending.
+std::vector<std::uint32_t> points_together(const FreePoints& points, const Points& all, const RunContext& run) {
+  const std::vector<std::uint32_t>& free = points.list();
+  const Neighbours near = neighbours_of(free, all, run);
+  std::vector<std::uint32_t> together;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto is_free = [&](std::uint32_t i) { return points.is_free(i); };
+    if (std::count_if(near[k].begin(), near[k].end(), is_free) < static_cast<std::ptrdiff_t>(k_least_free)) continue;
+    together.push_back(free[k]);
+    together.insert(together.end(), near[k].begin(), near[k].end());
+  }
+  std::sort(together.begin(), together.end());
+  together.erase(std::unique(together.begin(), together.end()), together.end());
+  return together;
+}
+
+/// Fits normals to the points alone. Their sign is arbitrary.
+void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& positions, double noise,
+                            const RunContext& run) {
+  std::vector<std::uint32_t> every(points.size());
+  std::iota(every.begin(), every.end(), 0U);
+  const Neighbours near = neighbours_of(every, positions, run);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (near[k].size() < 3) continue;
+    const double radius = (positions[near[k].back()] - positions[k]).norm();
+    const double tolerance = std::max(k_noise_tolerance * noise, k_bend * radius);
+    points[k].normal = fit_local_plane(positions, k, near[k], tolerance).normal;
+  }
+}
+
+/// Turns the normals of the part so that they agree with those of the explained points around it, across its edges.
+void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, const RunContext& run) {
+  const Neighbours near = neighbours_of(part.index, all, run);
+  std::vector<Vector3d> normals(all.size(), Vector3d::Zero());  // zero: not known yet
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    if (!points.is_free(i)) normals[i] = points[i].normal;
+  }
+  for (int sweep = 0; sweep < k_sweeps; ++sweep) {
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      OrientedPoint& point = part.points[k];
+      double votes = 0;
+      for (const std::uint32_t j : near[k]) {
+        const double vote = agreement(all[j] - point.position, point.normal, normals[j]);
+        votes += vote * vote * vote;
+      }
+      if (votes < 0) point.normal = -point.normal;
+    }
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      if (points.is_free(part.index[k])) normals[part.index[k]] = part.points[k].normal;
+    }
+  }
+}
+
+}  // namespace
+
+WorkCloud unexplained_part(const FreePoints& points, double noise, const RunContext& run) {
+  const WorkCloud& cloud = points.cloud();
+  Points all(cloud.size());
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) all.set(i, cloud.points[i].position);
+  WorkCloud part{.points = {},
+                 .code = {},
+                 .index = points_together(points, all, run),
+                 .middle = cloud.middle,
+                 .diagonal = cloud.diagonal};
+  Points positions(part.index.size());
+  for (std::size_t k = 0; k < part.index.size(); ++k) {
+    positions.set(k, all[part.index[k]]);
+    part.points.push_back(cloud.points[part.index[k]]);
+    part.code.push_back(cloud.code[part.index[k]]);
+  }
+  if (part.points.empty()) return part;
+  estimate_normals_among(part.points, positions, noise, run);
+  orient_part(part, points, all, run);
+  return part;
+}
+
+}  // namespace cloud2csg
