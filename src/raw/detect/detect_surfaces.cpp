@@ -231,12 +231,13 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
   return found;
 }
 
-/// Finds all surfaces, then more among the points that are left, by normals of their own. Of a surface that is found
-/// so, points that others explain are no evidence. These points get the new normals.
+/// Finds all surfaces, then more among the points that are left, by normals of their own. Points that the first
+/// surfaces explain are no evidence for a later one. Only its other points get the new normals.
 std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
                                              const RunContext& run) {
   FreePoints points(cloud);
   std::vector<GrownSurface> found = find_all(points, limits, seed, run);
+  if (points.list().size() < limits.least_points) return found;
   const WorkCloud part = unexplained_part(points, limits.agreement.noise, run);
   FreePoints of_part(part);
   const RunContext silent{.stop = run.stop, .on_progress = {}, .threads = run.threads};  // its total is another
@@ -303,7 +304,8 @@ double detection_noise(const DetectOptions& options, const Scale& scale) {
 /// at random in it lies within the tolerance of a surface with the chance p, the band's share of the width. The
 /// parameters fit some of the points anyway; all others must be as unlikely as one in a million.
 std::size_t least_points_of(const DetectOptions& options, const Scale& scale, std::size_t cloud_points) {
-  // ln(10^6). 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal; 10 at half of it, 18 at double.
+  // ln(10^6). 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 10 do;
+  // with double, 18.
   constexpr double k_evidence = 14;
   constexpr std::size_t k_parameters = 7;  // of a torus
   if (options.least_points) return *options.least_points;
@@ -313,7 +315,7 @@ std::size_t least_points_of(const DetectOptions& options, const Scale& scale, st
     return static_cast<double>(points - k_parameters) *
            std::log(std::sqrt(static_cast<double>(points)) * scale.spacing / band);
   };
-  while (points < cloud_points && !(evidence() >= k_evidence)) ++points;
+  while (points <= cloud_points && !(evidence() >= k_evidence)) ++points;
   return points;
 }
 

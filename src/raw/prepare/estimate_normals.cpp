@@ -30,8 +30,8 @@ constexpr double k_wall_cosine = 0.7;    ///< least, between normals on the two 
 constexpr double k_wall_rise = 0.35;     ///< least sine of the step across a wall
 constexpr std::uint64_t k_check_stage = 0x6e6f'726d;
 
-/// Whether the normals of most neighbours are on the same side. A neighbour across a thin wall, above or below the point
-/// along its normal, must have the opposite normal. Within three deviations of the noise, the wall may be chance.
+/// Whether the normals of most neighbours are on the same side. A neighbour across a thin wall, above or below the
+/// point along its normal, must have the opposite normal. Within three deviations of the noise, the wall may be chance.
 bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::size_t i,
                             std::span<const std::uint32_t> near, double noise) {
   double votes = 0.0;
