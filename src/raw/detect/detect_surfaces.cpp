@@ -301,7 +301,7 @@ double detection_noise(const DetectOptions& options, const Scale& scale) {
 }
 
 /// The option's value, or the fewest points that are no chance. A patch of n points is sqrt(n) spacings wide. A point
-/// at random in it lies within the tolerance of a surface with the chance p, the band's share of the width. The
+/// at random in it lies within the tolerance of a surface with the chance of the band's share of the width. The
 /// parameters fit some of the points anyway; all others must be as unlikely as one in a million.
 std::size_t least_points_of(const DetectOptions& options, const Scale& scale, std::size_t cloud_points) {
   // ln(10^6). 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 10 do;

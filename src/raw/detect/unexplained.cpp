@@ -25,8 +25,8 @@ constexpr int k_sweeps = 2;
 using Neighbours = std::vector<std::vector<std::uint32_t>>;
 
 /// The nearest points to each of `some`, without the point itself. O(some log all) @throws Cancelled
-Neighbours neighbours_of(std::span<const std::uint32_t> some, const Points& all, const RunContext& run) {
-  const NeighbourTree tree(all);
+Neighbours neighbours_of(std::span<const std::uint32_t> some, const Points& all, const NeighbourTree& tree,
+                         const RunContext& run) {
   std::vector<std::uint32_t> near(std::min(k_near + 1, all.size()));
   std::vector<double> squares(near.size());
   Neighbours result;
@@ -41,9 +41,10 @@ Neighbours neighbours_of(std::span<const std::uint32_t> some, const Points& all,
 }
 
 /// The free points that lie together, and all nearest points of these. Ascending.
-std::vector<std::uint32_t> points_together(const FreePoints& points, const Points& all, const RunContext& run) {
+std::vector<std::uint32_t> points_together(const FreePoints& points, const Points& all, const NeighbourTree& tree,
+                                           const RunContext& run) {
   const std::vector<std::uint32_t>& free = points.list();
-  const Neighbours near = neighbours_of(free, all, run);
+  const Neighbours near = neighbours_of(free, all, tree, run);
   std::vector<std::uint32_t> together;
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto is_free = [&](std::uint32_t i) { return points.is_free(i); };
@@ -61,7 +62,7 @@ void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& po
                             const RunContext& run) {
   std::vector<std::uint32_t> every(points.size());
   std::iota(every.begin(), every.end(), 0U);
-  const Neighbours near = neighbours_of(every, positions, run);
+  const Neighbours near = neighbours_of(every, positions, NeighbourTree(positions), run);
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (near[k].size() < 3) continue;
     const double radius = (positions[near[k].back()] - positions[k]).norm();
@@ -72,8 +73,9 @@ void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& po
 }
 
 /// Turns the normals of the part so that they agree with those of the explained points around it, across its edges.
-void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, const RunContext& run) {
-  const Neighbours near = neighbours_of(part.index, all, run);
+void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, const NeighbourTree& tree,
+                 const RunContext& run) {
+  const Neighbours near = neighbours_of(part.index, all, tree, run);
   std::vector<Vector3d> normals(all.size(), Vector3d::Zero());  // zero: not known yet
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (!points.is_free(i)) normals[i] = points[i].normal;
@@ -100,9 +102,10 @@ WorkCloud unexplained_part(const FreePoints& points, double noise, const RunCont
   const WorkCloud& cloud = points.cloud();
   Points all(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i) all.set(i, cloud.points[i].position);
+  const NeighbourTree tree(all);
   WorkCloud part{.points = {},
                  .code = {},
-                 .index = points_together(points, all, run),
+                 .index = points_together(points, all, tree, run),
                  .middle = cloud.middle,
                  .diagonal = cloud.diagonal};
   Points positions(part.index.size());
@@ -113,7 +116,7 @@ WorkCloud unexplained_part(const FreePoints& points, double noise, const RunCont
   }
   if (part.points.empty()) return part;
   estimate_normals_among(part.points, positions, noise, run);
-  orient_part(part, points, all, run);
+  orient_part(part, points, all, tree, run);
   return part;
 }
 

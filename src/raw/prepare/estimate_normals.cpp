@@ -43,7 +43,7 @@ bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::
     if (!is_across) {
       votes += cosine > 0.0 ? 1.0 : -1.0;
     } else if (cosine > 0.0) {
-      votes += rise > 3.0 * noise ? -1.0 : 1.0;
+      votes += rise > k_noise_tolerance * noise ? -1.0 : 1.0;
     }
   }
   return votes >= 0.0;
@@ -141,7 +141,8 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
     i = random.below(cloud.size());
     const std::size_t found = tree.find(local.points[i], indices, squares);
     const std::span<const std::uint32_t> near = std::span(indices).first(found).subspan(1);
-    const double tolerance = std::max(3.0 * scale.noise, 0.05 * std::sqrt(squares[found - 1]));
+    const double tolerance =
+        std::max(k_noise_tolerance * scale.noise, k_bend_tolerance * std::sqrt(squares[found - 1]));
     const LocalPlane plane = fit_local_plane(local.points, i, near, tolerance);
     const double cosine = std::abs(plane.normal.dot(cloud.normals[i]));
     across += cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0) ? 1 : 0;

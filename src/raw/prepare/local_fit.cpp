@@ -229,11 +229,11 @@ double quadric_deviation(const Points& points, std::span<const std::uint32_t> in
   const Vector3d u = plane.normal.unitOrthogonal();
   const Vector3d v = plane.normal.cross(u);
   double radius = 0.0;
-  for (const std::uint32_t i : indices) radius = std::max(radius, (points[i] - first - plane.middle).norm());
+  for (const Vector3d& place : around) radius = std::max(radius, (place - plane.middle).norm());
   if (!(radius > 0.0)) return 0.0;
-  std::vector<Vector3d> places;
-  for (const std::uint32_t i : indices) {
-    const Vector3d place = (points[i] - first - plane.middle) / radius;
+  Places places;
+  for (const Vector3d& relative : around) {
+    const Vector3d place = (relative - plane.middle) / radius;
     places.emplace_back(u.dot(place), v.dot(place), plane.normal.dot(place));
   }
   std::vector<double> residuals(places.size());

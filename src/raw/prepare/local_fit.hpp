@@ -43,7 +43,7 @@ struct LocalFits {
 /// Number of neighbours for a normal error of about three degrees.
 [[nodiscard]] std::size_t plane_neighbours(const Scale& scale);
 
-/// Robust standard deviation of points from a quadric over their best plane, corrected for its six parameters.
+/// Robust standard deviation of points from a quadric over the plane of half of them, corrected for its six parameters.
 /// Precondition: at least 12 points. O(points)
 [[nodiscard]] double quadric_deviation(const Points& points, std::span<const std::uint32_t> indices);
 
