@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cloud2csg/error.hpp"
+#include "core/base/parallel.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -49,7 +50,12 @@ double squared_distance(const Vector3d& a, const Vector3d& b, const Vector3d& c,
 }  // namespace
 
 struct RayCaster::EmbreeScene {
+#ifdef CLOUD2CSG_THREAD_SANITIZER
+  // Embree's threads are TBB's, which the sanitizer does not see synchronise: not even when the program ends.
+  RTCDevice device = rtcNewDevice("threads=1");
+#else
   RTCDevice device = rtcNewDevice(nullptr);
+#endif
   RTCScene scene = nullptr;
 
   EmbreeScene() = default;
