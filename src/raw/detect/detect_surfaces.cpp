@@ -12,160 +12,14 @@
 #include "cloud2csg/run_context.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/base/run.hpp"
 #include "raw/detect/grow.hpp"
 #include "raw/detect/propose.hpp"
+#include "raw/detect/settle_surfaces.hpp"
 #include "raw/detect/unexplained.hpp"
 
 namespace cloud2csg {
 namespace {
-
-constexpr std::size_t k_equal_sample = 200;  // points that decide whether two surfaces are one
-constexpr double k_nearly_all = 0.9;
-
-bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, const AgreementLimits& limits,
-              double share) {
-  return static_cast<double>(count_agreeing(surface, points, limits)) >= share * static_cast<double>(points.size());
-}
-
-/// One surface for the points of both, if it exists.
-std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b, const WorkCloud& cloud,
-                                   const AgreementLimits& all_limits) {
-  const AgreementLimits limits = all_limits.within(std::max(a.reach, b.reach));
-  if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
-  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_equal_sample);
-  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_equal_sample);
-  // A fit is reliable only near its own points, so this test is loose. The common fit must explain nearly all points.
-  AgreementLimits wide = limits;
-  wide.distance *= 3;
-  if (!explains(a.surface, of_b, wide, 0.5) && !explains(b.surface, of_a, wide, 0.5)) return std::nullopt;
-  std::vector<OrientedPoint> of_both = of_a;
-  of_both.insert(of_both.end(), of_b.begin(), of_b.end());
-  const std::optional<Surface> fitted = fit_plausible(a.surface, of_both, limits);
-  if (!fitted || !explains(*fitted, of_a, limits, k_nearly_all) || !explains(*fitted, of_b, limits, k_nearly_all)) {
-    return std::nullopt;
-  }
-  GrownSurface both{.surface = *fitted, .points = {}, .reach = limits.distance};
-  std::set_union(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both.points));
-  return both;
-}
-
-void join_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits) {
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    for (std::size_t j = i + 1; j < surfaces.size();) {
-      std::optional<GrownSurface> both = joined(surfaces[i], surfaces[j], cloud, limits);
-      if (!both) {
-        ++j;
-        continue;
-      }
-      surfaces[i] = std::move(*both);
-      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(j));
-      j = i + 1;
-    }
-  }
-}
-
-/// Gives each surface all agreeing points, whoever found them first: the true surface of a face gets all of it.
-void claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
-               const RunContext& run) {
-  for_each_index(surfaces.size(), run, [&](std::size_t k) {
-    GrownSurface& surface = surfaces[k];
-    const AgreementLimits own = limits.within(surface.reach);
-    with_agreement(surface.surface, [&](const auto& rule) {
-      surface.points.clear();
-      surface.support = 0;
-      for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-        const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
-        if (!own.hold(agreement)) continue;
-        surface.points.push_back(i);
-        surface.support += limits.support(agreement);
-      }
-    });
-  });
-}
-
-/// Drops surfaces, the smallest first, whose points nearly all lie on others.
-void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits) {
-  std::stable_sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) {
-    return preference(a.surface.type) * a.support > preference(b.surface.type) * b.support;
-  });
-  for (std::size_t k = surfaces.size(); k-- > 0;) {
-    std::vector<OrientedPoint> left = cloud.some_of(surfaces[k].points, k_equal_sample);
-    const std::size_t count = left.size();
-    for (std::size_t other = 0; other < surfaces.size() && !left.empty(); ++other) {
-      if (other == k) continue;
-      const AgreementLimits own = limits.within(surfaces[other].reach);
-      with_agreement(surfaces[other].surface, [&](const auto& rule) {
-        std::erase_if(left, [&](const OrientedPoint& p) { return own.hold(rule(p.position, p.normal)); });
-      });
-    }
-    if (static_cast<double>(left.size()) < (1 - k_nearly_all) * static_cast<double>(count)) {
-      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(k));
-    }
-  }
-}
-
-/// The nearest agreeing surface for each point; surfaces.size() if there is none.
-std::vector<std::uint32_t> nearest_surfaces(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                                            const AgreementLimits& limits, const RunContext& run) {
-  constexpr std::size_t k_block = 4096;
-  std::vector<std::uint32_t> nearest(cloud.size(), static_cast<std::uint32_t>(surfaces.size()));
-  for_each_index((cloud.size() + k_block - 1) / k_block, run, [&](std::size_t block) {
-    const std::size_t first = block * k_block;
-    const std::size_t last = std::min(first + k_block, cloud.size());
-    std::vector<double> distance(last - first, std::numeric_limits<double>::infinity());
-    for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
-      const AgreementLimits own = limits.within(surfaces[s].reach);
-      with_agreement(surfaces[s].surface, [&](const auto& rule) {
-        for (std::size_t i = first; i < last; ++i) {
-          const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
-          if (!own.hold(agreement) || std::abs(agreement.distance) >= distance[i - first]) continue;
-          distance[i - first] = std::abs(agreement.distance);
-          nearest[i] = s;
-        }
-      });
-    }
-  });
-  return nearest;
-}
-
-void share_points(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const SearchLimits& limits,
-                  const RunContext& run) {
-  const std::vector<std::uint32_t> nearest = nearest_surfaces(surfaces, cloud, limits.agreement, run);
-  for (GrownSurface& surface : surfaces) surface.points.clear();
-  for (std::uint32_t i = 0; i < nearest.size(); ++i) {
-    if (nearest[i] < surfaces.size()) surfaces[nearest[i]].points.push_back(i);
-  }
-  std::erase_if(surfaces, [&](const GrownSurface& s) { return s.points.size() < limits.least_points; });
-}
-
-void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
-             const RunContext& run) {
-  constexpr std::size_t k_most = 4000;
-  for_each_index(surfaces.size(), run, [&](std::size_t k) {
-    GrownSurface& s = surfaces[k];
-    const auto fitted = fit_plausible(s.surface, cloud.some_of(s.points, k_most), limits.within(s.reach));
-    if (!fitted) return;
-    s.surface = *fitted;
-    s.reach = reach_of(s.surface, cloud, s.points, limits);
-  });
-}
-
-/// Joins equal surfaces (a face in several pieces, a shaft through a wall). Drops those that others explain or that
-/// have too few points. Each point goes to the nearest agreeing surface, which is fitted to it. O(points x surfaces)
-std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
-                                          const SearchLimits& limits, const RunContext& run) {
-  for (int round = 0; round < 2; ++round) {
-    for (int again = 0; again < 5; ++again) {
-      fit_all(surfaces, cloud, limits.agreement, run);
-      claim_all(surfaces, cloud, limits.agreement, run);
-    }
-    join_all(surfaces, cloud, limits.agreement);
-    drop_explained(surfaces, cloud, limits.agreement);
-    share_points(surfaces, cloud, limits, run);
-    fit_all(surfaces, cloud, limits.agreement, run);
-  }
-  return surfaces;
-}
 
 constexpr std::uint64_t k_propose_stage = 0x70726f70;
 constexpr std::uint64_t k_subset_stage = 0x73756273;
@@ -211,21 +65,28 @@ std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimit
   return with_simplest_type(with_best_round_type(std::move(**best), points, limits), points, limits);
 }
 
-/// Finds one surface after another until many draws in a row find none.
+/// Finds one surface after another until many draws in a row find none. Evidence for a surface are only its points
+/// for which `is_evidence(point)` holds; of a surface without enough evidence, the other points count as taken.
+template <typename IsEvidence>
 std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limits, std::uint64_t seed,
-                                   const RunContext& run) {
+                                   const IsEvidence& is_evidence, const RunContext& run, const StageShare& share) {
   constexpr std::size_t k_draws = 64;
   constexpr std::size_t k_most_draws = 512;
-  const WorkCloud& cloud = points.cloud();
+  const auto count = static_cast<double>(points.cloud().size());
   std::vector<GrownSurface> found;
   std::size_t draws = k_draws;
   for (std::uint64_t round = 0; draws <= k_most_draws && points.list().size() >= limits.least_points; ++round) {
     run.throw_if_stopped();
-    run.report("detect", cloud.size() - points.list().size(), cloud.size(), "points");
+    share.report(run, 1 - static_cast<double>(points.list().size()) / count);
     std::optional<GrownSurface> surface = find_one(points, limits, draws, seed, round, run);
-    draws = surface ? k_draws : 2 * draws;
+    draws *= 2;
     if (!surface) continue;
-    points.take(surface->points);
+    const auto rest = std::stable_partition(surface->points.begin(), surface->points.end(), is_evidence);
+    const bool is_enough = rest - surface->points.begin() >= static_cast<std::ptrdiff_t>(limits.least_points);
+    points.take(is_enough ? std::span(surface->points) : std::span(rest, surface->points.end()));
+    if (!is_enough) continue;
+    draws = k_draws;
+    std::sort(surface->points.begin(), surface->points.end());
     found.push_back(std::move(*surface));
   }
   return found;
@@ -235,20 +96,19 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
 /// surfaces explain are no evidence for a later one. Only its other points get the new normals.
 std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
                                              const RunContext& run) {
+  const StageShare share("detect", cloud.size(), "points");
+  constexpr double k_first_pass = 0.8;  // of the time, roughly
   FreePoints points(cloud);
-  std::vector<GrownSurface> found = find_all(points, limits, seed, run);
+  const auto always = [](std::uint32_t) { return true; };
+  std::vector<GrownSurface> found = find_all(points, limits, seed, always, run, share.part(0, k_first_pass));
   if (points.list().size() < limits.least_points) return found;
   const WorkCloud part = unexplained_part(points, limits.agreement.noise, run);
   FreePoints of_part(part);
-  const RunContext silent{.stop = run.stop, .on_progress = {}, .threads = run.threads};  // its total is another
-  for (GrownSurface& surface : find_all(of_part, limits, seed, silent)) {
-    std::size_t unexplained = 0;
-    for (const std::uint32_t k : surface.points) unexplained += points.is_free(part.index[k]) ? 1 : 0;
-    if (unexplained < limits.least_points) continue;
+  const auto is_unexplained = [&](std::uint32_t k) { return points.is_free(part.index[k]); };
+  for (GrownSurface& surface : find_all(of_part, limits, seed, is_unexplained, run, share.part(k_first_pass, 1))) {
     for (std::uint32_t& k : surface.points) {
-      const std::uint32_t i = part.index[k];
-      if (points.is_free(i)) cloud.points[i].normal = part.points[k].normal;
-      k = i;
+      if (is_unexplained(k)) cloud.points[part.index[k]].normal = part.points[k].normal;
+      k = part.index[k];
     }
     found.push_back(std::move(surface));
   }

@@ -1,10 +1,10 @@
 #include "raw/detect/unexplained.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/geometry/neighbour_tree.hpp"
 #include "raw/prepare/local_fit.hpp"
+#include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/orientation.hpp"
 
 namespace cloud2csg {
@@ -22,35 +22,18 @@ constexpr double k_bend = 0.25;
 /// The second sweep orients points whose neighbours were all free.
 constexpr int k_sweeps = 2;
 
-using Neighbours = std::vector<std::vector<std::uint32_t>>;
-
-/// The nearest points to each of `some`, without the point itself. O(some log all) @throws Cancelled
-Neighbours neighbours_of(std::span<const std::uint32_t> some, const Points& all, const NeighbourTree& tree,
-                         const RunContext& run) {
-  std::vector<std::uint32_t> near(std::min(k_near + 1, all.size()));
-  std::vector<double> squares(near.size());
-  Neighbours result;
-  result.reserve(some.size());
-  for (const std::uint32_t i : some) {
-    run.throw_if_stopped();
-    const std::size_t found = tree.find(all[i], near, squares);
-    auto& own = result.emplace_back(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(found));
-    std::erase(own, i);
-  }
-  return result;
-}
-
 /// The free points that lie together, and all nearest points of these. Ascending.
 std::vector<std::uint32_t> points_together(const FreePoints& points, const Points& all, const NeighbourTree& tree,
                                            const RunContext& run) {
   const std::vector<std::uint32_t>& free = points.list();
-  const Neighbours near = neighbours_of(free, all, tree, run);
+  const NeighbourTable table = find_neighbours_of(free, all, tree, k_near, run);
   std::vector<std::uint32_t> together;
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto is_free = [&](std::uint32_t i) { return points.is_free(i); };
-    if (std::count_if(near[k].begin(), near[k].end(), is_free) < static_cast<std::ptrdiff_t>(k_least_free)) continue;
+    const std::span<const std::uint32_t> near = table.of(k);
+    if (std::count_if(near.begin(), near.end(), is_free) < static_cast<std::ptrdiff_t>(k_least_free)) continue;
     together.push_back(free[k]);
-    together.insert(together.end(), near[k].begin(), near[k].end());
+    together.insert(together.end(), near.begin(), near.end());
   }
   std::sort(together.begin(), together.end());
   together.erase(std::unique(together.begin(), together.end()), together.end());
@@ -60,14 +43,11 @@ std::vector<std::uint32_t> points_together(const FreePoints& points, const Point
 /// Fits normals to the points alone, on the side of their old ones.
 void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& positions, double noise,
                             const RunContext& run) {
-  std::vector<std::uint32_t> every(points.size());
-  std::iota(every.begin(), every.end(), 0U);
-  const Neighbours near = neighbours_of(every, positions, NeighbourTree(positions), run);
+  const NeighbourTable near = find_neighbours(positions, NeighbourTree(positions), k_near, run);
+  if (near.width < 3) return;
+  const std::vector<LocalPlane> planes = fit_local_planes(positions, near, noise, k_bend, run);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    if (near[k].size() < 3) continue;
-    const double radius = (positions[near[k].back()] - positions[k]).norm();
-    const double tolerance = std::max(k_noise_tolerance * noise, k_bend * radius);
-    const Vector3d normal = fit_local_plane(positions, k, near[k], tolerance).normal;
+    const Vector3d& normal = planes[k].normal;
     points[k].normal = normal.dot(points[k].normal) < 0 ? Vector3d(-normal) : normal;
   }
 }
@@ -75,7 +55,7 @@ void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& po
 /// Turns the normals of the part so that they agree with those of the explained points around it, across its edges.
 void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, const NeighbourTree& tree,
                  const RunContext& run) {
-  const Neighbours near = neighbours_of(part.index, all, tree, run);
+  const NeighbourTable near = find_neighbours_of(part.index, all, tree, k_near, run);
   std::vector<Vector3d> normals(all.size(), Vector3d::Zero());  // zero: not known yet
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (!points.is_free(i)) normals[i] = points[i].normal;
@@ -84,7 +64,7 @@ void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, c
     for (std::size_t k = 0; k < part.size(); ++k) {
       OrientedPoint& point = part.points[k];
       double votes = 0;
-      for (const std::uint32_t j : near[k]) {
+      for (const std::uint32_t j : near.of(k)) {
         const double vote = agreement(all[j] - point.position, point.normal, normals[j]);
         votes += vote * vote * vote;
       }

@@ -175,20 +175,6 @@ Vector6d monomials(double u, double v) {
   return terms;
 }
 
-/// Fits the planes of all points. The tolerance follows the noise, or a small share of the neighbourhood's radius if
-/// that is larger, because curved surfaces leave their planes. O(n k) @throws Cancelled
-std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours, double noise,
-                                         const RunContext& run, const StageShare& share) {
-  std::vector<LocalPlane> planes(points.size());
-  if (neighbours.width < 3) return planes;
-  for_each_index_by_chunks(points.size(), k_chunk_points, run, share, [&](std::size_t i) {
-    const double radius = neighbours.distances_of(i).back();
-    planes[i] =
-        fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, k_bend_tolerance * radius));
-  });
-  return planes;
-}
-
 }  // namespace
 
 LocalPlane fit_local_plane(const Points& points, std::size_t point, std::span<const std::uint32_t> neighbours,
@@ -200,6 +186,17 @@ LocalPlane fit_local_plane(const Points& points, std::size_t point, std::span<co
   for (const std::uint32_t neighbour : neighbours) places.emplace_back(points[neighbour] - middle);
   RandomStream random(0, k_trial_stage, point);
   return fit(places, tolerance, random);
+}
+
+std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours, double noise,
+                                         double bend, const RunContext& run, const StageShare& share) {
+  std::vector<LocalPlane> planes(points.size());
+  if (neighbours.width < 3) return planes;
+  for_each_index_by_chunks(points.size(), k_chunk_points, run, share, [&](std::size_t i) {
+    const double radius = neighbours.distances_of(i).back();
+    planes[i] = fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, bend * radius));
+  });
+  return planes;
 }
 
 std::size_t plane_neighbours(const Scale& scale) {
@@ -216,7 +213,7 @@ LocalFits fit_locally(const PointCloud& cloud, std::size_t width, double noise, 
   for (std::size_t i = 0; i < fits.order.size(); ++i) fits.points.set(i, local.points[fits.order[i]]);
   const NeighbourTree tree(fits.points);
   fits.neighbours = find_neighbours(fits.points, tree, width, run, share.part(0, 0.5));
-  fits.planes = fit_local_planes(fits.points, fits.neighbours, noise, run, share.part(0.5, 1));
+  fits.planes = fit_local_planes(fits.points, fits.neighbours, noise, k_bend_tolerance, run, share.part(0.5, 1));
   return fits;
 }
 

@@ -22,22 +22,27 @@ struct CentredPoints {
 };
 [[nodiscard]] CentredPoints centred(PointsView points);
 
-/// A fixed number of nearest neighbours for each point, nearest first, without the point itself.
+/// A fixed number of nearest neighbours for each of some points, nearest first, without the point itself.
 struct NeighbourTable {
   std::size_t width = 0;
-  std::vector<std::uint32_t> indices;  ///< [point x width]
+  std::vector<std::uint32_t> indices;  ///< [row x width]
   std::vector<float> distances;        ///< same layout
 
-  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t point) const {
-    return std::span(indices).subspan(point * width, width);
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t row) const {
+    return std::span(indices).subspan(row * width, width);
   }
-  [[nodiscard]] std::span<const float> distances_of(std::size_t point) const {
-    return std::span(distances).subspan(point * width, width);
+  [[nodiscard]] std::span<const float> distances_of(std::size_t row) const {
+    return std::span(distances).subspan(row * width, width);
   }
 };
 
-/// The table for all points. `width` must be less than the number of points. O(n k log n) @throws Cancelled
+/// The table of all points, a row for each. `width` must be less than the number of points. O(n k log n) @throws
+/// Cancelled
 [[nodiscard]] NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
                                              const RunContext& run, const StageShare& share = {});
+
+/// A row for each of `some`, of its nearest among all points. O(some k log n) @throws Cancelled
+[[nodiscard]] NeighbourTable find_neighbours_of(std::span<const std::uint32_t> some, const Points& points,
+                                                const NeighbourTree& tree, std::size_t width, const RunContext& run);
 
 }  // namespace cloud2csg

@@ -1,0 +1,167 @@
+#include "raw/detect/settle_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "core/base/parallel.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr std::size_t k_equal_sample = 200;  // points that decide whether two surfaces are one
+constexpr double k_nearly_all = 0.9;
+
+bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, const AgreementLimits& limits,
+              double share) {
+  return static_cast<double>(count_agreeing(surface, points, limits)) >= share * static_cast<double>(points.size());
+}
+
+/// One surface for the points of both, if it exists.
+std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b, const WorkCloud& cloud,
+                                   const AgreementLimits& all_limits) {
+  const AgreementLimits limits = all_limits.within(std::max(a.reach, b.reach));
+  if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
+  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_equal_sample);
+  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_equal_sample);
+  // A fit is reliable only near its own points, so this test is loose. The common fit must explain nearly all points.
+  AgreementLimits wide = limits;
+  wide.distance *= 3;
+  if (!explains(a.surface, of_b, wide, 0.5) && !explains(b.surface, of_a, wide, 0.5)) return std::nullopt;
+  std::vector<OrientedPoint> of_both = of_a;
+  of_both.insert(of_both.end(), of_b.begin(), of_b.end());
+  const std::optional<Surface> fitted = fit_plausible(a.surface, of_both, limits);
+  if (!fitted || !explains(*fitted, of_a, limits, k_nearly_all) || !explains(*fitted, of_b, limits, k_nearly_all)) {
+    return std::nullopt;
+  }
+  GrownSurface both{.surface = *fitted, .points = {}, .reach = limits.distance};
+  std::set_union(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both.points));
+  return both;
+}
+
+/// @throws Cancelled
+void join_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
+              const RunContext& run) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    run.throw_if_stopped();
+    for (std::size_t j = i + 1; j < surfaces.size();) {
+      std::optional<GrownSurface> both = joined(surfaces[i], surfaces[j], cloud, limits);
+      if (!both) {
+        ++j;
+        continue;
+      }
+      surfaces[i] = std::move(*both);
+      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(j));
+      j = i + 1;
+    }
+  }
+}
+
+/// Gives each surface all agreeing points, whoever found them first: the true surface of a face gets all of it.
+void claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
+               const RunContext& run) {
+  for_each_index(surfaces.size(), run, [&](std::size_t k) {
+    GrownSurface& surface = surfaces[k];
+    const AgreementLimits own = limits.within(surface.reach);
+    with_agreement(surface.surface, [&](const auto& rule) {
+      surface.points.clear();
+      surface.support = 0;
+      for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+        const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
+        if (!own.hold(agreement)) continue;
+        surface.points.push_back(i);
+        surface.support += limits.support(agreement);
+      }
+    });
+  });
+}
+
+/// Drops surfaces, the smallest first, whose points nearly all lie on others. @throws Cancelled
+void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
+                    const RunContext& run) {
+  std::stable_sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) {
+    return preference(a.surface.type) * a.support > preference(b.surface.type) * b.support;
+  });
+  for (std::size_t k = surfaces.size(); k-- > 0;) {
+    run.throw_if_stopped();
+    std::vector<OrientedPoint> left = cloud.some_of(surfaces[k].points, k_equal_sample);
+    const std::size_t count = left.size();
+    for (std::size_t other = 0; other < surfaces.size() && !left.empty(); ++other) {
+      if (other == k) continue;
+      const AgreementLimits own = limits.within(surfaces[other].reach);
+      with_agreement(surfaces[other].surface, [&](const auto& rule) {
+        std::erase_if(left, [&](const OrientedPoint& p) { return own.hold(rule(p.position, p.normal)); });
+      });
+    }
+    if (static_cast<double>(left.size()) < (1 - k_nearly_all) * static_cast<double>(count)) {
+      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+}
+
+/// The nearest agreeing surface for each point; surfaces.size() if there is none.
+std::vector<std::uint32_t> nearest_surfaces(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
+                                            const AgreementLimits& limits, const RunContext& run) {
+  constexpr std::size_t k_block = 4096;
+  std::vector<std::uint32_t> nearest(cloud.size(), static_cast<std::uint32_t>(surfaces.size()));
+  for_each_index((cloud.size() + k_block - 1) / k_block, run, [&](std::size_t block) {
+    const std::size_t first = block * k_block;
+    const std::size_t last = std::min(first + k_block, cloud.size());
+    std::vector<double> distance(last - first, std::numeric_limits<double>::infinity());
+    for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
+      const AgreementLimits own = limits.within(surfaces[s].reach);
+      with_agreement(surfaces[s].surface, [&](const auto& rule) {
+        for (std::size_t i = first; i < last; ++i) {
+          const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
+          if (!own.hold(agreement) || std::abs(agreement.distance) >= distance[i - first]) continue;
+          distance[i - first] = std::abs(agreement.distance);
+          nearest[i] = s;
+        }
+      });
+    }
+  });
+  return nearest;
+}
+
+void share_points(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const SearchLimits& limits,
+                  const RunContext& run) {
+  const std::vector<std::uint32_t> nearest = nearest_surfaces(surfaces, cloud, limits.agreement, run);
+  for (GrownSurface& surface : surfaces) surface.points.clear();
+  for (std::uint32_t i = 0; i < nearest.size(); ++i) {
+    if (nearest[i] < surfaces.size()) surfaces[nearest[i]].points.push_back(i);
+  }
+  std::erase_if(surfaces, [&](const GrownSurface& s) { return s.points.size() < limits.least_points; });
+}
+
+void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
+             const RunContext& run) {
+  constexpr std::size_t k_most = 4000;
+  for_each_index(surfaces.size(), run, [&](std::size_t k) {
+    GrownSurface& s = surfaces[k];
+    const auto fitted = fit_plausible(s.surface, cloud.some_of(s.points, k_most), limits.within(s.reach));
+    if (!fitted) return;
+    s.surface = *fitted;
+    s.reach = reach_of(s.surface, cloud, s.points, limits);
+  });
+}
+
+}  // namespace
+
+std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
+                                          const SearchLimits& limits, const RunContext& run) {
+  for (int round = 0; round < 2; ++round) {
+    for (int again = 0; again < 5; ++again) {
+      fit_all(surfaces, cloud, limits.agreement, run);
+      claim_all(surfaces, cloud, limits.agreement, run);
+    }
+    join_all(surfaces, cloud, limits.agreement, run);
+    drop_explained(surfaces, cloud, limits.agreement, run);
+    share_points(surfaces, cloud, limits, run);
+    fit_all(surfaces, cloud, limits.agreement, run);
+  }
+  return surfaces;
+}
+
+}  // namespace cloud2csg
