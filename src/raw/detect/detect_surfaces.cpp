@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -81,12 +80,12 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
     std::optional<GrownSurface> surface = find_one(points, limits, draws, seed, round, run);
     draws *= 2;
     if (!surface) continue;
-    const auto rest = std::stable_partition(surface->points.begin(), surface->points.end(), is_evidence);
-    const bool is_enough = rest - surface->points.begin() >= static_cast<std::ptrdiff_t>(limits.least_points);
-    points.take(is_enough ? std::span(surface->points) : std::span(rest, surface->points.end()));
+    const auto evidence = std::count_if(surface->points.begin(), surface->points.end(), is_evidence);
+    const bool is_enough = static_cast<std::size_t>(evidence) >= limits.least_points;
+    if (!is_enough) std::erase_if(surface->points, is_evidence);
+    points.take(surface->points);
     if (!is_enough) continue;
     draws = k_draws;
-    std::sort(surface->points.begin(), surface->points.end());
     found.push_back(std::move(*surface));
   }
   return found;
@@ -95,8 +94,7 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
 /// Finds all surfaces, then more among the points that are left, by normals of their own. Points that the first
 /// surfaces explain are no evidence for a later one. Only its other points get the new normals.
 std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
-                                             const RunContext& run) {
-  const StageShare share("detect", cloud.size(), "points");
+                                             const RunContext& run, const StageShare& share) {
   constexpr double k_first_pass = 0.8;  // of the time, roughly
   FreePoints points(cloud);
   const auto always = [](std::uint32_t) { return true; };
@@ -228,14 +226,15 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
                             .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
                             .least_points = least_points_of(options, scale, cloud.size())};
 
+  const StageShare share("detect", cloud.size(), "points");
   Detection result{.surfaces = {}, .unexplained = cloud.size(), .distance_tolerance = tolerance};
   for (const GrownSurface& grown :
-       settle_surfaces(find_in_two_passes(work, limits, options.seed, run), work, limits, run)) {
+       settle_surfaces(find_in_two_passes(work, limits, options.seed, run, share), work, limits, run)) {
     if (!has_allowed_size(grown, work, options, limits.link)) continue;
     result.surfaces.push_back(detected(grown, work));
     result.unexplained -= grown.points.size();
   }
-  run.report("detect", cloud.size(), cloud.size(), "points");
+  share.report(run, 1);
   return result;
 }
 
