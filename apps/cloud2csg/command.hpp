@@ -16,10 +16,18 @@
 
 namespace cloud2csg::app {
 
-/// A subcommand: its options, bound to their values, and its action. @throws (by run) Error, Cancelled
+// Exit statuses.
+inline constexpr int k_done = 0;
+inline constexpr int k_failed = 1;
+inline constexpr int k_wrong_usage = 2;
+inline constexpr int k_doubtful = 3;  ///< files are written, but the result's verdict is `doubtful`
+
+/// A subcommand: its options, bound to their values, and its action.
 struct Command {
   CLI::App* options;
-  std::function<void(std::stop_token)> run;
+  std::function<int(std::stop_token)> run;  ///< returns the exit status. @throws Error, Cancelled
+  std::function<void(std::string_view)> fail =
+      {};  ///< tells of a failed run() on standard output, where that is asked for
 };
 
 // Each adds its subcommand to the program; one file per subcommand.

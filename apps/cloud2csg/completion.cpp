@@ -203,6 +203,7 @@ Command add_completion(CLI::App& program) {
       ->type_name("SHELL");
   return {.options = app, .run = [shell](const std::stop_token& /*stop*/) {
             fmt::print("{}", *shell == "bash" ? k_bash : *shell == "zsh" ? k_zsh : k_fish);
+            return k_done;
           }};
 }
 

@@ -15,6 +15,7 @@
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "raw_options.hpp"
+#include "verdict.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -25,13 +26,17 @@ struct DetectCommand {
   std::string cloud;
   std::string primitives;  // known primitives; empty: none
   bool detect_rest = false;
+  bool json = false;
   std::vector<std::string> outputs;
   ReconstructOptions options;
   InputOptions reading;
   PictureOptions drawing;
   RunOptions running;
 
-  void run(std::stop_token stop) const;
+  [[nodiscard]] int run(std::stop_token stop) const;
+  void fail(std::string_view message) const {
+    if (json) tell_failure(message);
+  }
   void settle(const CLI::App& /*app*/) { share_values(options, reading); }
 };
 
@@ -75,7 +80,7 @@ std::vector<Colour> colours_of(const Extraction& found) {
   return colours;
 }
 
-void DetectCommand::run(std::stop_token stop) const {
+int DetectCommand::run(std::stop_token stop) const {
   check_outputs(outputs, k_endings, inputs_of(cloud, primitives));
   Session session(running, std::move(stop));
 
@@ -116,6 +121,7 @@ void DetectCommand::run(std::stop_token stop) const {
                   "deg; {} solids; noise {:.3g}, tolerance {:.3g}",
                   found.surfaces.size(), finding.unexplained_points, found.cloud.size(), finding.snaps.size(),
                   largest.shift, largest.turn_deg, found.model.primitives.size(), finding.noise, finding.tolerance));
+  return tell_verdict(session, found.statistics, outputs, json);
 }
 
 void add_options(CLI::App& app, DetectCommand& command, FieldArguments& fields) {
@@ -129,6 +135,7 @@ void add_options(CLI::App& app, DetectCommand& command, FieldArguments& fields) 
       ->needs(primitives)
       ->group("Input");
   add_outputs(app, command.outputs, "the solids (.json), or the points in the colours of their solids (.ply, .png)");
+  add_json_option(app, command.json);
   fields.add(command.options.extraction,
              {.group = "Finding primitives", .path = "extraction.", .only = {"seed", "time_limit_seconds"}});
   add_raw_options(fields, command.options, command.reading);

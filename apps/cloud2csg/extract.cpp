@@ -21,6 +21,7 @@
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
 #include "raw_options.hpp"
+#include "verdict.hpp"
 
 namespace cloud2csg::app {
 namespace {
@@ -125,6 +126,7 @@ struct ExtractCommand {
   std::vector<std::string> outputs;
   std::optional<std::string> statistics;
   std::optional<std::string> unexplained;
+  bool json = false;
   bool refine = false;
   std::string preset = "default";
   ReconstructOptions options;
@@ -136,7 +138,10 @@ struct ExtractCommand {
 
   void prepare();
   void settle(const CLI::App& app);
-  void run(const std::stop_token& stop) const;
+  [[nodiscard]] int run(const std::stop_token& stop) const;
+  void fail(std::string_view message) const {
+    if (json) tell_failure(message);
+  }
   /// `given` is empty when all primitives are to be found.
   [[nodiscard]] Extraction extract(Input input, const PrimitiveSet& given, const RunContext& run) const;
   [[nodiscard]] Extraction extract_over(PointCloud points, const PrimitiveSet& solids, const RunContext& run) const;
@@ -147,6 +152,8 @@ struct ExtractCommand {
   void draw(const Extraction& result, const RunContext& run, OutputSet& written) const;
   void report(Extraction result, std::vector<ReportDownload> downloads, const RunContext& run,
               OutputSet& written) const;
+  /// Writes all files, or none, and completes the statistics.
+  [[nodiscard]] ExtractStatistics write_all(Extraction result, const Stopwatch& total, const RunContext& run) const;
 };
 
 void ExtractCommand::prepare() {
@@ -174,10 +181,10 @@ PointCloud ExtractCommand::unexplained_part(const Extraction& result, int thread
 std::string headline(const ExtractStatistics& statistics, const std::string& cloud) {
   return fmt::format(
       "{}extracted by cloud2csg {} from {} (seed {})\n{} nodes, {} leaves, {} levels; rms distance {:.4g}, rms angle "
-      "{:.3g} deg",
+      "{:.3g} deg\n{}",
       statistics.complete ? "" : "INCOMPLETE: the search was stopped before its end\n", CLOUD2CSG_VERSION, cloud,
       statistics.seed, statistics.tree.size, statistics.tree.leaves, statistics.tree.levels,
-      statistics.fit.rms_distance, statistics.fit.rms_angle_deg);
+      statistics.fit.rms_distance, statistics.fit.rms_angle_deg, to_text(statistics.verdict));
 }
 
 AddedModels ExtractCommand::write(const Extraction& result, const RunContext& run, OutputSet& written) const {
@@ -244,7 +251,30 @@ std::vector<std::string> ExtractCommand::check_files() const {
   return written;
 }
 
-void ExtractCommand::run(const std::stop_token& stop) const {
+ExtractStatistics ExtractCommand::write_all(Extraction result, const Stopwatch& total, const RunContext& run) const {
+  const Stopwatch writing;
+  OutputSet written;
+  AddedModels models = write(result, run, written);
+  if (unexplained) {
+    written.add(*unexplained, [&](const std::filesystem::path& path) {
+      write_point_cloud(path, unexplained_part(result, run.threads));
+    });
+  }
+  ExtractStatistics& outcome = result.statistics;
+  outcome.seconds.write = writing.seconds();
+  outcome.seconds.total = total.seconds();
+  outcome.warnings.insert(outcome.warnings.end(), models.warnings.begin(), models.warnings.end());
+  if (statistics) {
+    written.add(*statistics, [&](const std::filesystem::path& path) { write_text_file(path, to_json(outcome)); });
+  }
+  ExtractStatistics told = outcome;
+  draw(result, run, written);
+  report(std::move(result), std::move(models.texts), run, written);
+  written.commit();
+  return told;
+}
+
+int ExtractCommand::run(const std::stop_token& stop) const {
   const Stopwatch total;
   const std::vector<std::string> to_write = check_files();
   Session session(running, stop);
@@ -256,35 +286,20 @@ void ExtractCommand::run(const std::stop_token& stop) const {
   doubts.insert(doubts.end(), input.warnings.begin(), input.warnings.end());
   const double read_seconds = total.seconds();
   Extraction result = extract(std::move(input), given.primitives, session.run());
-  result.statistics.warnings.insert(result.statistics.warnings.begin(), doubts.begin(), doubts.end());
-
-  const Stopwatch writing;
-  OutputSet written;
-  AddedModels models = write(result, session.run(), written);
-  if (unexplained) {
-    written.add(*unexplained, [&](const std::filesystem::path& path) {
-      write_point_cloud(path, unexplained_part(result, session.run().threads));
-    });
+  ExtractStatistics& outcome = result.statistics;
+  outcome.warnings.insert(outcome.warnings.begin(), doubts.begin(), doubts.end());
+  outcome.seconds.read = read_seconds;
+  if (outcome.verdict.grade == Grade::failed) {
+    session.warn(outcome.warnings);
+    return tell_verdict(session, outcome, {}, json);
   }
-  StageSeconds& seconds = result.statistics.seconds;
-  seconds.read = read_seconds;
-  seconds.write = writing.seconds();
-  seconds.total = total.seconds();
-  result.statistics.warnings.insert(result.statistics.warnings.end(), models.warnings.begin(), models.warnings.end());
-  if (statistics) {
-    written.add(*statistics,
-                [&](const std::filesystem::path& path) { write_text_file(path, to_json(result.statistics)); });
-  }
-  const ExtractStatistics summary = result.statistics;
-  draw(result, session.run(), written);
-  report(std::move(result), std::move(models.texts), session.run(), written);
-  written.commit();
-
-  session.warn(summary.warnings);
-  for (const std::string& line : summary_of(summary, to_write)) session.display().note(line);
-  if (stop.stop_requested() && !summary.complete) {
-    throw Error({.where = "interrupted", .expected = "the best tree so far was written"});
-  }
+  const ExtractStatistics told = write_all(std::move(result), total, session.run());
+  session.warn(told.warnings);
+  for (const std::string& line : summary_of(told, to_write)) session.display().note(line);
+  const int status = tell_verdict(session, told, to_write, json);
+  if (!stop.stop_requested() || told.complete) return status;
+  session.display().say("cloud2csg: interrupted: the best tree so far was written");
+  return k_failed;
 }
 
 void add_options(CLI::App& app, ExtractCommand& command, FieldArguments& fields) {
@@ -299,6 +314,7 @@ void add_options(CLI::App& app, ExtractCommand& command, FieldArguments& fields)
           ->group("Input");
   add_outputs(app, command.outputs, model_endings());
   fields.add(command.exporting, {.group = "Output"});
+  add_json_option(app, command.json);
   app.add_option("--stats", command.statistics, "File for statistics: times, search, merge, fit")
       ->check(file_name())
       ->type_name("STATS.json")

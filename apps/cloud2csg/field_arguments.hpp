@@ -232,7 +232,7 @@ class FieldArguments {
 };
 
 /// A subcommand whose action and options are those of a `Work`. `add_options` adds its options. work.prepare() runs
-/// before values are set and work.settle() after, where they exist.
+/// before values are set and work.settle() after, where they exist; work.fail() when the action failed.
 template <typename Work>
 [[nodiscard]] Command make_command(CLI::App& app, void (*add_options)(CLI::App&, Work&, FieldArguments&)) {
   auto work = std::make_shared<Work>();
@@ -245,17 +245,27 @@ template <typename Work>
     fields->take();
     if constexpr (requires { work->settle(app); }) work->settle(app);
   });
-  return {.options = &app, .run = [work, fields](const std::stop_token& stop) {
-            try {
-              work->run(stop);
-            } catch (const WrongUsage&) {
-              throw;
-            } catch (const WrongFile&) {
-              throw;
-            } catch (const Error& error) {
-              throw fields->respelled(error);
-            }
-          }};
+  const auto run = [work, fields](const std::stop_token& stop) {
+    try {
+      if constexpr (std::is_void_v<decltype(work->run(stop))>) {
+        work->run(stop);
+        return k_done;
+      } else {
+        return work->run(stop);
+      }
+    } catch (const WrongUsage&) {
+      throw;
+    } catch (const WrongFile&) {
+      throw;
+    } catch (const Error& error) {
+      throw fields->respelled(error);
+    }
+  };
+  const auto fail = [work](std::string_view message) {
+    (void)message;  // for fail() only
+    if constexpr (requires { work->fail(message); }) work->fail(message);
+  };
+  return {.options = &app, .run = run, .fail = fail};
 }
 
 }  // namespace cloud2csg::app

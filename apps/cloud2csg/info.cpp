@@ -136,7 +136,10 @@ Command add_info(CLI::App& program) {
   auto command = std::make_shared<InfoCommand>();
   add_file(*app, "file", command->file, "Point cloud, mesh or model")->type_name("FILE");
   app->add_flag("--json", command->is_json, "Print JSON instead of a table")->group("Output");
-  return {.options = app, .run = [command](const std::stop_token& /*stop*/) { command->run(); }};
+  return {.options = app, .run = [command](const std::stop_token& /*stop*/) {
+            command->run();
+            return k_done;
+          }};
 }
 
 }  // namespace cloud2csg::app

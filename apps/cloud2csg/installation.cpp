@@ -128,7 +128,10 @@ Command add_doctor(CLI::App& program) {
       "'absent' marks parts that this program was built without, or that are not installed. Exit status 1 means that "
       "something is broken.\n\n" +
       example("  cloud2csg doctor"));
-  return {.options = app, .run = [](const std::stop_token& /*stop*/) { examine(); }};
+  return {.options = app, .run = [](const std::stop_token& /*stop*/) {
+            examine();
+            return k_done;
+          }};
 }
 
 }  // namespace cloud2csg::app

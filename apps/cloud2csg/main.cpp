@@ -22,10 +22,6 @@
 namespace cloud2csg::app {
 namespace {
 
-constexpr int k_done = 0;
-constexpr int k_failed = 1;
-constexpr int k_wrong_usage = 2;
-
 int complain(int status, std::string_view message) {
   const std::string line = "cloud2csg: " + visible_text(message) + "\n";
   std::fputs(line.c_str(), stderr);  // does not throw when nobody reads it
@@ -62,13 +58,45 @@ void describe(CLI::App& program) {
                          "  cloud2csg convert part.json -o part.stl") +
                  "\n\n'cloud2csg COMMAND --help', or 'cloud2csg help COMMAND', explains a command.\nResults go to "
                  "files and standard output, progress and messages to standard error.\nExit status: 0 success, 1 "
-                 "failure, 2 wrong usage, 130 interrupted twice.");
+                 "failure, 2 wrong usage, 3 a doubtful result, 130 interrupted twice.");
+}
+
+/// What is told of the exception being handled.
+struct Failure {
+  int status;
+  std::string message;
+};
+
+Failure current_failure() {
+  try {
+    throw;
+  } catch (const Cancelled&) {
+    return {k_failed, "interrupted"};
+  } catch (const WrongUsage& error) {
+    return {k_wrong_usage, error.what()};
+  } catch (const WrongFile& error) {
+    return {k_failed, fmt::format("{}; {}", error.what(), taker_of(error.found()))};
+  } catch (const std::bad_alloc&) {
+    return {k_failed, "not enough memory"};
+  } catch (const std::system_error& error) {
+    end_if_unread(error.code().value());
+    return {k_failed, error.what()};
+  } catch (const std::exception& error) {
+    return {k_failed, error.what()};
+  }
 }
 
 int run_command(const Command& command) {
   const InterruptWatcher interrupts;
-  command.run(interrupts.token());
-  return flushed();
+  try {
+    const int status = command.run(interrupts.token());
+    return std::max(status, flushed());
+  } catch (...) {
+    const Failure failure = current_failure();
+    if (command.fail) command.fail(failure.message);
+    (void)flushed();
+    return complain(failure.status, failure.message);
+  }
 }
 
 /// The words of the command line; "help extract" becomes "extract --help".
@@ -128,18 +156,8 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe likewise
   try {
     return app::run(argc, argv);
-  } catch (const Cancelled&) {
-    return app::complain(app::k_failed, "interrupted");
-  } catch (const app::WrongUsage& error) {
-    return app::complain(app::k_wrong_usage, error.what());
-  } catch (const WrongFile& error) {
-    return app::complain(app::k_failed, fmt::format("{}; {}", error.what(), app::taker_of(error.found())));
-  } catch (const std::bad_alloc&) {
-    return app::complain(app::k_failed, "not enough memory");
-  } catch (const std::system_error& error) {
-    app::end_if_unread(error.code().value());
-    return app::complain(app::k_failed, error.what());
-  } catch (const std::exception& error) {
-    return app::complain(app::k_failed, error.what());
+  } catch (...) {
+    const app::Failure failure = app::current_failure();
+    return app::complain(failure.status, failure.message);
   }
 }

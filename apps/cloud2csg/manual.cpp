@@ -155,6 +155,7 @@ Command add_manual(CLI::App& program) {
               const std::filesystem::path file = std::filesystem::path(*folder) / (path_text(*command, "-") + ".1");
               write_text_file(file, manual_page(*command, program));
             }
+            return k_done;
           }};
 }
 

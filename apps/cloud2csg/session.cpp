@@ -182,7 +182,10 @@ void ProgressDisplay::draw(const Progress& progress, ProgressClock::time_point n
 }
 
 void ProgressDisplay::note(std::string_view line) {
-  if (style_ == ProgressStyle::none) return;
+  if (style_ != ProgressStyle::none) say(line);
+}
+
+void ProgressDisplay::say(std::string_view line) {
   finish();
   put(visible_text(line) + "\n");
 }
@@ -212,7 +215,7 @@ Session::Session(const RunOptions& options, std::stop_token stop)
            .threads = options.threads} {}
 
 void Session::warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) display_.note("warning: " + warning);
+  for (const std::string& warning : warnings) display_.say("warning: " + warning);
 }
 
 }  // namespace cloud2csg::app

@@ -64,8 +64,10 @@ class ProgressDisplay {
   ProgressDisplay& operator=(ProgressDisplay&&) = delete;
 
   void update(const Progress& progress);
-  /// Ends the running stage and prints the line.
+  /// Ends the running stage and prints the line; in style `none` it prints nothing.
   void note(std::string_view line);
+  /// The same in every style.
+  void say(std::string_view line);
   void finish();
 
  private:
@@ -98,6 +100,7 @@ class Session {
   Session(const RunOptions& options, std::stop_token stop);
   [[nodiscard]] const RunContext& run() const { return run_; }
   [[nodiscard]] ProgressDisplay& display() { return display_; }
+  /// Not silenced by `quiet`.
   void warn(const std::vector<std::string>& warnings);
 
  private:

@@ -39,8 +39,9 @@ Command add_bench(CLI::App& program) {
   std::vector<Command> experiments{add_bench_paper(*app), add_bench_scaling(*app), add_bench_compare(*app)};
   return {.options = app, .run = [experiments = std::move(experiments)](const std::stop_token& stop) {
             for (const Command& experiment : experiments) {
-              if (experiment.options->parsed()) experiment.run(stop);
+              if (experiment.options->parsed()) return experiment.run(stop);
             }
+            return k_done;
           }};
 }
 

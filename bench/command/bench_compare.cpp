@@ -21,9 +21,9 @@ struct CompareResultsCommand {
   void run(const std::stop_token& stop) const;
 };
 
-std::size_t count_of(std::span<const Change> changes, Verdict verdict) {
-  return static_cast<std::size_t>(std::count_if(changes.begin(), changes.end(),
-                                                [verdict](const Change& change) { return change.verdict == verdict; }));
+std::size_t count_of(std::span<const Change> changes, Difference difference) {
+  return static_cast<std::size_t>(std::count_if(
+      changes.begin(), changes.end(), [difference](const Change& change) { return change.difference == difference; }));
 }
 
 void CompareResultsCommand::run(const std::stop_token& /*stop*/) const {
@@ -33,7 +33,7 @@ void CompareResultsCommand::run(const std::stop_token& /*stop*/) const {
       before + " with " + after, [&] { return compare_paper_results(results_before, results_after, comparing); });
   std::vector<Change> shown;
   std::copy_if(changes.begin(), changes.end(), std::back_inserter(shown),
-               [this](const Change& change) { return is_all || change.verdict != Verdict::same; });
+               [this](const Change& change) { return is_all || change.difference != Difference::same; });
   if (!shown.empty()) fmt::print("{}\n", changes_markdown(shown));
   const Environment& machine_before = results_before.environment;
   const Environment& machine_after = results_after.environment;
@@ -41,9 +41,10 @@ void CompareResultsCommand::run(const std::stop_token& /*stop*/) const {
     fmt::print("The machines differ ({}, {} cores; {}, {} cores), and so do durations.\n", machine_before.cpu,
                machine_before.cores, machine_after.cpu, machine_after.cores);
   }
-  const std::size_t worse = count_of(changes, Verdict::worse);
+  const std::size_t worse = count_of(changes, Difference::worse);
   fmt::print("{} measures: {} worse, {} better, {} the same within the noise, {} unknown\n", changes.size(), worse,
-             count_of(changes, Verdict::better), count_of(changes, Verdict::same), count_of(changes, Verdict::unknown));
+             count_of(changes, Difference::better), count_of(changes, Difference::same),
+             count_of(changes, Difference::unknown));
   if (worse == 0) return;
   throw Error({.file = after, .expected = fmt::format("{} measures got worse", worse)});
 }

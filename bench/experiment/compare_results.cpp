@@ -35,13 +35,13 @@ void check_comparable(const PaperOptions& a, const PaperOptions& b) {
   });
 }
 
-Verdict judge(const Change& change, double least_change, double error_rate) {
-  if (change.before.count < 2 || change.after.count < 2) return Verdict::unknown;
+Difference judge(const Change& change, double least_change, double error_rate) {
+  if (change.before.count < 2 || change.after.count < 2) return Difference::unknown;
   // Not the relative change: it does not exist for a mean of 0 before.
   const double difference = change.after.mean - change.before.mean;
   const bool matters = std::abs(difference) >= least_change * std::abs(change.before.mean);
-  if (difference == 0 || !matters || welch_test(change.before, change.after) >= error_rate) return Verdict::same;
-  return difference > 0 ? Verdict::worse : Verdict::better;
+  if (difference == 0 || !matters || welch_test(change.before, change.after) >= error_rate) return Difference::same;
+  return difference > 0 ? Difference::worse : Difference::better;
 }
 
 double relative_change(const Spread& before, const Spread& after) {
@@ -79,7 +79,7 @@ std::vector<Change> compare_paper_results(const PaperResults& before, const Pape
   const double error_rate = options.error_rate / static_cast<double>(changes.size());
   for (Change& change : changes) {
     const bool is_time = change.measure == k_measures.front().name;
-    change.verdict = judge(change, is_time ? options.least_time_change : options.least_change, error_rate);
+    change.difference = judge(change, is_time ? options.least_time_change : options.least_change, error_rate);
   }
   return changes;
 }
@@ -87,11 +87,11 @@ std::vector<Change> compare_paper_results(const PaperResults& before, const Pape
 std::string changes_markdown(std::span<const Change> changes) {
   Table table{.name = "changes",
               .title = "Changes",
-              .columns = {"model", "sampling", "mode", "measure", "before", "after", "change", "verdict"}};
+              .columns = {"model", "sampling", "mode", "measure", "before", "after", "change", "difference"}};
   for (const Change& change : changes) {
     table.rows.push_back({change.model, std::string(to_string(change.sampling)), change.mode, change.measure,
                           change.before, change.after, fmt::format("{:+.1f} %", 100 * change.relative),
-                          std::string(to_string(change.verdict))});
+                          std::string(to_string(change.difference))});
   }
   return to_markdown(table);
 }

@@ -164,16 +164,18 @@ struct Spread {
 [[nodiscard]] std::vector<std::string> write_paper_report(const std::filesystem::path& folder,
                                                           const PaperResults& results);
 
-enum class Verdict {
+enum class Difference {
   same,     ///< within the noise, or too small to matter
   better,   ///< faster, smaller
   worse,    ///< slower, larger
   unknown,  ///< fewer than two repeats on one side
 };
 /// "same", "better", "worse", "unknown"
-constexpr auto names_of(Verdict /*any*/) {
-  return std::to_array<EnumName<Verdict>>(
-      {{"same", Verdict::same}, {"better", Verdict::better}, {"worse", Verdict::worse}, {"unknown", Verdict::unknown}});
+constexpr auto names_of(Difference /*any*/) {
+  return std::to_array<EnumName<Difference>>({{"same", Difference::same},
+                                              {"better", Difference::better},
+                                              {"worse", Difference::worse},
+                                              {"unknown", Difference::unknown}});
 }
 
 /// One measure of one model, sampling and mode in two results.
@@ -184,7 +186,7 @@ struct Change {
   std::string measure;  ///< "duration, ms", "nodes", "rms distance", "evaluations"; less is better
   Spread before = {}, after = {};
   double relative = 0;  ///< after / before - 1, of the means
-  Verdict verdict = Verdict::unknown;
+  Difference difference = Difference::unknown;
 };
 
 struct ResultComparisonOptions {

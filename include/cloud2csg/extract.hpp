@@ -190,7 +190,9 @@ struct FindingStatistics {
   std::size_t unexplained_points = 0;       ///< points on no detected surface and no known primitive
   std::vector<Snap> snaps = {};             ///< surfaces made regular, and by how much
   double disagreement = 0;                  ///< see SolidChoice
-  bool is_tree_of_choice = false;           ///< the result is the tree that the solids were chosen with
+  /// Share of the result's surface, within the bounds of the cloud, that has no points nearby. 0 without a tree.
+  double bare_surface = 0;
+  bool is_tree_of_choice = false;  ///< the result is the tree that the solids were chosen with
 };
 
 struct TreeStatistics {
@@ -207,7 +209,42 @@ struct FitStatistics {
   double p95_angle_deg = 0;                ///< 95 % of the normals are within this angle of the surface's
   SegmentationTolerances tolerances = {};  ///< the tolerances in force
   std::size_t unexplained_points = 0;      ///< number of unexplained_points() with these tolerances
+  /// Indices of the points farther from the surface than these tolerances allow, ascending.
+  std::vector<std::uint32_t> far_points = {};
 };
+
+/// How far a result can be trusted. docs/command_line.md has the thresholds.
+enum class Grade {
+  good,
+  doubtful,  ///< usable, but a part of it contradicts the points or is a guess
+  failed,    ///< no better than no result
+};
+constexpr auto names_of(Grade /*any*/) {
+  return std::to_array<EnumName<Grade>>(
+      {{"good", Grade::good}, {"doubtful", Grade::doubtful}, {"failed", Grade::failed}});
+}
+
+/// A connected region whose points are mostly off the result.
+struct UnexplainedRegion {
+  std::size_t points = 0;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< centre of the bounds of these points
+  double size = 0;                                  ///< diagonal of these bounds
+};
+
+/// Judgement of a result by its own points. A good result may still lack what no point shows.
+struct Verdict {
+  Grade grade = Grade::good;
+  double distance = 0;                          ///< tolerance, in the cloud's units
+  double share_within = 0;                      ///< share of the points within this distance of the result
+  std::vector<std::string> doubts = {};         ///< clauses about the result, with places; empty for a good result
+  std::vector<UnexplainedRegion> regions = {};  ///< most points first
+};
+
+/// One line: "good: 99.2 % of the points within 0.12 of the surface", then the doubts.
+[[nodiscard]] std::string to_text(const Verdict& verdict);
+
+/// One line for each region, most points first: "unexplained: 412 points around (1, 2.5, 3), 4.1 across".
+[[nodiscard]] std::vector<std::string> region_lines(const Verdict& verdict);
 
 /// What extract_refined_csg() did to the primitives. See Refinement.
 struct RefineStatistics {
@@ -238,6 +275,7 @@ struct ExtractStatistics {
   std::vector<TreeStep> steps;               ///< steps on the way to the tree, with its size after each
   TreeStatistics before_simplification, tree;
   FitStatistics fit;
+  Verdict verdict;
   StageSeconds seconds;
   std::vector<std::string> warnings;
 };
@@ -279,5 +317,8 @@ struct Extraction {
 
 /// The statistics as JSON, as the command line's --stats writes them.
 [[nodiscard]] std::string to_json(const ExtractStatistics& statistics);
+
+/// The verdict and the figures behind it as one line of JSON: the "verdict" of the statistics.
+[[nodiscard]] std::string verdict_json(const ExtractStatistics& statistics);
 
 }  // namespace cloud2csg

@@ -136,8 +136,14 @@ void bind_extract(py::module_& module) {
           "statistics", &statistics_of,
           "dict: the content of the file that the command line writes with --stats; times in seconds.")
       .def_property_readonly(
+          "verdict",
+          [](const Result& self) { return py::module_::import("json").attr("loads")(verdict_json(self.statistics)); },
+          "dict: how far the result can be trusted: `grade` (\"good\", \"doubtful\" or \"failed\"), `text`, the "
+          "figures "
+          "behind it, and the `regions` of points that stay unexplained, most points first.")
+      .def_property_readonly(
           "warnings", [](const Result& self) { return self.statistics.warnings; },
-          "Sentences about doubts, with places.")
+          "Sentences about the cloud and the work, with places.")
       .def_property_readonly(
           "complete", [](const Result& self) { return self.statistics.complete; },
           "False when a time limit ended the search.")

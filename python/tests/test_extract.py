@@ -102,6 +102,16 @@ def test_detect(plate):
     assert finding["unexplained_points"] < 0.05 * len(found.cloud) and found.warnings == []
 
 
+def test_verdict(plate):
+    cloud = cloud2csg.sample(plate, count=20_000, noise=0.002)
+    result = cloud2csg.extract(cloud, plate)
+    assert result.verdict == result.statistics["verdict"]
+    assert result.verdict["grade"] == "good" and result.verdict["text"].startswith("good: ")
+    assert result.verdict["regions"] == [] and 0.9 < result.verdict["share_within"] <= 1
+    lacking = cloud2csg.extract(cloud, [plate.primitives[0]])
+    assert lacking.verdict["grade"] != "good" and lacking.verdict["doubts"]
+
+
 def test_exact_points_are_told(tmp_path, plate):
     plate.mesh(resolution=48).write(tmp_path / "plate.stl")
     cloud = cloud2csg.read_cloud(tmp_path / "plate.stl", mesh_points=20_000)

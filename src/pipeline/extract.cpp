@@ -13,6 +13,7 @@
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"
+#include "pipeline/verdict.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -195,13 +196,12 @@ class Extractor {
   }
 
   void finish(const CsgTree& tree) {
-    if (primitives_of(tree).empty()) {
-      statistics_.warnings.emplace_back("the result is empty: no formula over the primitives explains the points");
-      return;
+    if (!primitives_of(tree).empty()) {
+      statistics_.fit = fit_of(tree);
+      if (statistics_.cells) describe_cells();
+      append(statistics_.warnings, search_warnings(statistics_));
     }
-    statistics_.fit = fit_of(tree);
-    if (statistics_.cells) describe_cells();
-    append(statistics_.warnings, fit_warnings(statistics_, scale_.tolerances.distance));
+    statistics_.verdict = judge_fit(tree, statistics_.fit, cloud_.positions);
   }
 
   /// Adds statistics that the extraction by cells does not need.

@@ -22,11 +22,25 @@
 namespace cloud2csg {
 namespace {
 
-/// Indices of the cloud's points on no known primitive.
-std::vector<std::uint32_t> points_of_none(const std::vector<SurfacePoints>& known, std::size_t count) {
+using PointLists = std::vector<std::span<const std::uint32_t>>;
+
+PointLists lists_of(std::span<const SurfacePoints> known) {
+  PointLists lists;
+  for (const SurfacePoints& own : known) lists.emplace_back(own.points);
+  return lists;
+}
+
+PointLists lists_of(const RestDetection& found) {
+  PointLists lists = lists_of(found.known);
+  for (const DetectedSurface& surface : found.detection.surfaces) lists.emplace_back(surface.points);
+  return lists;
+}
+
+/// Indices below `count` that are in none of the lists, ascending.
+std::vector<std::uint32_t> points_of_none(const PointLists& lists, std::size_t count) {
   std::vector<bool> is_taken(count, false);
-  for (const SurfacePoints& own : known) {
-    for (const std::uint32_t i : own.points) is_taken[i] = true;
+  for (const std::span<const std::uint32_t> own : lists) {
+    for (const std::uint32_t i : own) is_taken[i] = true;
   }
   return places_where(is_taken, false);
 }
@@ -111,28 +125,58 @@ void add_evidence(FoundPrimitives& found, const DetectOptions& options, const Ru
 
 /// Leaves out the doubted points that are on no surface and on no known primitive: they are outliers.
 std::pair<PreparedCloud, RestDetection> without_doubted(PreparedCloud prepared, RestDetection rest) {
-  std::vector<bool> is_outlier(prepared.cloud.size(), false);
-  for (const std::uint32_t i : prepared.doubted) is_outlier[i] = true;
-  const auto for_each_list = [&rest](const auto& function) {
-    for (DetectedSurface& surface : rest.detection.surfaces) function(surface.points);
-    for (SurfacePoints& known : rest.known) function(known.points);
-  };
-  for_each_list([&](const std::vector<std::uint32_t>& points) {
-    for (const std::uint32_t i : points) is_outlier[i] = false;
-  });
-  const std::vector<std::uint32_t> kept = places_where(is_outlier, false);
-  std::vector<std::uint32_t> place(is_outlier.size());
-  for (std::uint32_t k = 0; k < kept.size(); ++k) place[kept[k]] = k;
-  const std::size_t outliers = is_outlier.size() - kept.size();
-  prepared.doubted.clear();
-  if (outliers == 0) return {std::move(prepared), std::move(rest)};
-  for_each_list([&](std::vector<std::uint32_t>& points) {
+  const std::vector<std::uint32_t> doubted = std::exchange(prepared.doubted, {});
+  const std::size_t count = prepared.cloud.size();
+  std::vector<std::uint32_t> outliers;
+  std::ranges::set_intersection(doubted, points_of_none(lists_of(rest), count), std::back_inserter(outliers));
+  if (outliers.empty()) return {std::move(prepared), std::move(rest)};
+  std::vector<std::uint32_t> place(count);
+  auto next = outliers.begin();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    place[i] = i - static_cast<std::uint32_t>(next - outliers.begin());
+    if (next != outliers.end() && *next == i) ++next;
+  }
+  const auto move = [&place](std::vector<std::uint32_t>& points) {
     for (std::uint32_t& i : points) i = place[i];
-  });
-  prepared.cloud = select_points(prepared.cloud, kept);
-  prepared.cleaning.off_surface += outliers;
-  rest.detection.unexplained -= outliers;
+  };
+  for (DetectedSurface& surface : rest.detection.surfaces) move(surface.points);
+  for (SurfacePoints& known : rest.known) move(known.points);
+  prepared.cloud = without_points(prepared.cloud, outliers);
+  prepared.cleaning.off_surface += outliers.size();
+  rest.detection.unexplained -= outliers.size();
   return {std::move(prepared), std::move(rest)};
+}
+
+/// @throws Error without surfaces and without points on known primitives
+void check_any_surface(const RestDetection& found, const PointCloud& cloud) {
+  if (!found.detection.surfaces.empty() || count_of(found.known) > 0) return;
+  throw Error(
+      {.expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
+                               "within {:.3g}",
+                               cloud.size(), found.detection.distance_tolerance),
+       .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces"});
+}
+
+/// Chooses the solids, or notes why there are none.
+void choose(FoundPrimitives& found, std::vector<SurfacePoints> own, const ReconstructOptions& options,
+            const RunContext& run) {
+  std::vector<KnownSolid> known;
+  for (std::size_t k = 0; k < options.known.size(); ++k) {
+    known.push_back({.solid = options.known[k], .own = std::move(own[k])});
+  }
+  SolidOptions solids = options.solids;
+  if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
+  try {
+    found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
+  } catch (const Error& error) {
+    found.no_solid = error;
+    return;
+  }
+  if (!found.choice.solids.empty()) return;
+  found.no_solid =
+      Error({.expected = fmt::format("the {} detected surfaces in a cloud of {} points bound no solid",
+                                     found.detection.surfaces.size(), found.prepared.cloud.size()),
+             .remedy = "give a cloud of some thousand points that covers most of the surface of a closed object"});
 }
 
 /// find_primitives() without warnings about known primitives.
@@ -150,25 +194,15 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   auto [prepared, rest] = without_doubted(std::move(found.prepared), std::move(all));
   found.prepared = std::move(prepared);
   append(found.warnings, outlier_warnings(found.prepared.cleaning, cloud.size()));
-  append(found.warnings, detection_warnings(rest, found.prepared));
+  check_any_surface(rest, found.prepared.cloud);
+  found.unexplained = points_of_none(lists_of(rest), found.prepared.cloud.size());
   found.detection = std::move(rest.detection);
   // Known primitives have ends of their own.
   if (options.close_unseen && options.known.empty()) found = with_unseen_closed(std::move(found), run);
   found.detect_seconds = watch.lap();
 
   run.report("solids", 0, 0);
-  std::vector<KnownSolid> known;
-  for (std::size_t k = 0; k < options.known.size(); ++k) {
-    known.push_back({.solid = options.known[k], .own = std::move(rest.known[k])});
-  }
-  SolidOptions solids = options.solids;
-  if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
-  found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
-  if (found.choice.solids.empty()) {
-    throw Error({.expected = fmt::format("the {} detected surfaces in a cloud of {} points bound no solid",
-                                         found.detection.surfaces.size(), found.prepared.cloud.size()),
-                 .remedy = "give a cloud of some thousand points that covers most of the surface of a closed object"});
-  }
+  choose(found, std::move(rest.known), options, run);
   append(found.warnings, found.choice.warnings);
   // An early stop of the choice still leaves a tree.
   add_evidence(found, options.detection, without_stop(run));
@@ -182,7 +216,7 @@ RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const Pri
                           const DetectOptions& options, const RunContext& run) {
   if (known.empty()) return {.known = {}, .detection = detect_surfaces(cloud, scale, options, run)};
   RestDetection result{.known = deal_points(cloud, known, tolerances_of(options, scale), run), .detection = {}};
-  const std::vector<std::uint32_t> rest = points_of_none(result.known, cloud.size());
+  const std::vector<std::uint32_t> rest = points_of_none(lists_of(result.known), cloud.size());
   if (rest.empty()) {
     result.detection.distance_tolerance = detection_tolerance(options, scale);
     return result;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/advanced/segmentation.hpp"
+#include "cloud2csg/error.hpp"
 #include "cloud2csg/reconstruct.hpp"
 
 namespace cloud2csg {
@@ -21,11 +23,13 @@ struct RestDetection {
 
 /// The result of find_primitives() with its intermediate results.
 struct FoundPrimitives {
-  PreparedCloud prepared;             ///< the cloud that all other members refer to
-  Detection detection;                ///< surfaces of the points on no known primitive
-  std::size_t added_points = 0;       ///< points on an unseen side or hidden walls, at the end of the cloud
-  SolidChoice choice;                 ///< known solids, chosen solids with evidence, and a tree over them
-  std::vector<SurfacePoints> points;  ///< points of the prepared cloud on each solid
+  PreparedCloud prepared;                  ///< the cloud that all other members refer to
+  Detection detection;                     ///< surfaces of the points on no known primitive
+  std::vector<std::uint32_t> unexplained;  ///< points on no surface and no known primitive, ascending
+  std::size_t added_points = 0;            ///< points on an unseen side or hidden walls, at the end of the cloud
+  SolidChoice choice;                      ///< known solids, chosen solids with evidence, and a tree over them
+  std::optional<Error> no_solid;           ///< why the surfaces bound no solid; `choice` is empty then
+  std::vector<SurfacePoints> points;       ///< points of the prepared cloud on each solid
   double detect_seconds = 0, choose_seconds = 0;
   std::vector<std::string> warnings;  ///< sentences for the user: doubts, with places
 };

@@ -9,6 +9,7 @@
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/find_primitives.hpp"
+#include "pipeline/verdict.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -101,9 +102,13 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   result.statistics.finding = statistics_of(found, options.known.size(), cloud.size());
   result.statistics.finding->is_tree_of_choice = true;
   result.statistics.finding->disagreement = found.choice.disagreement;
+  result.statistics.verdict = judge_detection(found);
+  if (found.no_solid) found.warnings.emplace_back(found.no_solid->what());
   result.model = {.primitives = std::move(found.choice.solids), .tree = std::move(found.choice.tree)};
-  result.statistics.fit =
-      measure_fit(result.model, found.prepared.cloud, result.statistics.noise, options.extraction, without_stop(run));
+  if (!found.no_solid) {
+    result.statistics.fit =
+        measure_fit(result.model, found.prepared.cloud, result.statistics.noise, options.extraction, without_stop(run));
+  }
   result.statistics.warnings = std::move(found.warnings);
   take_finding(result, found);
   note_seconds(found, result.statistics.seconds);
@@ -118,6 +123,7 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   }
   const Stopwatch watch;
   FoundPrimitives found = find_in_time(cloud, options, run);
+  if (found.no_solid) throw Error(*found.no_solid);
   ReconstructOptions rest = options;
   std::optional<double>& limit = rest.extraction.time_limit_seconds;
   std::optional<double>& tolerance = rest.extraction.segmentation.distance_tolerance;
@@ -126,23 +132,17 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   if (limit) limit = seconds_left(*limit, watch.seconds());
   const Stopwatch extracting;
   Extraction result = extract_over(found.choice, found.prepared, rest, run);
-  const CsgTree& tree = result.tree();
   ExtractStatistics& statistics = result.statistics;
-  const double disagreement = wrong_place_share(tree, found.choice.solids, found.choice.places);
   statistics.finding = statistics_of(found, options.known.size(), cloud.size());
-  statistics.finding->is_tree_of_choice = tree == found.choice.tree;
-  statistics.finding->disagreement = disagreement;
-  append(found.warnings, disagreement_warnings(tree, found, disagreement));
-  append(found.warnings, bare_surface_warnings(tree, found, without_stop(run)));
-  append(found.warnings, unused_surface_warnings(tree, found));
+  statistics.finding->is_tree_of_choice = result.tree() == found.choice.tree;
   append(found.warnings, statistics.warnings);
-  append(found.warnings, unused_known_warnings(tree, found, options.known, found.warnings));
+  append(found.warnings, unused_known_warnings(result.tree(), found, options.known, found.warnings));
   statistics.warnings = std::move(found.warnings);
   if (is_over) statistics.complete = false;
   take_finding(result, found);
   refine_found(result, rest, extracting.seconds(), run);
   note_seconds(found, statistics.seconds);
-  return result;
+  return judged(std::move(result), found.choice.places, without_stop(run));
 }
 
 }  // namespace cloud2csg

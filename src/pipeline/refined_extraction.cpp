@@ -7,6 +7,7 @@
 #include "core/base/run.hpp"
 #include "paper/objective/objective.hpp"
 #include "pipeline/time_limit.hpp"
+#include "pipeline/verdict.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -97,6 +98,7 @@ Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& prim
       } else {
         result.model.primitives = refinement->primitives;
         result.statistics.fit = moved;
+        result.statistics.verdict = judge_fit(tree, moved, cloud.positions);
         result.statistics.noise = refinement->noise;
       }
     }

@@ -67,7 +67,8 @@ TEST_F(Extract, WritesStatistics) {
   const Outcome outcome = run({"extract", cloud, "--primitives", shipped("m2.json"), "-o", path("m.json"), "--stats",
                                path("s.json"), "--seed", "7", "--threads", "2", "--quiet"});
   ASSERT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.err.find("good: "), 0U) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   const json statistics = json::parse(read_file(path("s.json")));
   for (const char* field : {"version", "strategy", "parallel", "threads", "seed", "complete", "points", "primitives",
                             "clique_histogram", "seconds", "search", "merge", "tree", "fit", "warnings"}) {
@@ -121,19 +122,19 @@ TEST_F(Extract, PresetsAndStrategiesAreTaken) {
 
 TEST_F(Extract, UnexplainedPointsAreWritten) {
   const std::string cloud = sampled("m0.json", "3000");
-  const auto unexplained_with = [&](const std::vector<std::string>& options) {
+  const auto unexplained_with = [&](const std::vector<std::string>& options, int status) {
     std::vector<std::string> arguments{"extract", cloud,          "--primitives",  shipped("m0.json"),
                                        "-o",      path("m.json"), "--unexplained", path("rest.xyz")};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.status, status) << outcome.err;
     const std::string rest = read_file(path("rest.xyz"));
     return std::count(rest.begin(), rest.end(), '\n');
   };
-  const auto few = unexplained_with({});
+  const auto few = unexplained_with({}, 0);
   EXPECT_GT(few, 0);
   EXPECT_LT(few, 600);  // at edges, where noise turns the nearest surface by a right angle
-  EXPECT_GT(unexplained_with({"--distance-tolerance", "0.005"}), 2 * few);
+  EXPECT_GT(unexplained_with({"--distance-tolerance", "0.005"}, 3), 2 * few);
 }
 
 TEST_F(Extract, PrecisionIsTaken) {
@@ -252,7 +253,7 @@ TEST_F(Extract, TimeLimitIsNotAFailure) {
   std::vector<std::string> arguments = endless(cloud, shipped("m0.json"), path("m.json"), path("s.json"));
   arguments.insert(arguments.end(), {"--time-limit", "0.5"});
   const Outcome outcome = run(arguments);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.status, 1) << outcome.err;
   EXPECT_EQ(json::parse(read_file(path("s.json")))["complete"], false);
 }
 

@@ -28,16 +28,16 @@ PaperResults changed(const std::function<void(PaperRun&)>& change) {
   return results;
 }
 
-std::size_t count_of(const std::vector<Change>& changes, Verdict verdict) {
-  return static_cast<std::size_t>(
-      std::count_if(changes.begin(), changes.end(), [verdict](const Change& c) { return c.verdict == verdict; }));
+std::size_t count_of(const std::vector<Change>& changes, Difference difference) {
+  return static_cast<std::size_t>(std::count_if(changes.begin(), changes.end(),
+                                                [difference](const Change& c) { return c.difference == difference; }));
 }
 
 TEST(CompareResults, NothingChanged) {
   const std::vector<Change> changes = compare_paper_results(steady_results(), steady_results());
   // Two samplings; durations of six modes, three more measures of two.
   EXPECT_EQ(changes.size(), 2U * (6 + 3 * 2));
-  EXPECT_EQ(count_of(changes, Verdict::same), changes.size());
+  EXPECT_EQ(count_of(changes, Difference::same), changes.size());
 }
 
 TEST(CompareResults, SlowerModeIsWorse) {
@@ -45,18 +45,18 @@ TEST(CompareResults, SlowerModeIsWorse) {
     if (run.name.mode == "SMTP" && run.name.sampling == Sampling::high) run.seconds.extraction *= 1.2;
   });
   const std::vector<Change> changes = compare_paper_results(steady_results(), slower);
-  ASSERT_EQ(count_of(changes, Verdict::worse), 1U);
-  EXPECT_EQ(count_of(changes, Verdict::same), changes.size() - 1);
+  ASSERT_EQ(count_of(changes, Difference::worse), 1U);
+  EXPECT_EQ(count_of(changes, Difference::same), changes.size() - 1);
   const auto worse = std::find_if(changes.begin(), changes.end(),
-                                  [](const Change& change) { return change.verdict == Verdict::worse; });
+                                  [](const Change& change) { return change.difference == Difference::worse; });
   EXPECT_EQ(worse->mode, "SMTP");
   EXPECT_EQ(worse->sampling, Sampling::high);
   EXPECT_EQ(worse->measure, "duration, ms");
   EXPECT_NEAR(worse->relative, 0.2, 1e-9);
   // The other way round it is better.
   const std::vector<Change> back = compare_paper_results(slower, steady_results());
-  EXPECT_EQ(count_of(back, Verdict::better), 1U);
-  EXPECT_EQ(count_of(back, Verdict::worse), 0U);
+  EXPECT_EQ(count_of(back, Difference::better), 1U);
+  EXPECT_EQ(count_of(back, Difference::worse), 0U);
 }
 
 TEST(CompareResults, ChangeWithinTheNoiseIsNone) {
@@ -64,21 +64,22 @@ TEST(CompareResults, ChangeWithinTheNoiseIsNone) {
   const PaperResults noisy = changed([](PaperRun& run) {
     if (run.name.seed == 5) run.seconds.extraction *= 2;
   });
-  EXPECT_EQ(count_of(compare_paper_results(steady_results(), noisy), Verdict::worse), 0U);
+  EXPECT_EQ(count_of(compare_paper_results(steady_results(), noisy), Difference::worse), 0U);
 }
 
 TEST(CompareResults, SureButSmallChangeIsNone) {
   const PaperResults a_bit = changed([](PaperRun& run) { run.seconds.extraction *= 1.08; });
-  EXPECT_EQ(count_of(compare_paper_results(steady_results(), a_bit), Verdict::worse), 0U);
-  EXPECT_EQ(count_of(compare_paper_results(steady_results(), a_bit, {.least_time_change = 0.05}), Verdict::worse), 12U);
+  EXPECT_EQ(count_of(compare_paper_results(steady_results(), a_bit), Difference::worse), 0U);
+  EXPECT_EQ(count_of(compare_paper_results(steady_results(), a_bit, {.least_time_change = 0.05}), Difference::worse),
+            12U);
 }
 
 TEST(CompareResults, LargerTreesAreWorse) {
   const PaperResults larger = changed([](PaperRun& run) { run.tree.size = 10; });
   const std::vector<Change> changes = compare_paper_results(steady_results(), larger);
-  EXPECT_EQ(count_of(changes, Verdict::worse), 4U);  // BST and SST, low and high
+  EXPECT_EQ(count_of(changes, Difference::worse), 4U);  // BST and SST, low and high
   for (const Change& change : changes) {
-    EXPECT_EQ(change.verdict == Verdict::worse, change.measure == "nodes") << change.measure;
+    EXPECT_EQ(change.difference == Difference::worse, change.measure == "nodes") << change.measure;
   }
 }
 
@@ -86,7 +87,7 @@ TEST(CompareResults, OneRepeatTellsNothing) {
   PaperResults single = steady_results();
   std::erase_if(single.runs, [](const PaperRun& run) { return run.name.seed > 1; });
   const std::vector<Change> changes = compare_paper_results(steady_results(), single);
-  EXPECT_EQ(count_of(changes, Verdict::unknown), changes.size());
+  EXPECT_EQ(count_of(changes, Difference::unknown), changes.size());
 }
 
 TEST(CompareResults, OtherOptionsAreRefusedByName) {

@@ -119,14 +119,5 @@ TEST(PlaceText, IsAsFineAsWhatItIsIn) {
   EXPECT_EQ(place_text({1, 2, 3}, 0), "(1, 2, 3)");
 }
 
-TEST(CrowdedPlace, IsInTheFullestCube) {
-  Points points;
-  for (int i = 0; i < 10; ++i) points.push_back({i * 1.0, 0, 0});
-  for (int i = 0; i < 4; ++i) points.push_back({7.2 + 0.1 * i, 0.1, 0});
-  const Eigen::Vector3d place = crowded_place(points, 1);
-  EXPECT_NEAR(place.x(), (7 + 7.2 + 7.3 + 7.4 + 7.5) / 5, 1e-12);
-  EXPECT_NEAR(place.y(), 0.08, 1e-12);
-}
-
 }  // namespace
 }  // namespace cloud2csg

@@ -36,9 +36,10 @@ FitStatistics plain_fit(const CsgTree& tree, const PrimitiveSet& primitives, con
   std::vector<double> distances, angles;
   FitStatistics fit{.objective = -k_objective.alpha * static_cast<double>(tree.size())};
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    distances.push_back(std::abs(values[i]));
+    const double slope = slopes[i].norm();
+    distances.push_back(std::abs(values[i]) / (slope > 0 ? slope : 1));
     angles.push_back(std::acos(std::clamp(slopes[i].normalized().dot(cloud.normals[i]), -1.0, 1.0)));
-    fit.objective += point_score(distances.back(), angles.back(), k_objective);
+    fit.objective += point_score(values[i], angles.back(), k_objective);
     const bool is_explained = distances.back() <= k_noise && angles.back() <= k_most_degrees * std::numbers::pi / 180;
     fit.unexplained_points += is_explained ? 0 : 1;
   }

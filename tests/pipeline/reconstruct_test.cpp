@@ -70,7 +70,7 @@ TEST(Reconstruct, ItsStatisticsListWhatWasMadeRegular) {
 TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
   const Model truth{.primitives = {test::placed("block", Box{{4, 3, 3}}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
   const PointCloud whole = raw_cloud(truth, 0.0);
-  EXPECT_FALSE(test::mentions(reconstruct(whole).statistics.warnings, "no points near"));
+  EXPECT_FALSE(test::mentions(reconstruct(whole).statistics.verdict.doubts, "no points near"));
   PointCloud open;
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (whole.positions.z[i] > 1.499) continue;  // the top
@@ -79,12 +79,12 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
   }
   const Extraction result = reconstruct(open, {.close_unseen = false});
   EXPECT_GT(test::iou(result, truth), 0.9);
-  EXPECT_TRUE(test::mentions(result.statistics.warnings, "no points near"));
+  EXPECT_TRUE(test::mentions(result.statistics.verdict.doubts, "no points near"));
   EXPECT_FALSE(test::mentions(result.statistics.warnings, "closed by a plane"));
   const Extraction closed = reconstruct(open);
   EXPECT_GT(test::iou(closed, truth), 0.99);
   EXPECT_TRUE(test::mentions(closed.statistics.warnings, "closed by a plane"));
-  EXPECT_FALSE(test::mentions(closed.statistics.warnings, "no points near"));
+  EXPECT_FALSE(test::mentions(closed.statistics.verdict.doubts, "no points near"));
 }
 
 /// Its ground is not seen, nor are parts of its holes.
@@ -140,9 +140,10 @@ TEST(Reconstruct, NamesWhatItLeavesOut) {
   }
   const Extraction result = reconstruct(cloud);
   EXPECT_EQ(leaf_count(result.tree()), 1U);
+  EXPECT_EQ(result.statistics.verdict.grade, Grade::doubtful);
   EXPECT_TRUE(
-      test::mentions(result.statistics.warnings, "1 detected surfaces are not on the result, the largest a sphere of"));
-  EXPECT_FALSE(test::mentions(reconstruct(raw_cloud(plate(), 0.008)).statistics.warnings, "not on the result"));
+      test::mentions(result.statistics.verdict.doubts, "1 detected surfaces are not on it, the largest a sphere of"));
+  EXPECT_TRUE(reconstruct(raw_cloud(plate(), 0.008)).statistics.verdict.doubts.empty());
 }
 
 TEST(Reconstruct, RefusesAToleranceAsLargeAsTheCloud) {

@@ -23,6 +23,7 @@ class FitMeasure {
         cloud_(cloud),
         run_(run),
         order_(options.order) {
+    fit_.values.resize(cloud.size());
     fit_.signed_distances.resize(cloud.size());
     if (cloud.has_normals()) fit_.angles.resize(cloud.size());
     if (options.with_owners) fit_.owners.assign(cloud.size(), k_no_owner);
@@ -90,26 +91,29 @@ class FitMeasure {
     measure_with(restriction_.restrict_to(near), points);
     std::vector<std::uint32_t> left;
     std::ranges::copy_if(points, std::back_inserter(left),
-                         [&](std::uint32_t i) { return !(std::abs(fit_.signed_distances[i]) < level.radius); });
+                         [&](std::uint32_t i) { return !(std::abs(fit_.values[i]) < level.radius); });
     return left;
   }
 
   void measure_with(const CsgTree& tree, const std::vector<std::uint32_t>& points) {
     const Points positions = select_points(cloud_.positions, points);
     const std::vector<double> values = implicit_value(tree, primitives_, positions);
-    for (std::size_t k = 0; k < points.size(); ++k) fit_.signed_distances[points[k]] = values[k];
-    if (!fit_.angles.empty()) measure_angles(tree, points, positions);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      fit_.values[points[k]] = fit_.signed_distances[points[k]] = values[k];
+    }
+    if (!fit_.angles.empty()) measure_gradients(tree, points, positions);
     if (!fit_.owners.empty()) {
       const std::vector<PrimitiveIndex> owners = owners_of(values, tree, primitives_, positions, tie_);
       for (std::size_t k = 0; k < points.size(); ++k) fit_.owners[points[k]] = owners[k];
     }
   }
 
-  void measure_angles(const CsgTree& tree, const std::vector<std::uint32_t>& points, PointsView positions) {
+  void measure_gradients(const CsgTree& tree, const std::vector<std::uint32_t>& points, PointsView positions) {
     const Points gradients = implicit_gradient(tree, primitives_, positions);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const double length = gradients[k].norm();
       const double cosine = length > 0 ? gradients[k].dot(cloud_.normals[points[k]]) / length : 0.0;
+      if (length > 0) fit_.signed_distances[points[k]] /= length;
       fit_.angles[points[k]] = std::acos(std::clamp(cosine, -1.0, 1.0));
     }
   }

@@ -15,9 +15,12 @@ inline constexpr PrimitiveIndex k_no_owner = std::numeric_limits<PrimitiveIndex>
 
 /// Values of a tree at points, one entry a point.
 struct PointFit {
-  std::vector<double> signed_distances = {};  ///< the tree's value: positive outside the solid
-  std::vector<double> angles = {};            ///< between normal and gradient, radians; empty without normals
-  std::vector<PrimitiveIndex> owners = {};    ///< from owners_of(), when asked for
+  std::vector<double> values = {};  ///< the tree's value: positive outside the solid
+  /// The value over the slope of the tree's field: the distance to first order, also of expressions and displaced
+  /// solids. Without normals, the value.
+  std::vector<double> signed_distances = {};
+  std::vector<double> angles = {};          ///< between normal and gradient, radians; empty without normals
+  std::vector<PrimitiveIndex> owners = {};  ///< from owners_of(), when asked for
 };
 
 struct PointFitOptions {

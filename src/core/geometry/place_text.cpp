@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <map>
 
 namespace cloud2csg {
 
@@ -26,27 +24,6 @@ std::string place_text(const Eigen::Vector3d& place, double diagonal) {
     if (text == "-0") text = "0";
   }
   return fmt::format("({}, {}, {})", texts[0], texts[1], texts[2]);
-}
-
-Eigen::Vector3d crowded_place(const Points& points, double width) {
-  struct Cube {
-    std::size_t points = 0;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  };
-  const Eigen::Vector3d corner = bounds_of(points).min();
-  std::map<std::array<std::int64_t, 3>, Cube> cubes;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d from = points[i] - corner;
-    std::array<std::int64_t, 3> key{};
-    for (int axis = 0; axis < 3; ++axis) {
-      key[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(from[axis] / width));
-    }
-    Cube& cube = cubes[key];
-    ++cube.points;
-    cube.sum += from;
-  }
-  const auto fullest = std::ranges::max_element(cubes, {}, [](const auto& cube) { return cube.second.points; })->second;
-  return corner + fullest.sum / static_cast<double>(fullest.points);
 }
 
 }  // namespace cloud2csg

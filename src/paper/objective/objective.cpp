@@ -142,15 +142,17 @@ FitStatistics measure_fit(const Model& model, const PointCloud& cloud, double no
   PointFit points = measure_points(model, cloud, noise, {.order = order}, run);
   FitStatistics fit;
   fit.objective = -objective.alpha * static_cast<double>(tree_of(model).size());
-  for (double& distance : points.signed_distances) distance = std::abs(distance);
   fit.tolerances = segmentation_tolerances(options.segmentation, noise);
   const Explanation explanation(fit.tolerances);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!explanation.holds(points.signed_distances[i], points.angles[i])) ++fit.unexplained_points;
-    fit.objective += point_score(points.signed_distances[i], points.angles[i], objective);
+    if (std::abs(points.signed_distances[i]) > fit.tolerances.distance)
+      fit.far_points.push_back(static_cast<std::uint32_t>(i));
+    fit.objective += point_score(points.values[i], points.angles[i], objective);
   }
   fit.rms_distance = root_mean_square(points.signed_distances);
   fit.rms_angle_deg = root_mean_square(points.angles) * 180.0 / std::numbers::pi;
+  for (double& distance : points.signed_distances) distance = std::abs(distance);
   fit.p95_distance = quantile_95(points.signed_distances);
   fit.p95_angle_deg = quantile_95(points.angles) * 180.0 / std::numbers::pi;
   return fit;

@@ -5,44 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/disjoint_sets.hpp"
 #include "core/base/robust_deviation.hpp"
+#include "core/geometry/cubes.hpp"
 #include "raw/detect/propose.hpp"
 
 namespace cloud2csg {
 namespace {
-
-constexpr int k_bits = 21;
-constexpr std::int64_t k_offset = std::int64_t{1} << (k_bits - 1);
-
-/// The key of the cube that contains a point. Neighbours along x differ by 1.
-std::uint64_t cube_of(const Eigen::Vector3d& p, double edge) {
-  std::uint64_t key = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    const auto step = static_cast<std::int64_t>(std::floor(p[axis] / edge)) + k_offset;
-    key = key << static_cast<unsigned>(k_bits) | static_cast<std::uint64_t>(step);
-  }
-  return key;
-}
-
-DisjointSets join_cubes(const std::vector<std::uint64_t>& cubes) {
-  DisjointSets groups(cubes.size());
-  // Half of the 26 neighbours, as rows along x. The other half joins from the neighbour's side.
-  constexpr std::uint64_t k_row = std::uint64_t{1} << k_bits;
-  constexpr std::uint64_t k_slice = k_row << k_bits;
-  for (std::size_t i = 0; i < cubes.size(); ++i) {
-    const auto join = [&](std::uint64_t first, std::uint64_t last) {
-      auto at = std::lower_bound(cubes.begin() + static_cast<std::ptrdiff_t>(i) + 1, cubes.end(), first);
-      for (; at != cubes.end() && *at <= last; ++at) groups.join(i, static_cast<std::size_t>(at - cubes.begin()));
-    };
-    const std::uint64_t c = cubes[i];
-    join(c + 1, c + 1);
-    join(c + k_row - 1, c + k_row + 1);
-    for (const std::uint64_t slice : {c + k_slice - k_row, c + k_slice, c + k_slice + k_row})
-      join(slice - 1, slice + 1);
-  }
-  return groups;
-}
 
 /// This many points suffice to fit a surface.
 constexpr std::size_t k_sample = 400;
@@ -82,21 +50,13 @@ double support_by(const std::vector<std::uint32_t>& indices, const Surface& surf
 
 std::vector<std::vector<std::uint32_t>> connected_groups(std::span<const OrientedPoint> points,
                                                          std::span<const std::uint32_t> indices, double edge) {
-  std::vector<std::uint64_t> keys;
-  keys.reserve(indices.size());
-  for (const std::uint32_t i : indices) keys.push_back(cube_of(points[i].position, edge));
-  std::vector<std::uint64_t> cubes = keys;
-  std::sort(cubes.begin(), cubes.end());
-  cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
-  DisjointSets group_of_cube = join_cubes(cubes);
-
-  std::vector<std::vector<std::uint32_t>> groups(cubes.size());
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    const auto cube = std::lower_bound(cubes.begin(), cubes.end(), keys[k]) - cubes.begin();
-    groups[group_of_cube.root(static_cast<std::size_t>(cube))].push_back(indices[k]);
+  std::vector<std::uint64_t> cubes;
+  cubes.reserve(indices.size());
+  for (const std::uint32_t i : indices) cubes.push_back(cube_of(points[i].position, edge));
+  std::vector<std::vector<std::uint32_t>> groups = connected_groups(cubes);
+  for (std::vector<std::uint32_t>& group : groups) {
+    for (std::uint32_t& k : group) k = indices[k];
   }
-  std::erase_if(groups, [](const auto& group) { return group.empty(); });
-  std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return groups;
 }
 

@@ -128,12 +128,12 @@ KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, con
     const StageShare of_pass = cleaning.part(pass / double{k_passes}, (pass + 1) / double{k_passes});
     const std::size_t width = strictness == Strictness::trusting ? k_judges : k_suspicious_neighbours;
     const LocalFits fits = fit_locally(remaining, width, scale.noise, run, of_pass.part(0, k_fitting));
-    const std::vector<Verdict> verdicts = judge_points(fits, scale, strictness, run, of_pass.part(k_fitting, 1));
+    const std::vector<PointFate> fates = judge_points(fits, scale, strictness, run, of_pass.part(k_fitting, 1));
     if (pass == 0) {
       const std::vector<bool> dense = dense_points(fits, scale);
       for (std::size_t i = 0; i < kept.size(); ++i) is_dense[kept[i]] = dense[i];
     }
-    const KeptPoints now = kept_points(verdicts, fits, [&](std::uint32_t i) { return is_dense[kept[i]]; });
+    const KeptPoints now = kept_points(fates, fits, [&](std::uint32_t i) { return is_dense[kept[i]]; });
     result.isolated += now.isolated;
     result.off_surface += now.off_surface;
     const Indices doubted = in_the_cloud(now.doubted);
@@ -195,17 +195,17 @@ KeptPoints thinned(const Points& points, KeptPoints kept, const Scale& scale, st
 
 }  // namespace
 
-std::vector<Verdict> judge_points(const LocalFits& fits, const Scale& scale, Strictness strictness,
-                                  const RunContext& run, const StageShare& share) {
+std::vector<PointFate> judge_points(const LocalFits& fits, const Scale& scale, Strictness strictness,
+                                    const RunContext& run, const StageShare& share) {
   const std::size_t count = fits.points.size();
-  std::vector<Verdict> verdicts(count, Verdict::stays);
-  if (fits.neighbours.width < k_least_witnesses) return verdicts;
+  std::vector<PointFate> fates(count, PointFate::stays);
+  if (fits.neighbours.width < k_least_witnesses) return fates;
   for_each_index_by_chunks(count, k_chunk_points, run, share, [&](std::size_t i) {
     if (is_on_surface(fits, i, scale.noise, strictness)) return;
     const bool is_far = fits.neighbours.distances_of(i)[k_least_witnesses - 1] > k_isolated_spacings * scale.spacing;
-    verdicts[i] = is_far ? Verdict::isolated : Verdict::off_surface;
+    fates[i] = is_far ? PointFate::isolated : PointFate::off_surface;
   });
-  return verdicts;
+  return fates;
 }
 
 std::vector<bool> dense_points(const LocalFits& fits, const Scale& scale) {
@@ -217,17 +217,17 @@ std::vector<bool> dense_points(const LocalFits& fits, const Scale& scale) {
   return is_dense;
 }
 
-KeptPoints kept_points(std::span<const Verdict> verdicts, const LocalFits& fits,
+KeptPoints kept_points(std::span<const PointFate> fates, const LocalFits& fits,
                        const std::function<bool(std::uint32_t point)>& is_dense) {
   KeptPoints kept;
-  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+  for (std::size_t i = 0; i < fates.size(); ++i) {
     const std::uint32_t point = fits.order[i];
-    if (verdicts[i] == Verdict::stays) {
+    if (fates[i] == PointFate::stays) {
       kept.sure.push_back(point);
     } else if (is_dense(point)) {
       kept.doubted.push_back(point);
     } else {
-      (verdicts[i] == Verdict::isolated ? kept.isolated : kept.off_surface) += 1;
+      (fates[i] == PointFate::isolated ? kept.isolated : kept.off_surface) += 1;
     }
   }
   std::sort(kept.sure.begin(), kept.sure.end());

@@ -90,10 +90,10 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
   const LocalFits fits =
       fit_locally(cloud, plane_neighbours(prepared.scale), prepared.scale.noise, run, trial.part(0, 0.9));
   if (has_duplicates(fits)) return false;
-  const std::vector<Verdict> verdicts =
+  const std::vector<PointFate> fates =
       judge_points(fits, prepared.scale, Strictness::trusting, run, trial.part(0.9, 1));
   const std::vector<bool> is_dense = dense_points(fits, prepared.scale);
-  const KeptPoints kept = kept_points(verdicts, fits, [&](std::uint32_t i) { return is_dense[i]; });
+  const KeptPoints kept = kept_points(fates, fits, [&](std::uint32_t i) { return is_dense[i]; });
   if (is_much(cloud.size() - kept.sure.size(), cloud.size())) return false;
   cleaning.report(run, 1);
   prepared.clean_seconds = watch.lap();

@@ -1,0 +1,211 @@
+#include "pipeline/verdict.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "cloud2csg/csg_tree.hpp"
+#include "core/geometry/cubes.hpp"
+#include "core/geometry/place_text.hpp"
+#include "core/geometry/subset.hpp"
+#include "pipeline/coverage.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr double k_least_within = 0.95;     ///< share of the points near a good result
+constexpr double k_much_unexplained = 0.1;  ///< share of the points that contradict a doubtful result
+constexpr double k_too_much_unexplained = 0.5;
+constexpr double k_much_disagreement = 0.1;
+constexpr double k_too_much_disagreement = 1;  ///< that of the empty solid
+constexpr double k_much_bare_surface = 0.05;
+
+struct Doubt {
+  Grade grade;
+  std::string text;
+};
+
+/// Never rounded up, so that 100 % means all.
+std::string percent(double share) {
+  return fmt::format("{} %", std::floor(1000 * share) / 10);
+}
+
+double share(std::size_t part, std::size_t all) {
+  return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
+}
+
+Verdict with_doubts(Verdict verdict, std::vector<Doubt> doubts) {
+  for (Doubt& doubt : doubts) {
+    verdict.grade = std::max(verdict.grade, doubt.grade);
+    verdict.doubts.push_back(std::move(doubt.text));
+  }
+  return verdict;
+}
+
+/// Edge of the cubes that make regions: a fiftieth of the diagonal, a feature that a person would look for. In a sparse
+/// cloud it is twice the spacing of as many points spread over a square with the side of this diagonal.
+double region_edge(double diagonal, std::size_t points) {
+  return std::max(diagonal / 50, 2 * diagonal / std::sqrt(static_cast<double>(points)));
+}
+
+/// As few as detection needs for a surface. Noise alone seldom puts as many side by side.
+constexpr std::size_t k_least_in_region = 12;
+
+/// The entries of a list at these places.
+template <typename Entry>
+std::vector<Entry> entries(const std::vector<Entry>& list, std::span<const std::uint32_t> places) {
+  std::vector<Entry> chosen;
+  chosen.reserve(places.size());
+  for (const std::uint32_t i : places) chosen.push_back(list[i]);
+  return chosen;
+}
+
+UnexplainedRegion region_of(const Points& points, std::span<const std::uint32_t> own) {
+  const AlignedBox box = bounds_of(select_points(points, own));
+  return {.points = own.size(), .place = box.center(), .size = box.diagonal().norm()};
+}
+
+/// Places of a sorted list by value.
+std::size_t count_in(std::span<const std::uint64_t> sorted, std::uint64_t value) {
+  const auto range = std::ranges::equal_range(sorted, value);
+  return static_cast<std::size_t>(range.size());
+}
+
+/// Positions in `far` whose cubes hold at least as many of these points as of others.
+std::vector<std::uint32_t> crowded(const Points& points, std::span<const std::uint64_t> cubes_of_far, double edge) {
+  std::vector<std::uint64_t> sorted(cubes_of_far.begin(), cubes_of_far.end());
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::uint64_t> distinct = sorted;
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  const auto place_of = [&distinct](std::uint64_t cube) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(distinct, cube) - distinct.begin());
+  };
+  std::vector<std::size_t> all(distinct.size());
+  const Eigen::Vector3d corner = bounds_of(points).min();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint64_t cube = cube_of(points[i] - corner, edge);
+    const std::size_t at = place_of(cube);
+    if (at < distinct.size() && distinct[at] == cube) ++all[at];
+  }
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t k = 0; k < cubes_of_far.size(); ++k) {
+    if (2 * count_in(sorted, cubes_of_far[k]) >= all[place_of(cubes_of_far[k])]) kept.push_back(k);
+  }
+  return kept;
+}
+
+std::vector<Doubt> doubts_of_fit(const CsgTree& tree, const FitStatistics& fit, double within, std::size_t points) {
+  if (primitives_of(tree).empty())
+    return {{Grade::failed, "the result is empty: no formula over the primitives explains the points"}};
+  const double unexplained = share(fit.unexplained_points, points);
+  if (unexplained > k_much_unexplained) {
+    return {{unexplained > k_too_much_unexplained ? Grade::failed : Grade::doubtful,
+             percent(unexplained) + " of the points contradict it, by place or normal"}};
+  }
+  if (within < k_least_within) return {{Grade::doubtful, percent(k_least_within) + " are expected"}};
+  return {};
+}
+
+std::vector<Doubt> doubts_of_disagreement(const Extraction& result, const LabelledPlaces& places) {
+  const FindingStatistics& finding = *result.statistics.finding;
+  if (finding.disagreement <= k_much_disagreement) return {};
+  const Eigen::Vector3d worst = worst_place(result.tree(), result.model.primitives, places);
+  return {{finding.disagreement >= k_too_much_disagreement ? Grade::failed : Grade::doubtful,
+           fmt::format("the points contradict {} of its volume and surface, worst near {}",
+                       percent(finding.disagreement), place_text(worst, finding.diagonal))}};
+}
+
+std::vector<Doubt> doubts_of_bare_surface(const BareSurface& bare, double diagonal) {
+  if (bare.share <= k_much_bare_surface) return {};
+  return {{Grade::doubtful, fmt::format("{} of its surface has no points nearby, farthest from any at {}",
+                                        percent(bare.share), place_text(bare.middle, diagonal))}};
+}
+
+std::vector<Doubt> doubts_of_unused_surfaces(const Extraction& result) {
+  const UnusedSurfaces unused = find_unused_surfaces(result);
+  if (unused.count == 0) return {};
+  const DetectedSurface& largest = result.surfaces[unused.largest];
+  const Eigen::Vector3d middle = bounds_of(select_points(result.cloud.positions, largest.points)).center();
+  return {{Grade::doubtful, fmt::format("{} detected surfaces are not on it, the largest a {} of {} points near {}",
+                                        unused.count, type_name(largest.surface.type), largest.points.size(),
+                                        place_text(middle, result.statistics.finding->diagonal))}};
+}
+
+}  // namespace
+
+std::string to_text(const Verdict& verdict) {
+  std::vector<std::string> clauses;
+  if (verdict.distance > 0) {
+    clauses.push_back(
+        fmt::format("{} of the points within {:.3g} of the surface", percent(verdict.share_within), verdict.distance));
+  }
+  clauses.insert(clauses.end(), verdict.doubts.begin(), verdict.doubts.end());
+  return fmt::format("{}: {}", to_string(verdict.grade), fmt::join(clauses, "; "));
+}
+
+std::vector<std::string> region_lines(const Verdict& verdict) {
+  constexpr double k_diagonals = 10;  // gives the place to a thousandth of the region's size
+  std::vector<std::string> lines;
+  for (const UnexplainedRegion& region : verdict.regions) {
+    lines.push_back(fmt::format("unexplained: {} points around {}, {:.3g} across", region.points,
+                                place_text(region.place, k_diagonals * region.size), region.size));
+  }
+  return lines;
+}
+
+std::vector<UnexplainedRegion> unexplained_regions(const Points& points, const std::vector<std::uint32_t>& far) {
+  if (far.size() < k_least_in_region) return {};
+  const AlignedBox box = bounds_of(points);
+  const double edge = region_edge(box.diagonal().norm(), points.size());
+  std::vector<std::uint64_t> cubes;
+  cubes.reserve(far.size());
+  for (const std::uint32_t i : far) cubes.push_back(cube_of(points[i] - box.min(), edge));
+  const std::vector<std::uint32_t> kept = crowded(points, cubes, edge);
+  std::vector<UnexplainedRegion> regions;
+  for (const std::vector<std::uint32_t>& group : connected_groups(entries(cubes, kept))) {
+    if (group.size() < k_least_in_region) break;
+    regions.push_back(region_of(points, entries(far, entries(kept, group))));
+  }
+  return regions;
+}
+
+Verdict judge_fit(const CsgTree& tree, const FitStatistics& fit, const Points& points) {
+  const double within = 1 - share(fit.far_points.size(), points.size());
+  Verdict verdict{.distance = fit.tolerances.distance,
+                  .share_within = within,
+                  .regions = unexplained_regions(points, fit.far_points)};
+  return with_doubts(std::move(verdict), doubts_of_fit(tree, fit, within, points.size()));
+}
+
+Extraction judged(Extraction result, const LabelledPlaces& places, const RunContext& run) {
+  FindingStatistics& finding = *result.statistics.finding;
+  finding.disagreement = wrong_place_share(result.tree(), result.model.primitives, places);
+  const BareSurface bare = find_bare_surface(result, run).value_or(BareSurface{});
+  finding.bare_surface = bare.share;
+  Verdict verdict = judge_fit(result.tree(), result.statistics.fit, result.cloud.positions);
+  verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places));
+  verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, finding.diagonal));
+  result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result));
+  return result;
+}
+
+Verdict judge_detection(const FoundPrimitives& found) {
+  const Points& points = found.prepared.cloud.positions;
+  const double unexplained = share(found.unexplained.size(), points.size());
+  std::vector<Doubt> doubts;
+  if (unexplained > k_much_unexplained) {
+    doubts.push_back({Grade::doubtful, percent(unexplained) + " of the points lie on no detected surface"});
+  }
+  if (found.no_solid) doubts.push_back({Grade::doubtful, "the surfaces bound no solid"});
+  return with_doubts({.distance = found.detection.distance_tolerance,
+                      .share_within = 1 - unexplained,
+                      .regions = unexplained_regions(points, found.unexplained)},
+                     std::move(doubts));
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "cloud2csg/extract.hpp"
+#include "pipeline/find_primitives.hpp"
+
+/// Judges results by their points. docs/command_line.md states the thresholds.
+namespace cloud2csg {
+
+/// Connected regions of the cloud in which at least half of the points are among `far`, most points first. Single
+/// points that noise put there make no region. O(points log far). `far`: ascending indices
+[[nodiscard]] std::vector<UnexplainedRegion> unexplained_regions(const Points& points,
+                                                                 const std::vector<std::uint32_t>& far);
+
+/// Judges a tree by the fit of all points to it.
+[[nodiscard]] Verdict judge_fit(const CsgTree& tree, const FitStatistics& fit, const Points& points);
+
+/// The result with a verdict that also counts what detection found: see FindingStatistics. Sets `disagreement`, by the
+/// places with labels, and `bare_surface`. Precondition: the statistics have a finding. @throws Cancelled
+[[nodiscard]] Extraction judged(Extraction result, const LabelledPlaces& places, const RunContext& run);
+
+/// Judges the detected surfaces and the points on known primitives.
+[[nodiscard]] Verdict judge_detection(const FoundPrimitives& found);
+
+}  // namespace cloud2csg
