@@ -9,12 +9,14 @@
 
 #include "cloud2csg/csg_tree.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/geometry/place_text.hpp"
 #include "paper/merge/merge_component.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr double k_many_outliers = 0.01;
+constexpr double k_much_doubt = 0.01;
 constexpr double k_coarse = 0.05;  ///< tolerance as a share of the diagonal
 
 double share(std::size_t part, std::size_t all) {
@@ -50,6 +52,14 @@ std::vector<std::string> tolerance_warnings(double tolerance, double diagonal) {
   if (tolerance <= k_coarse * diagonal) return {};
   return {fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost", tolerance,
                       100 * tolerance / diagonal)};
+}
+
+std::vector<std::string> normals_warnings(const PreparedCloud& prepared, const Eigen::Vector3d& origin) {
+  if (prepared.doubtful_normals <= k_much_doubt) return {};
+  return {fmt::format(
+      "The orientation of the normals is doubtful for {:.3g} % of the points, near {}: give sensor "
+      "positions or normals if you have them.",
+      100 * prepared.doubtful_normals, place_text(origin + prepared.doubtful_place, prepared.scale.diagonal))};
 }
 
 std::vector<std::string> outlier_warnings(const CleanReport& report, std::size_t points) {

@@ -21,6 +21,9 @@ inline void append(std::vector<std::string>& warnings, std::span<const std::stri
 /// @throws Error for a tolerance as large as the cloud
 [[nodiscard]] std::vector<std::string> tolerance_warnings(double tolerance, double diagonal);
 
+/// `origin`: that of the prepared cloud's frame
+[[nodiscard]] std::vector<std::string> normals_warnings(const PreparedCloud& prepared, const Eigen::Vector3d& origin);
+
 /// `points`: the number in the raw cloud
 [[nodiscard]] std::vector<std::string> outlier_warnings(const CleanReport& report, std::size_t points);
 

@@ -13,6 +13,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
+#include "core/geometry/frame.hpp"
 #include "core/geometry/place_text.hpp"
 #include "core/geometry/subset.hpp"
 #include "pipeline/diagnostics.hpp"
@@ -57,11 +58,11 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   found.detection.surfaces.push_back(std::move(plane));
   // Rounded, and + 0.0 turns -0 into 0.
   const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
-  found.warnings.push_back(
-      fmt::format("the side facing ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points and was closed by "
-                  "a plane through {}",
-                  facing.x(), facing.y(), facing.z(), 100 * side->share,
-                  place_text(bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
+  found.warnings.push_back(fmt::format(
+      "the side facing ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points and was closed by "
+      "a plane through {}",
+      facing.x(), facing.y(), facing.z(), 100 * side->share,
+      place_text(found.origin + bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
 }
 
 /// Adds hidden walls to the cloud, and their points to the surfaces.
@@ -82,7 +83,7 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
   found.warnings.push_back(
       fmt::format("no sensor saw far into {} of the holes, the largest near {}: their walls were extended between the "
                   "parts that were seen",
-                  walls.size(), place_text(middle, found.prepared.scale.diagonal)));
+                  walls.size(), place_text(found.origin + middle, found.prepared.scale.diagonal)));
 }
 
 /// Adds points and surfaces where no sensor saw the part, with warnings. Precondition: the surfaces are detected.
@@ -157,13 +158,26 @@ void check_any_surface(const RestDetection& found, const PointCloud& cloud) {
        .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces"});
 }
 
+PrimitiveSet seen_from(PrimitiveSet primitives, const Eigen::Vector3d& origin) {
+  for (Primitive& primitive : primitives) primitive.pose.position -= origin;
+  return primitives;
+}
+
+PreparedCloud prepare_in_frame(const PointCloud& cloud, const Eigen::Vector3d& origin, const PrepareOptions& options,
+                               const RunContext& run) {
+  if (origin.isZero()) return prepare_cloud(cloud, options, run);
+  return prepare_cloud(seen_from(cloud, origin), options, run);
+}
+
+std::vector<KnownSolid> known_solids(const PrimitiveSet& known, std::vector<SurfacePoints> own) {
+  std::vector<KnownSolid> solids;
+  for (std::size_t k = 0; k < known.size(); ++k) solids.push_back({.solid = known[k], .own = std::move(own[k])});
+  return solids;
+}
+
 /// Chooses the solids, or notes why there are none.
-void choose(FoundPrimitives& found, std::vector<SurfacePoints> own, const ReconstructOptions& options,
+void choose(FoundPrimitives& found, std::span<const KnownSolid> known, const ReconstructOptions& options,
             const RunContext& run) {
-  std::vector<KnownSolid> known;
-  for (std::size_t k = 0; k < options.known.size(); ++k) {
-    known.push_back({.solid = options.known[k], .own = std::move(own[k])});
-  }
   SolidOptions solids = options.solids;
   if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
   try {
@@ -184,13 +198,16 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   check_known(options.known);
   Stopwatch watch;
   FoundPrimitives found;
-  found.prepared = prepare_cloud(cloud, options.preparation, run);
+  found.origin = frame_origin(cloud.positions);
+  const PrimitiveSet known = seen_from(options.known, found.origin);
+  found.prepared = prepare_in_frame(cloud, found.origin, options.preparation, run);
   watch.lap();
   found.warnings = found.prepared.warnings;
+  append(found.warnings, normals_warnings(found.prepared, found.origin));
 
   const std::optional<double>& tolerance = options.detection.distance_tolerance;
   if (tolerance) append(found.warnings, tolerance_warnings(*tolerance, found.prepared.scale.diagonal));
-  RestDetection all = detect_rest(found.prepared.cloud, found.prepared.scale, options.known, options.detection, run);
+  RestDetection all = detect_rest(found.prepared.cloud, found.prepared.scale, known, options.detection, run);
   auto [prepared, rest] = without_doubted(std::move(found.prepared), std::move(all));
   found.prepared = std::move(prepared);
   append(found.warnings, outlier_warnings(found.prepared.cleaning, cloud.size()));
@@ -198,11 +215,11 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   found.unexplained = points_of_none(lists_of(rest), found.prepared.cloud.size());
   found.detection = std::move(rest.detection);
   // Known primitives have ends of their own.
-  if (options.close_unseen && options.known.empty()) found = with_unseen_closed(std::move(found), run);
+  if (options.close_unseen && known.empty()) found = with_unseen_closed(std::move(found), run);
   found.detect_seconds = watch.lap();
 
   run.report("solids", 0, 0);
-  choose(found, std::move(rest.known), options, run);
+  choose(found, known_solids(known, std::move(rest.known)), options, run);
   append(found.warnings, found.choice.warnings);
   // An early stop of the choice still leaves a tree.
   add_evidence(found, options.detection, without_stop(run));

@@ -21,15 +21,16 @@ struct RestDetection {
 [[nodiscard]] RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const PrimitiveSet& known,
                                         const DetectOptions& options, const RunContext& run);
 
-/// The result of find_primitives() with its intermediate results.
+/// The result of find_primitives() with its intermediate results, in the cloud's own frame.
 struct FoundPrimitives {
-  PreparedCloud prepared;                  ///< the cloud that all other members refer to
-  Detection detection;                     ///< surfaces of the points on no known primitive
-  std::vector<std::uint32_t> unexplained;  ///< points on no surface and no known primitive, ascending
-  std::size_t added_points = 0;            ///< points on an unseen side or hidden walls, at the end of the cloud
-  SolidChoice choice;                      ///< known solids, chosen solids with evidence, and a tree over them
-  std::optional<Error> no_solid;           ///< why the surfaces bound no solid; `choice` is empty then
-  std::vector<SurfacePoints> points;       ///< points of the prepared cloud on each solid
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the frame: see frame_origin()
+  PreparedCloud prepared;                            ///< the cloud that all other members refer to
+  Detection detection;                               ///< surfaces of the points on no known primitive
+  std::vector<std::uint32_t> unexplained;            ///< points on no surface and no known primitive, ascending
+  std::size_t added_points = 0;       ///< points on an unseen side or hidden walls, at the end of the cloud
+  SolidChoice choice;                 ///< known solids, chosen solids with evidence, and a tree over them
+  std::optional<Error> no_solid;      ///< why the surfaces bound no solid; `choice` is empty then
+  std::vector<SurfacePoints> points;  ///< points of the prepared cloud on each solid
   double detect_seconds = 0, choose_seconds = 0;
   std::vector<std::string> warnings;  ///< sentences for the user: doubts, with places
 };

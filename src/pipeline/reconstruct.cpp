@@ -6,6 +6,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
+#include "core/geometry/frame.hpp"
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/find_primitives.hpp"
@@ -81,6 +82,20 @@ void take_finding(Extraction& result, FoundPrimitives& found) {
   result.points = std::move(found.points);
 }
 
+/// The result in the coordinates of the given cloud. The known primitives are as they were given, to the last bit.
+Extraction moved_back(Extraction result, const Eigen::Vector3d& origin, const PrimitiveSet& known) {
+  if (origin.isZero()) return result;
+  result.cloud = seen_from(std::move(result.cloud), -origin);
+  for (DetectedSurface& found : result.surfaces) found.surface.position += origin;
+  for (UnexplainedRegion& region : result.statistics.verdict.regions) region.place += origin;
+  PrimitiveSet& primitives = result.model.primitives;
+  for (std::size_t k = 0; k < primitives.size(); ++k) {
+    Eigen::Vector3d& position = primitives[k].pose.position;
+    position = k < known.size() ? known[k].pose.position : Eigen::Vector3d(position + origin);
+  }
+  return result;
+}
+
 void note_seconds(const FoundPrimitives& found, StageSeconds& seconds) {
   seconds.clean = found.prepared.clean_seconds;
   seconds.normals = found.prepared.normals_seconds;
@@ -112,7 +127,7 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   result.statistics.warnings = std::move(found.warnings);
   take_finding(result, found);
   note_seconds(found, result.statistics.seconds);
-  return result;
+  return moved_back(std::move(result), found.origin, options.known);
 }
 
 Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
@@ -142,7 +157,8 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   take_finding(result, found);
   refine_found(result, rest, extracting.seconds(), run);
   note_seconds(found, statistics.seconds);
-  return judged(std::move(result), found.choice.places, without_stop(run));
+  result = judged(std::move(result), found.choice.places, found.origin, without_stop(run));
+  return moved_back(std::move(result), found.origin, options.known);
 }
 
 }  // namespace cloud2csg

@@ -111,29 +111,30 @@ std::vector<Doubt> doubts_of_fit(const CsgTree& tree, const FitStatistics& fit, 
   return {};
 }
 
-std::vector<Doubt> doubts_of_disagreement(const Extraction& result, const LabelledPlaces& places) {
+std::vector<Doubt> doubts_of_disagreement(const Extraction& result, const LabelledPlaces& places,
+                                          const Eigen::Vector3d& origin) {
   const FindingStatistics& finding = *result.statistics.finding;
   if (finding.disagreement <= k_much_disagreement) return {};
   const Eigen::Vector3d worst = worst_place(result.tree(), result.model.primitives, places);
   return {{finding.disagreement >= k_too_much_disagreement ? Grade::failed : Grade::doubtful,
            fmt::format("the points contradict {} of its volume and surface, worst near {}",
-                       percent(finding.disagreement), place_text(worst, finding.diagonal))}};
+                       percent(finding.disagreement), place_text(origin + worst, finding.diagonal))}};
 }
 
-std::vector<Doubt> doubts_of_bare_surface(const BareSurface& bare, double diagonal) {
+std::vector<Doubt> doubts_of_bare_surface(const BareSurface& bare, const Eigen::Vector3d& origin, double diagonal) {
   if (bare.share <= k_much_bare_surface) return {};
   return {{Grade::doubtful, fmt::format("{} of its surface has no points nearby, farthest from any at {}",
-                                        percent(bare.share), place_text(bare.middle, diagonal))}};
+                                        percent(bare.share), place_text(origin + bare.middle, diagonal))}};
 }
 
-std::vector<Doubt> doubts_of_unused_surfaces(const Extraction& result) {
+std::vector<Doubt> doubts_of_unused_surfaces(const Extraction& result, const Eigen::Vector3d& origin) {
   const UnusedSurfaces unused = find_unused_surfaces(result);
   if (unused.count == 0) return {};
   const DetectedSurface& largest = result.surfaces[unused.largest];
   const Eigen::Vector3d middle = bounds_of(select_points(result.cloud.positions, largest.points)).center();
   return {{Grade::doubtful, fmt::format("{} detected surfaces are not on it, the largest a {} of {} points near {}",
                                         unused.count, type_name(largest.surface.type), largest.points.size(),
-                                        place_text(middle, result.statistics.finding->diagonal))}};
+                                        place_text(origin + middle, result.statistics.finding->diagonal))}};
 }
 
 }  // namespace
@@ -182,15 +183,16 @@ Verdict judge_fit(const CsgTree& tree, const FitStatistics& fit, const Points& p
   return with_doubts(std::move(verdict), doubts_of_fit(tree, fit, within, points.size()));
 }
 
-Extraction judged(Extraction result, const LabelledPlaces& places, const RunContext& run) {
+Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::Vector3d& origin,
+                  const RunContext& run) {
   FindingStatistics& finding = *result.statistics.finding;
   finding.disagreement = wrong_place_share(result.tree(), result.model.primitives, places);
   const BareSurface bare = find_bare_surface(result, run).value_or(BareSurface{});
   finding.bare_surface = bare.share;
   Verdict verdict = judge_fit(result.tree(), result.statistics.fit, result.cloud.positions);
-  verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places));
-  verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, finding.diagonal));
-  result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result));
+  verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places, origin));
+  verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, origin, finding.diagonal));
+  result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result, origin));
   return result;
 }
 

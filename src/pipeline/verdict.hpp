@@ -15,8 +15,11 @@ namespace cloud2csg {
 [[nodiscard]] Verdict judge_fit(const CsgTree& tree, const FitStatistics& fit, const Points& points);
 
 /// The result with a verdict that also counts what detection found: see FindingStatistics. Sets `disagreement`, by the
-/// places with labels, and `bare_surface`. Precondition: the statistics have a finding. @throws Cancelled
-[[nodiscard]] Extraction judged(Extraction result, const LabelledPlaces& places, const RunContext& run);
+/// places with labels, and `bare_surface`. `origin`: of the frame, for texts. Precondition: the statistics have a
+/// finding.
+/// @throws Cancelled
+[[nodiscard]] Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::Vector3d& origin,
+                                const RunContext& run);
 
 /// Judges the detected surfaces and the points on known primitives.
 [[nodiscard]] Verdict judge_detection(const FoundPrimitives& found);

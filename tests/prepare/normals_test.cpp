@@ -104,12 +104,14 @@ TEST(EstimateNormals, OrientsBothSidesOfSharpEdges) {
   }
 }
 
-TEST(PrepareCloud, WarnsWhereTheSideIsDoubtful) {
+TEST(PrepareCloud, TellsWhereTheSideIsDoubtful) {
   PointCloud sheet;
   RandomStream random(6);
   for (int i = 0; i < 3000; ++i) sheet.positions.push_back({random.uniform(), random.uniform(), 0.0});
-  EXPECT_TRUE(test::mentions(prepare_cloud(sheet).warnings, "orientation of the normals is doubtful"));
-  EXPECT_FALSE(test::mentions(prepare_cloud(without_normals(sphere_cloud(3000, 1.0, 0.002))).warnings, "doubtful"));
+  const PreparedCloud doubtful = prepare_cloud(sheet);
+  EXPECT_GT(doubtful.doubtful_normals, 0.01);
+  EXPECT_TRUE(bounds_of(sheet.positions).contains(doubtful.doubtful_place));
+  EXPECT_LT(prepare_cloud(without_normals(sphere_cloud(3000, 1.0, 0.002))).doubtful_normals, 0.01);
 }
 
 TEST(GrowPatches, DoNotCrossThinWalls) {

@@ -125,8 +125,10 @@ struct PreparedCloud {
   CleanReport cleaning;
   std::vector<std::uint32_t> doubted = {};  ///< as in CleanCloud
   bool normals_estimated = false;
+  double doubtful_normals = 0;  ///< share of the points whose estimated normals may point to the wrong side
+  Eigen::Vector3d doubtful_place = Eigen::Vector3d::Zero();  ///< one of these points
   double clean_seconds = 0, normals_seconds = 0;
-  std::vector<std::string> warnings = {};  ///< sentences for the user: changes and remaining doubts, with places
+  std::vector<std::string> warnings = {};  ///< sentences for the user about the whole cloud
 };
 
 /// Prepares a raw cloud for detection: measures and cleans it, and gives it normals out of the solid. Flips given

@@ -9,11 +9,11 @@
 namespace cloud2csg {
 
 std::string place_text(const Eigen::Vector3d& place, double diagonal) {
-  constexpr double k_share = 1e-4;
+  constexpr double k_finest = 1e-4;
   constexpr int k_most_decimals = 12;
   const int decimals =
       diagonal > 0 && std::isfinite(diagonal)
-          ? std::clamp(static_cast<int>(std::ceil(-std::log10(k_share * diagonal))), 0, k_most_decimals)
+          ? std::clamp(static_cast<int>(std::ceil(-std::log10(k_finest * diagonal))), 0, k_most_decimals)
           : k_most_decimals;
   std::array<std::string, 3> texts;
   for (int axis = 0; axis < 3; ++axis) {

@@ -8,7 +8,6 @@
 
 #include "cloud2csg/advanced/prepare.hpp"
 #include "core/base/run.hpp"
-#include "core/geometry/place_text.hpp"
 #include "core/geometry/subset.hpp"
 #include "raw/prepare/orientation.hpp"
 #include "raw/prepare/outliers.hpp"
@@ -18,7 +17,6 @@ namespace {
 
 /// Relative to the diagonal: more noise hides typical details of a part.
 constexpr double k_much_noise = 0.01;
-constexpr double k_much_doubt = 0.01;
 
 void warn_of_noise(PreparedCloud& prepared) {
   if (prepared.scale.noise > k_much_noise * prepared.scale.diagonal) {
@@ -51,20 +49,15 @@ bool keep_given_normals(PreparedCloud& prepared, const PointCloud& sure, const R
 }
 
 /// `doubted`: points that may yet be left out, so that their normals do not count.
-void warn_of_normals(PreparedCloud& prepared, const PointCloud& cloud, const EstimatedNormals& estimated,
-                     std::span<const std::uint32_t> doubted) {
+void note_normals(PreparedCloud& prepared, const PointCloud& cloud, const EstimatedNormals& estimated,
+                  std::span<const std::uint32_t> doubted) {
   prepared.normals_estimated = true;
   std::vector<std::uint32_t> doubtful;
   std::set_difference(estimated.doubtful.begin(), estimated.doubtful.end(), doubted.begin(), doubted.end(),
                       std::back_inserter(doubtful));
-  const std::size_t points = cloud.size() - doubted.size();
-  if (static_cast<double>(doubtful.size()) > k_much_doubt * static_cast<double>(points)) {
-    prepared.warnings.push_back(
-        fmt::format("The orientation of the normals is doubtful for {:.3g} % of the points, near {}: give sensor "
-                    "positions or normals if you have them.",
-                    100.0 * static_cast<double>(doubtful.size()) / static_cast<double>(points),
-                    place_text(cloud.positions[doubtful[doubtful.size() / 2]], prepared.scale.diagonal)));
-  }
+  if (doubtful.empty()) return;
+  prepared.doubtful_normals = static_cast<double>(doubtful.size()) / static_cast<double>(cloud.size() - doubted.size());
+  prepared.doubtful_place = cloud.positions[doubtful[doubtful.size() / 2]];
 }
 
 /// Whether removing so many points changes the rest noticeably.
@@ -108,7 +101,7 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
   prepared.cleaning.isolated = kept.isolated;
   prepared.cleaning.off_surface = kept.off_surface;
   warn_of_noise(prepared);
-  warn_of_normals(prepared, cloud, estimated, kept.doubted);
+  note_normals(prepared, cloud, estimated, kept.doubted);
   return true;
 }
 
@@ -139,7 +132,7 @@ PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& optio
   EstimatedNormals estimated = estimate_normals(prepared.cloud, prepared.scale, run);
   prepared.cloud.normals = std::move(estimated.normals);
   prepared.normals_seconds = watch.seconds();
-  warn_of_normals(prepared, prepared.cloud, estimated, prepared.doubted);
+  note_normals(prepared, prepared.cloud, estimated, prepared.doubted);
   return prepared;
 }
 

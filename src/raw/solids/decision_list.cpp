@@ -94,7 +94,7 @@ class ListSearch {
 
   void apply(const Focus& focus, std::vector<double>& gains) const {
     for (std::size_t i = 0; i < gains.size(); ++i) {
-      if (gains[i] < 0) gains[i] *= focus.hope;
+      if (gains[i] < 0) gains[i] = summable(gains[i] * focus.hope);
       if (focus.on != nullptr && gains[i] > 0 && (*focus.on)[i] == 0) gains[i] = 0;
     }
   }

@@ -155,6 +155,7 @@ void join_places(TermSpace& space, const LabelledPlaces& places) {
     }
     space.pulls[kinds[i]] += places.weights[i];
   }
+  for (double& pull : space.pulls) pull = summable(pull);
   bin_places(space, first_of_kind);
   for (std::size_t i = 0; i < space.size(); ++i) {
     for (const RevolvedFamily& revolved : space.revolved) space.is_inside.push_back(revolved.is_inside[i]);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -43,10 +44,17 @@ struct PlaneFamily {
   std::vector<std::uint8_t> is_under = {};  ///< by place: normal . x <= offset
 };
 
+/// Rounded to a multiple of 2^-40, so that sums are exact in any order. Terms of the same places then gain exactly the
+/// same, and the first of them is taken, not the one that rounding favours.
+[[nodiscard]] inline double summable(double pull) {
+  constexpr double k_quantum = 0x1p-40;  // of a total of about 2
+  return std::round(pull / k_quantum) * k_quantum;
+}
+
 /// Places that no surface distinguishes are merged, and their weights added.
 struct TermSpace {
   PrimitiveSet known = {};         ///< solids that terms may use
-  std::vector<double> pulls = {};  ///< by place: gain from having it in the solid
+  std::vector<double> pulls = {};  ///< by place: gain from having it in the solid; summable()
   std::vector<BoxFamily> boxes = {};
   std::vector<RevolvedFamily> revolved = {};
   std::vector<std::uint8_t> is_inside = {};  ///< a row a place: which curved surfaces contain it

@@ -1,0 +1,149 @@
+#include "core/geometry/frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/reconstruct.hpp"
+#include "cloud2csg/sample.hpp"
+#include "support/known_solids.hpp"
+#include "support/random_scene.hpp"
+
+/// Where a cloud lies, and in which units, changes nothing but the numbers.
+namespace cloud2csg {
+namespace {
+
+/// A tilted bracket: boxes, a bore, a ball and a cone.
+Model bracket() {
+  Model model{.primitives = {test::placed("base", Box{{3, 2, 0.5}}, {0, 0, 0}),
+                             test::placed("wall", Box{{0.5, 2, 1.6}}, {-1.25, 0, 0.8}),
+                             test::placed("ball", Sphere{.radius = 0.6}, {1, 0.4, 0.4}),
+                             test::placed("bore", Cylinder{.radius = 0.35, .height = 2}, {0, -0.3, 0})},
+              .tree = {}};
+  model.tree = subtract(unite_all(std::vector{CsgTree::leaf(0), CsgTree::leaf(1), CsgTree::leaf(2)}), CsgTree::leaf(3));
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  for (Primitive& primitive : model.primitives) {
+    primitive.pose.position = turn * primitive.pose.position;
+    primitive.pose.orientation = turn * primitive.pose.orientation;
+  }
+  return model;
+}
+
+struct Motion {
+  double unit;
+  Eigen::Vector3d shift;
+};
+
+/// Units from 1e-9 to 1e9, shifts up to 1e9 diagonals.
+std::vector<Motion> motions(double diagonal) {
+  RandomStream random(11);
+  std::vector<Motion> list;
+  for (const double power : {-9.0, -3.5, 0.0, 2.0, 9.0}) {
+    for (const double shift_power : {5.0, 9.0}) {
+      const double unit = std::pow(10, power);
+      list.push_back({unit, unit * diagonal * std::pow(10, shift_power) * test::random_direction(random)});
+    }
+  }
+  return list;
+}
+
+PointCloud moved(const PointCloud& cloud, const Motion& motion) {
+  PointCloud result = cloud;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    result.positions.set(i, motion.unit * cloud.positions[i] + motion.shift);
+  }
+  return result;
+}
+
+/// Positions and volumes agree to 1e-6 of the diagonal and what the coordinates leave.
+void expect_moved(const Extraction& here, const Extraction& there, const Motion& motion, double diagonal) {
+  ASSERT_EQ(there.tree(), here.tree()) << motion.unit << " " << motion.shift.transpose();
+  const double tolerance = 1e-6 * motion.unit * diagonal + 100 * 2.3e-16 * motion.shift.norm();
+  for (std::size_t k = 0; k < here.model.primitives.size(); ++k) {
+    const Primitive& one = here.model.primitives[k];
+    const Primitive& other = there.model.primitives[k];
+    EXPECT_EQ(one.id, other.id);
+    const Eigen::Vector3d expected = motion.unit * one.pose.position + motion.shift;
+    EXPECT_LT((other.pose.position - expected).norm(), tolerance) << one.id << " " << motion.unit;
+    EXPECT_LT(one.pose.orientation.angularDistance(other.pose.orientation), 1e-6 + tolerance / motion.unit) << one.id;
+    const Eigen::Vector3d size = bounds(one).sizes() * motion.unit;
+    EXPECT_LT((bounds(other).sizes() - size).norm(), 4 * tolerance) << one.id;
+  }
+}
+
+TEST(FrameOrigin, MovesThereAndBackWithoutRounding) {
+  RandomStream random(3);
+  for (int trial = 0; trial < 100; ++trial) {
+    PointCloud cloud;
+    const Eigen::Vector3d middle =
+        std::pow(10, random.uniform(1, 9)) * test::random_direction(random) + Eigen::Vector3d::Constant(20);
+    for (int i = 0; i < 50; ++i) cloud.positions.push_back(middle + test::random_within(1, random));
+    const Eigen::Vector3d origin = frame_origin(cloud.positions);
+    const PointCloud near = seen_from(cloud, origin);
+    EXPECT_LT(bounds_of(near.positions).center().norm(), 2 * bounds_of(cloud.positions).diagonal().norm());
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(middle[axis]) < 10) continue;  // nearly at zero the points are finer than their frame
+      const PointCloud back = seen_from(near, -origin);
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        EXPECT_EQ(back.positions[i][axis], cloud.positions[i][axis]);
+      }
+    }
+  }
+}
+
+TEST(FrameOrigin, IsZeroForACloudAboutTheOriginAndWithoutOne) {
+  Points points;
+  EXPECT_TRUE(frame_origin(points).isZero());
+  points.push_back({-1, 2, 0.5});
+  points.push_back({1, -1, 0});
+  EXPECT_TRUE(frame_origin(points).isZero());
+  points.push_back({NAN, 0, 0});
+  points.push_back({INFINITY, 0, 0});
+  EXPECT_TRUE(frame_origin(points).isZero());
+}
+
+TEST(Frame, DoesNotChangeAReconstruction) {
+  const PointCloud cloud = sample_surface(bracket(), {.count = 6000, .noise = 0.003, .seed = 2});
+  const double diagonal = bounds_of(cloud.positions).diagonal().norm();
+  const Extraction here = reconstruct(cloud);
+  for (const Motion& motion : motions(diagonal)) {
+    const Extraction there = reconstruct(moved(cloud, motion));
+    expect_moved(here, there, motion, diagonal);
+    EXPECT_EQ(there.statistics.verdict.grade, here.statistics.verdict.grade);
+    ASSERT_EQ(there.surfaces.size(), here.surfaces.size());
+    const Surface& surface = there.surfaces[0].surface;
+    const Points own = select_points(there.cloud, there.surfaces[0].points).positions;
+    EXPECT_LT(std::abs(signed_distance(surface, own[0])), 0.1 * motion.unit);
+  }
+}
+
+TEST(Frame, DoesNotChangeAnExtractionOverGivenPrimitives) {
+  const Model model = bracket();
+  const PointCloud cloud = sample_surface(model, {.count = 6000, .noise = 0.003, .seed = 2});
+  const double diagonal = bounds_of(cloud.positions).diagonal().norm();
+  const CsgTree here = extract_csg(cloud, model.primitives).tree();
+  for (Motion motion : motions(diagonal)) {
+    motion.shift /= std::exchange(motion.unit, 1);  // the primitives keep their sizes
+    PrimitiveSet there = model.primitives;
+    for (Primitive& primitive : there) primitive.pose.position += motion.shift;
+    EXPECT_EQ(extract_csg(moved(cloud, motion), there).tree(), here) << motion.shift.transpose();
+  }
+}
+
+TEST(Frame, LeavesKnownPrimitivesAsTheyAre) {
+  const Model model = bracket();
+  const Motion motion{.unit = 1, .shift = {512345.678, -6123456.789, 98.7}};
+  Primitive base = model.primitives[0];
+  base.pose.position += motion.shift;
+  const PointCloud cloud = moved(sample_surface(model, {.count = 6000, .noise = 0.003, .seed = 2}), motion);
+  const Extraction result = reconstruct(cloud, {.known = {base}});
+  EXPECT_EQ(result.model.primitives[0].pose.position, base.pose.position);
+  EXPECT_EQ(result.statistics.verdict.grade, Grade::good) << to_text(result.statistics.verdict);
+}
+
+}  // namespace
+}  // namespace cloud2csg
