@@ -65,7 +65,7 @@ void add_run_options(CLI::App& options, RunOptions& values) {
       ->type_name("N")
       ->group("Running")
       ->capture_default_str();
-  options.add_flag("-q,--quiet", values.quiet, "Print only warnings and the verdict to standard error")
+  options.add_flag("-q,--quiet", values.quiet, "Do not print progress and summaries to standard error")
       ->group("Running");
   add_config_options(options);
 }

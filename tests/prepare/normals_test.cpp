@@ -245,6 +245,21 @@ TEST(CheckNormals, AreKeptOnBothSidesOfAThinWall) {
   EXPECT_EQ(check_normals(wall, estimate_scale(wall)), NormalsVerdict::unoriented);
 }
 
+/// Consistent with their neighbours, but not with an inside.
+TEST(CheckNormals, AreFoundOutWhereTheyFaceTheWrongSide) {
+  const PointCloud part = model_cloud("m0", 8000, 0.001);
+  ASSERT_EQ(check_normals(part, estimate_scale(part)), NormalsVerdict::outward);
+  const Eigen::Vector3d up = Eigen::Vector3d(0.3, 0.4, 0.8).normalized();
+  PointCloud upward = part;
+  PointCloud flipped = part;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (part.normals[i].dot(up) < 0) upward.normals.set(i, -part.normals[i]);
+    if (part.positions[i].x() > 0) flipped.normals.set(i, -part.normals[i]);
+  }
+  EXPECT_EQ(check_normals(upward, estimate_scale(part)), NormalsVerdict::unoriented);
+  EXPECT_EQ(check_normals(flipped, estimate_scale(part)), NormalsVerdict::unoriented);
+}
+
 /// It has no inside that normals could lead into; those that it has are somebody's choice.
 TEST(CheckNormals, AreKeptOnAnOpenSheet) {
   for (const double side : {1.0, -1.0}) {
