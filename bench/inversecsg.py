@@ -22,8 +22,6 @@ import time
 ENDINGS = (".off", ".stl", ".obj", ".ply", ".scad")
 STAGES = ("read", "clean", "detect", "solids", "extraction")
 RENDER_SECONDS = 900
-
-
 DOUBTFUL = 3  # exit status of `extract`; the files are written
 
 

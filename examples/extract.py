@@ -29,6 +29,7 @@ def main():
     cloud = cloud2csg.sample(truth, count=arguments.count, noise=arguments.noise)
     result = cloud2csg.extract(cloud, truth.primitives, progress=show)
     print(file=sys.stderr)
+    print(result.verdict["text"])
     for warning in result.warnings:
         print("warning:", warning, file=sys.stderr)
     result.write(arguments.output)

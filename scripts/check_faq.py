@@ -10,6 +10,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).parent.parent
 LITERAL = r'"(?:[^"\\\n]|\\.)*"'
+CALLS = r"(?:warnings\.(?:push_back|emplace_back)\(|\bGrade::\w+,)(.*?);\n"  # warnings, and doubts of the verdict
 FOLDERS = ("raw", "cells", "paper", "pipeline", "io")
 
 
@@ -35,7 +36,7 @@ def main():
     warnings = 0
     for folder in FOLDERS:
         for file in sorted(ROOT.glob(f"src/{folder}/**/*.cpp")):
-            for call in re.findall(r"warnings\.(?:push_back|emplace_back)\((.*?)\);\n", file.read_text("utf-8"), re.DOTALL):
+            for call in re.findall(CALLS, file.read_text("utf-8"), re.DOTALL):
                 for message in literals(call):
                     warnings += 1
                     longest = max(pieces(message, r"\{[^}]*\}"), key=len, default="")

@@ -296,10 +296,10 @@ int ExtractCommand::run(const std::stop_token& stop) const {
   const ExtractStatistics told = write_all(std::move(result), total, session.run());
   session.warn(told.warnings);
   for (const std::string& line : summary_of(told, to_write)) session.display().note(line);
+  const bool is_interrupted = stop.stop_requested() && !told.complete;
+  if (is_interrupted) session.display().say("cloud2csg: interrupted: the best tree so far was written");
   const int status = tell_verdict(session, told, to_write, json);
-  if (!stop.stop_requested() || told.complete) return status;
-  session.display().say("cloud2csg: interrupted: the best tree so far was written");
-  return k_failed;
+  return is_interrupted ? k_failed : status;
 }
 
 void add_options(CLI::App& app, ExtractCommand& command, FieldArguments& fields) {

@@ -261,8 +261,7 @@ template <typename Work>
       throw fields->respelled(error);
     }
   };
-  const auto fail = [work](std::string_view message) {
-    (void)message;  // for fail() only
+  const auto fail = [work]([[maybe_unused]] std::string_view message) {
     if constexpr (requires { work->fail(message); }) work->fail(message);
   };
   return {.options = &app, .run = run, .fail = fail};

@@ -90,12 +90,14 @@ int run_command(const Command& command) {
   const InterruptWatcher interrupts;
   try {
     const int status = command.run(interrupts.token());
-    return std::max(status, flushed());
+    const int written = flushed();
+    return written == k_done ? status : written;
   } catch (...) {
     const Failure failure = current_failure();
-    if (command.fail) command.fail(failure.message);
+    complain(failure.status, failure.message);
+    if (command.fail && failure.status == k_failed) command.fail(failure.message);
     (void)flushed();
-    return complain(failure.status, failure.message);
+    return failure.status;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -19,7 +20,8 @@ constexpr std::size_t k_told_regions = 5;
 void print_json(Json verdict, std::span<const std::string> files) {
   verdict["files"] = files;
   // Names of files need not be UTF-8.
-  fmt::print("{}\n", verdict.dump(-1, ' ', false, Json::error_handler_t::replace));
+  const std::string line = verdict.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::fputs(line.c_str(), stdout);  // an error shows when standard output is flushed
 }
 
 }  // namespace
@@ -37,8 +39,9 @@ int tell_verdict(Session& session, const ExtractStatistics& statistics, std::spa
   const std::size_t told = std::min(regions.size(), k_told_regions);
   for (const std::string& line : std::span(regions).first(told)) session.display().note(line);
   if (told < regions.size()) session.display().note(fmt::format("and {} smaller regions", regions.size() - told));
-  session.display().say(to_text(statistics.verdict));
-  if (json) print_json(Json::parse(verdict_json(statistics)), files);
+  const bool is_failed = statistics.verdict.grade == Grade::failed;
+  session.display().say(to_text(statistics.verdict) + (is_failed ? "; nothing was written" : ""));
+  if (json) print_json(Json::parse(to_json(statistics.verdict)), files);
   switch (statistics.verdict.grade) {
     case Grade::good:
       return k_done;
@@ -51,8 +54,8 @@ int tell_verdict(Session& session, const ExtractStatistics& statistics, std::spa
 }
 
 void tell_failure(std::string_view message) {
-  const std::string grade(to_string(Grade::failed));
-  print_json({{"grade", grade}, {"text", fmt::format("{}: {}", grade, message)}}, {});
+  const Verdict verdict{.grade = Grade::failed, .doubts = {std::string(message)}};
+  print_json(Json::parse(to_json(verdict)), {});
 }
 
 }  // namespace cloud2csg::app

@@ -19,7 +19,7 @@ void add_json_option(CLI::App& options, bool& json);
 [[nodiscard]] int tell_verdict(Session& session, const ExtractStatistics& statistics,
                                std::span<const std::string> files, bool json);
 
-/// Prints the line of JSON of a run that ended with this error.
+/// Prints the line of JSON of a run that ended with this error. Throws nothing: it is told while an error is handled.
 void tell_failure(std::string_view message);
 
 }  // namespace cloud2csg::app

@@ -190,9 +190,7 @@ struct FindingStatistics {
   std::size_t unexplained_points = 0;       ///< points on no detected surface and no known primitive
   std::vector<Snap> snaps = {};             ///< surfaces made regular, and by how much
   double disagreement = 0;                  ///< see SolidChoice
-  /// Share of the result's surface, within the bounds of the cloud, that has no points nearby. 0 without a tree.
-  double bare_surface = 0;
-  bool is_tree_of_choice = false;  ///< the result is the tree that the solids were chosen with
+  bool is_tree_of_choice = false;           ///< the result is the tree that the solids were chosen with
 };
 
 struct TreeStatistics {
@@ -231,11 +229,17 @@ struct UnexplainedRegion {
   double size = 0;                                  ///< diagonal of these bounds
 };
 
-/// Judgement of a result by its own points. A good result may still lack what no point shows.
+/// Judgement of a result by its own points, without those that were added on unseen sides. A good result may still lack
+/// what no point shows.
 struct Verdict {
   Grade grade = Grade::good;
-  double distance = 0;                          ///< tolerance, in the cloud's units
-  double share_within = 0;                      ///< share of the points within this distance of the result
+  double distance = 0;                 ///< tolerance, in the cloud's units
+  std::size_t points = 0;              ///< number of points that judge
+  double share_within = 0;             ///< share of these within the distance of the result; in detection, on a surface
+  std::size_t unexplained_points = 0;  ///< number of these that are farther off or have another normal
+  std::optional<double> disagreement = {};  ///< see SolidChoice; absent where it was not judged
+  /// Share of the result's surface, within the bounds of the cloud, that has no points nearby. Absent likewise.
+  std::optional<double> bare_surface = {};
   std::vector<std::string> doubts = {};         ///< clauses about the result, with places; empty for a good result
   std::vector<UnexplainedRegion> regions = {};  ///< most points first
 };
@@ -318,7 +322,7 @@ struct Extraction {
 /// The statistics as JSON, as the command line's --stats writes them.
 [[nodiscard]] std::string to_json(const ExtractStatistics& statistics);
 
-/// The verdict and the figures behind it as one line of JSON: the "verdict" of the statistics.
-[[nodiscard]] std::string verdict_json(const ExtractStatistics& statistics);
+/// The verdict and the figures behind it as one line of JSON, as in the "verdict" of the statistics.
+[[nodiscard]] std::string to_json(const Verdict& verdict);
 
 }  // namespace cloud2csg

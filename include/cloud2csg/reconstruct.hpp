@@ -52,14 +52,15 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
 /// skips points on known primitives. The tree leaves out known primitives that the points do not support, and a warning
 /// names them. The same seed gives the same result for any number of threads. A time limit that ends after the
 /// detection of surfaces gives the best solids so far, with a warning.
-/// @throws Error when the cloud has too few points, no surface or no inside was found, a known primitive is invalid or
-/// has the id of another, or the extraction's time limit ends before surfaces were found; Cancelled.
+/// Surfaces that bound no solid come without new solids and a tree.
+/// @throws Error when the cloud has too few points, no surface was found, a known primitive is invalid or has the id of
+/// another, or the extraction's time limit ends before surfaces were found; Cancelled.
 [[nodiscard]] Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},
                                          const RunContext& run = {});
 
 /// find_primitives(), then extract_csg(). Returns the extracted tree or the tree of the solid choice, whichever has the
 /// lower cost (disagreement with the cloud plus leaves); with refinement, the refined tree where it is taken.
-/// @throws as find_primitives() and extract_csg()
+/// @throws as find_primitives() and extract_csg(), and Error when the surfaces bound no solid
 [[nodiscard]] Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {},
                                      const RunContext& run = {});
 

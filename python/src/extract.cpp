@@ -137,7 +137,9 @@ void bind_extract(py::module_& module) {
           "dict: the content of the file that the command line writes with --stats; times in seconds.")
       .def_property_readonly(
           "verdict",
-          [](const Result& self) { return py::module_::import("json").attr("loads")(verdict_json(self.statistics)); },
+          [](const Result& self) {
+            return py::module_::import("json").attr("loads")(to_json(self.statistics.verdict));
+          },
           "dict: how far the result can be trusted: `grade` (\"good\", \"doubtful\" or \"failed\"), `text`, the "
           "figures "
           "behind it, and the `regions` of points that stay unexplained, most points first.")

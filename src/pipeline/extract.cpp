@@ -13,6 +13,7 @@
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"
+#include "pipeline/frame.hpp"
 #include "pipeline/verdict.hpp"
 
 namespace cloud2csg {
@@ -201,7 +202,7 @@ class Extractor {
       if (statistics_.cells) describe_cells();
       append(statistics_.warnings, search_warnings(statistics_));
     }
-    statistics_.verdict = judge_fit(tree, statistics_.fit, cloud_.positions);
+    statistics_.verdict = judge_fit({.primitives = input_, .tree = tree}, statistics_.fit, cloud_.positions);
   }
 
   /// Adds statistics that the extraction by cells does not need.
@@ -249,7 +250,12 @@ Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives, 
   RunContext inner = run;
   inner.threads = run.threads > 0 ? run.threads : usable_threads(run);
   oneapi::tbb::task_arena arena(usable_threads(run));
-  return arena.execute([&] { return Extractor(cloud, primitives, options, inner, limit).extract(); });
+  const auto extract = [&](const PointCloud& points, const PrimitiveSet& solids) {
+    return arena.execute([&] { return Extractor(points, solids, options, inner, limit).extract(); });
+  };
+  const Eigen::Vector3d origin = frame_origin(cloud.positions);
+  if (origin.isZero(0)) return extract(cloud, primitives);
+  return moved_back(extract(seen_from(cloud, origin), seen_from(primitives, origin)), origin, primitives);
 }
 
 }  // namespace cloud2csg

@@ -13,10 +13,10 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
-#include "core/geometry/frame.hpp"
 #include "core/geometry/place_text.hpp"
 #include "core/geometry/subset.hpp"
 #include "pipeline/diagnostics.hpp"
+#include "pipeline/frame.hpp"
 #include "pipeline/time_limit.hpp"
 #include "raw/solids/unseen_surfaces.hpp"
 
@@ -158,14 +158,9 @@ void check_any_surface(const RestDetection& found, const PointCloud& cloud) {
        .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces"});
 }
 
-PrimitiveSet seen_from(PrimitiveSet primitives, const Eigen::Vector3d& origin) {
-  for (Primitive& primitive : primitives) primitive.pose.position -= origin;
-  return primitives;
-}
-
 PreparedCloud prepare_in_frame(const PointCloud& cloud, const Eigen::Vector3d& origin, const PrepareOptions& options,
                                const RunContext& run) {
-  if (origin.isZero()) return prepare_cloud(cloud, options, run);
+  if (origin.isZero(0)) return prepare_cloud(cloud, options, run);
   return prepare_cloud(seen_from(cloud, origin), options, run);
 }
 
@@ -175,15 +170,16 @@ std::vector<KnownSolid> known_solids(const PrimitiveSet& known, std::vector<Surf
   return solids;
 }
 
-/// Chooses the solids, or notes why there are none.
+/// Chooses the solids. Without an inside, or without a new or known solid, only the known ones are left, and no tree.
 void choose(FoundPrimitives& found, std::span<const KnownSolid> known, const ReconstructOptions& options,
             const RunContext& run) {
   SolidOptions solids = options.solids;
   if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
   try {
     found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
-  } catch (const Error& error) {
+  } catch (const NoInside& error) {
     found.no_solid = error;
+    for (const KnownSolid& one : known) found.choice.solids.push_back(one.solid);
     return;
   }
   if (!found.choice.solids.empty()) return;

@@ -29,10 +29,10 @@ struct FoundPrimitives {
   std::vector<std::uint32_t> unexplained;            ///< points on no surface and no known primitive, ascending
   std::size_t added_points = 0;       ///< points on an unseen side or hidden walls, at the end of the cloud
   SolidChoice choice;                 ///< known solids, chosen solids with evidence, and a tree over them
-  std::optional<Error> no_solid;      ///< why the surfaces bound no solid; `choice` is empty then
+  std::optional<Error> no_solid;      ///< why the surfaces bound no solid; `choice` has no tree then
   std::vector<SurfacePoints> points;  ///< points of the prepared cloud on each solid
   double detect_seconds = 0, choose_seconds = 0;
-  std::vector<std::string> warnings;  ///< sentences for the user: doubts, with places
+  std::vector<std::string> warnings;  ///< sentences for the user, with places
 };
 
 /// find_primitives() without warnings about unused known primitives. Gives a tree if the time limit ends the choice.

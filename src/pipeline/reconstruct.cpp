@@ -6,10 +6,10 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
-#include "core/geometry/frame.hpp"
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/find_primitives.hpp"
+#include "pipeline/frame.hpp"
 #include "pipeline/verdict.hpp"
 
 namespace cloud2csg {
@@ -80,20 +80,6 @@ void take_finding(Extraction& result, FoundPrimitives& found) {
   result.cloud = std::move(found.prepared.cloud);
   result.surfaces = std::move(found.detection.surfaces);
   result.points = std::move(found.points);
-}
-
-/// The result in the coordinates of the given cloud. The known primitives are as they were given, to the last bit.
-Extraction moved_back(Extraction result, const Eigen::Vector3d& origin, const PrimitiveSet& known) {
-  if (origin.isZero()) return result;
-  result.cloud = seen_from(std::move(result.cloud), -origin);
-  for (DetectedSurface& found : result.surfaces) found.surface.position += origin;
-  for (UnexplainedRegion& region : result.statistics.verdict.regions) region.place += origin;
-  PrimitiveSet& primitives = result.model.primitives;
-  for (std::size_t k = 0; k < primitives.size(); ++k) {
-    Eigen::Vector3d& position = primitives[k].pose.position;
-    position = k < known.size() ? known[k].pose.position : Eigen::Vector3d(position + origin);
-  }
-  return result;
 }
 
 void note_seconds(const FoundPrimitives& found, StageSeconds& seconds) {

@@ -6,6 +6,7 @@
 #include "cloud2csg/extract.hpp"
 #include "core/base/run.hpp"
 #include "paper/objective/objective.hpp"
+#include "pipeline/frame.hpp"
 #include "pipeline/time_limit.hpp"
 #include "pipeline/verdict.hpp"
 
@@ -54,11 +55,9 @@ std::optional<Extraction> extracted_again(const PointCloud& cloud, const Primiti
   }
 }
 
-}  // namespace
-
-Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
-                               const RefineOptions& refine_options, const RunContext& run) {
-  validate(refine_options);
+/// extract_refined_csg() without a change of frame.
+Extraction extract_refined(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+                           const RefineOptions& refine_options, const RunContext& run) {
   const Stopwatch watch;
   const auto seconds_left = [&]() -> std::optional<double> {
     if (!options.time_limit_seconds) return std::nullopt;
@@ -98,7 +97,7 @@ Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& prim
       } else {
         result.model.primitives = refinement->primitives;
         result.statistics.fit = moved;
-        result.statistics.verdict = judge_fit(tree, moved, cloud.positions);
+        result.statistics.verdict = judge_fit(result.model, moved, cloud.positions);
         result.statistics.noise = refinement->noise;
       }
     }
@@ -110,6 +109,19 @@ Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& prim
   if (!is_complete) note_incomplete(result.statistics);
   result.statistics.refine = std::move(statistics);
   return result;
+}
+
+}  // namespace
+
+Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+                               const RefineOptions& refine_options, const RunContext& run) {
+  validate(refine_options);
+  const Eigen::Vector3d origin = frame_origin(cloud.positions);
+  if (origin.isZero(0)) return extract_refined(cloud, primitives, options, refine_options, run);
+  Extraction result =
+      extract_refined(seen_from(cloud, origin), seen_from(primitives, origin), options, refine_options, run);
+  const bool have_moved = result.statistics.refine && result.statistics.refine->is_taken;
+  return moved_back(std::move(result), origin, have_moved ? PrimitiveSet{} : primitives);
 }
 
 }  // namespace cloud2csg

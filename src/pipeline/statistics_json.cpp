@@ -135,7 +135,6 @@ Json finding_json(const FindingStatistics& s) {
           {"largest_shift", largest.shift},
           {"snaps", snaps_json(s)},
           {"disagreement", s.disagreement},
-          {"bare_surface", s.bare_surface},
           {"is_tree_of_choice", s.is_tree_of_choice}};
 }
 
@@ -149,21 +148,21 @@ Json regions_json(const std::vector<UnexplainedRegion>& regions) {
   return list;
 }
 
-/// The figures of a finding are null without one.
-Json verdict_object(const ExtractStatistics& s) {
-  const auto found = [&s](double FindingStatistics::*figure) {
-    return s.finding ? Json((*s.finding).*figure) : Json(nullptr);
-  };
-  return {{"grade", to_string(s.verdict.grade)},
-          {"text", to_text(s.verdict)},
-          {"points", s.points},
-          {"share_within", s.verdict.share_within},
-          {"distance", s.verdict.distance},
-          {"unexplained_points", s.fit.unexplained_points},
-          {"disagreement", found(&FindingStatistics::disagreement)},
-          {"bare_surface", found(&FindingStatistics::bare_surface)},
-          {"doubts", s.verdict.doubts},
-          {"regions", regions_json(s.verdict.regions)}};
+Json optional_json(const std::optional<double>& figure) {
+  return figure ? Json(*figure) : Json(nullptr);
+}
+
+Json verdict_json(const Verdict& verdict) {
+  return {{"grade", to_string(verdict.grade)},
+          {"text", to_text(verdict)},
+          {"points", verdict.points},
+          {"share_within", verdict.share_within},
+          {"distance", verdict.distance},
+          {"unexplained_points", verdict.unexplained_points},
+          {"disagreement", optional_json(verdict.disagreement)},
+          {"bare_surface", optional_json(verdict.bare_surface)},
+          {"doubts", verdict.doubts},
+          {"regions", regions_json(verdict.regions)}};
 }
 
 Json tree_json(const TreeStatistics& tree) {
@@ -208,13 +207,13 @@ std::string to_json(const ExtractStatistics& s) {
                        {"rms_angle_deg", s.fit.rms_angle_deg},
                        {"p95_angle_deg", s.fit.p95_angle_deg},
                        {"unexplained_points", s.fit.unexplained_points}}},
-                     {"verdict", verdict_object(s)},
+                     {"verdict", verdict_json(s.verdict)},
                      {"warnings", s.warnings}};
   return json.dump(2) + "\n";
 }
 
-std::string verdict_json(const ExtractStatistics& statistics) {
-  return verdict_object(statistics).dump();
+std::string to_json(const Verdict& verdict) {
+  return verdict_json(verdict).dump();
 }
 
 }  // namespace cloud2csg

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "cloud2csg/csg_tree.hpp"
@@ -70,45 +70,49 @@ UnexplainedRegion region_of(const Points& points, std::span<const std::uint32_t>
   return {.points = own.size(), .place = box.center(), .size = box.diagonal().norm()};
 }
 
-/// Places of a sorted list by value.
-std::size_t count_in(std::span<const std::uint64_t> sorted, std::uint64_t value) {
-  const auto range = std::ranges::equal_range(sorted, value);
-  return static_cast<std::size_t>(range.size());
-}
-
 /// Positions in `far` whose cubes hold at least as many of these points as of others.
 std::vector<std::uint32_t> crowded(const Points& points, std::span<const std::uint64_t> cubes_of_far, double edge) {
-  std::vector<std::uint64_t> sorted(cubes_of_far.begin(), cubes_of_far.end());
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<std::uint64_t> distinct = sorted;
-  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  const auto place_of = [&distinct](std::uint64_t cube) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(distinct, cube) - distinct.begin());
+  struct Counts {
+    std::size_t far = 0, all = 0;
   };
-  std::vector<std::size_t> all(distinct.size());
+  std::unordered_map<std::uint64_t, Counts> counts;
+  for (const std::uint64_t cube : cubes_of_far) ++counts[cube].far;
   const Eigen::Vector3d corner = bounds_of(points).min();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint64_t cube = cube_of(points[i] - corner, edge);
-    const std::size_t at = place_of(cube);
-    if (at < distinct.size() && distinct[at] == cube) ++all[at];
+    const auto found = counts.find(cube_of(points[i] - corner, edge));
+    if (found != counts.end()) ++found->second.all;
   }
   std::vector<std::uint32_t> kept;
   for (std::uint32_t k = 0; k < cubes_of_far.size(); ++k) {
-    if (2 * count_in(sorted, cubes_of_far[k]) >= all[place_of(cubes_of_far[k])]) kept.push_back(k);
+    const Counts& here = counts[cubes_of_far[k]];
+    if (2 * here.far >= here.all) kept.push_back(k);
   }
   return kept;
 }
 
-std::vector<Doubt> doubts_of_fit(const CsgTree& tree, const FitStatistics& fit, double within, std::size_t points) {
-  if (primitives_of(tree).empty())
-    return {{Grade::failed, "the result is empty: no formula over the primitives explains the points"}};
-  const double unexplained = share(fit.unexplained_points, points);
+std::vector<Doubt> doubts_of_fit(const Verdict& verdict) {
+  const double unexplained = share(verdict.unexplained_points, verdict.points);
   if (unexplained > k_much_unexplained) {
     return {{unexplained > k_too_much_unexplained ? Grade::failed : Grade::doubtful,
              percent(unexplained) + " of the points contradict it, by place or normal"}};
   }
-  if (within < k_least_within) return {{Grade::doubtful, percent(k_least_within) + " are expected"}};
-  return {};
+  if (verdict.share_within >= k_least_within) return {};
+  return {{Grade::doubtful, percent(k_least_within) + " are expected"}};
+}
+
+/// The corners of a box far around the points: a bounded solid contains none of them.
+std::vector<Doubt> doubts_of_bounds(const Model& model, const AlignedBox& around) {
+  constexpr double k_diagonals = 1e4;
+  const double far = k_diagonals * around.diagonal().norm();
+  Points corners;
+  for (const double x : {-far, far}) {
+    for (const double y : {-far, far}) {
+      for (const double z : {-far, far}) corners.push_back(around.center() + Eigen::Vector3d(x, y, z));
+    }
+  }
+  const std::vector<double> values = implicit_value(*model.tree, model.primitives, corners);
+  if (std::ranges::none_of(values, [](double value) { return value < 0; })) return {};
+  return {{Grade::doubtful, "the solid is unbounded: normals may lead inward"}};
 }
 
 std::vector<Doubt> doubts_of_disagreement(const Extraction& result, const LabelledPlaces& places,
@@ -163,6 +167,7 @@ std::vector<UnexplainedRegion> unexplained_regions(const Points& points, const s
   if (far.size() < k_least_in_region) return {};
   const AlignedBox box = bounds_of(points);
   const double edge = region_edge(box.diagonal().norm(), points.size());
+  if (!(edge > 0)) return {{.points = far.size(), .place = box.center(), .size = 0}};
   std::vector<std::uint64_t> cubes;
   cubes.reserve(far.size());
   for (const std::uint32_t i : far) cubes.push_back(cube_of(points[i] - box.min(), edge));
@@ -175,12 +180,23 @@ std::vector<UnexplainedRegion> unexplained_regions(const Points& points, const s
   return regions;
 }
 
-Verdict judge_fit(const CsgTree& tree, const FitStatistics& fit, const Points& points) {
-  const double within = 1 - share(fit.far_points.size(), points.size());
-  Verdict verdict{.distance = fit.tolerances.distance,
-                  .share_within = within,
-                  .regions = unexplained_regions(points, fit.far_points)};
-  return with_doubts(std::move(verdict), doubts_of_fit(tree, fit, within, points.size()));
+Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points, std::size_t added) {
+  const CsgTree& tree = *model.tree;
+  if (is_constant(tree)) {
+    const bool is_empty = tree == CsgTree::empty();
+    return with_doubts(
+        {.points = points.size() - added, .unexplained_points = points.size() - added},
+        {{Grade::failed, is_empty ? "the result is empty: no formula over the primitives explains the points"
+                                  : "the result is all of space: normals may lead inward"}});
+  }
+  const std::size_t own = points.size() - added;
+  const auto far = static_cast<std::size_t>(std::ranges::lower_bound(fit.far_points, own) - fit.far_points.begin());
+  const Verdict verdict{.distance = fit.tolerances.distance,
+                        .points = own,
+                        .share_within = share(own - far, own),
+                        .unexplained_points = std::min(fit.unexplained_points, own),
+                        .regions = unexplained_regions(points, fit.far_points)};
+  return with_doubts(with_doubts(verdict, doubts_of_fit(verdict)), doubts_of_bounds(model, bounds_of(points)));
 }
 
 Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::Vector3d& origin,
@@ -188,8 +204,9 @@ Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::
   FindingStatistics& finding = *result.statistics.finding;
   finding.disagreement = wrong_place_share(result.tree(), result.model.primitives, places);
   const BareSurface bare = find_bare_surface(result, run).value_or(BareSurface{});
-  finding.bare_surface = bare.share;
-  Verdict verdict = judge_fit(result.tree(), result.statistics.fit, result.cloud.positions);
+  Verdict verdict = judge_fit(result.model, result.statistics.fit, result.cloud.positions, finding.added_points);
+  verdict.disagreement = finding.disagreement;
+  verdict.bare_surface = bare.share;
   verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places, origin));
   verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, origin, finding.diagonal));
   result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result, origin));
@@ -198,14 +215,17 @@ Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::
 
 Verdict judge_detection(const FoundPrimitives& found) {
   const Points& points = found.prepared.cloud.positions;
-  const double unexplained = share(found.unexplained.size(), points.size());
+  const std::size_t own = points.size() - found.added_points;
+  const std::size_t unexplained = found.unexplained.size();
   std::vector<Doubt> doubts;
-  if (unexplained > k_much_unexplained) {
-    doubts.push_back({Grade::doubtful, percent(unexplained) + " of the points lie on no detected surface"});
+  if (share(unexplained, own) > k_much_unexplained) {
+    doubts.push_back({Grade::doubtful, percent(share(unexplained, own)) + " of the points lie on no detected surface"});
   }
   if (found.no_solid) doubts.push_back({Grade::doubtful, "the surfaces bound no solid"});
   return with_doubts({.distance = found.detection.distance_tolerance,
-                      .share_within = 1 - unexplained,
+                      .points = own,
+                      .share_within = share(own - unexplained, own),
+                      .unexplained_points = unexplained,
                       .regions = unexplained_regions(points, found.unexplained)},
                      std::move(doubts));
 }

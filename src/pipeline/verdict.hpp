@@ -11,11 +11,13 @@ namespace cloud2csg {
 [[nodiscard]] std::vector<UnexplainedRegion> unexplained_regions(const Points& points,
                                                                  const std::vector<std::uint32_t>& far);
 
-/// Judges a tree by the fit of all points to it.
-[[nodiscard]] Verdict judge_fit(const CsgTree& tree, const FitStatistics& fit, const Points& points);
+/// Judges a model's tree by the fit of all points to it. The last `added` points are none of the cloud's own: they lie
+/// on the tree because somebody put them there.
+[[nodiscard]] Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points,
+                                std::size_t added = 0);
 
-/// The result with a verdict that also counts what detection found: see FindingStatistics. Sets `disagreement`, by the
-/// places with labels, and `bare_surface`. `origin`: of the frame, for texts. Precondition: the statistics have a
+/// The result with a verdict that also counts what detection found, and the finding's disagreement of the final tree
+/// with the labels of `places`. `origin`: of the frame, for texts. Precondition: the statistics have a
 /// finding.
 /// @throws Cancelled
 [[nodiscard]] Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::Vector3d& origin,

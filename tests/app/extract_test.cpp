@@ -253,7 +253,7 @@ TEST_F(Extract, TimeLimitIsNotAFailure) {
   std::vector<std::string> arguments = endless(cloud, shipped("m0.json"), path("m.json"), path("s.json"));
   arguments.insert(arguments.end(), {"--time-limit", "0.5"});
   const Outcome outcome = run(arguments);
-  EXPECT_NE(outcome.status, 1) << outcome.err;
+  EXPECT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.err;
   EXPECT_EQ(json::parse(read_file(path("s.json")))["complete"], false);
 }
 

@@ -85,6 +85,27 @@ TEST_F(Verdict, NothingIsWrittenOfAFailedResult) {
   EXPECT_TRUE(line["files"].empty());
 }
 
+TEST_F(Verdict, ThatCannotBeWrittenIsAFailure) {
+  sample(box("both.json", true), "c.ply");
+  const std::string command = "'" CLOUD2CSG_PROGRAM "' extract '" + path("c.ply") + "' --primitives '" +
+                              box("box.json", false) + "' --json -q -o '" + path("t.json") + "' >/dev/full 2>'" +
+                              path("err") + "'; echo $? >'" + path("status") + "'";
+  ASSERT_EQ(run({"--version"}, command).status, 0);
+  EXPECT_EQ(read_file(path("status")), "1\n");
+  EXPECT_NE(read_file(path("err")).find("standard output cannot be written"), std::string::npos);
+}
+
+TEST_F(Verdict, QuietRunsStillWarn) {
+  sample(box("both.json", true), "c.ply");
+  const json model = {
+      {"format", "cloud2csg"},
+      {"version", 1},
+      {"primitives", {{{"id", "ghost"}, {"type", "sphere"}, {"radius", 0.2}, {"pose", {{"position", {9, 9, 9}}}}}}}};
+  const Outcome outcome = run({"extract", path("c.ply"), "--primitives", file("ghost.json", model.dump()),
+                               "--detect-rest", "-q", "-o", path("t.json")});
+  EXPECT_NE(outcome.err.find("warning: no point supports primitive 'ghost'"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Verdict, OfAnErrorIsJsonToo) {
   const Outcome outcome = run({"extract", path("none.ply"), "--json", "-o", path("t.json")});
   EXPECT_EQ(outcome.status, 1);

@@ -62,7 +62,7 @@ PointCloud moved(const PointCloud& cloud, const Motion& motion) {
 /// Positions and volumes agree to 1e-6 of the diagonal and what the coordinates leave.
 void expect_moved(const Extraction& here, const Extraction& there, const Motion& motion, double diagonal) {
   ASSERT_EQ(there.tree(), here.tree()) << motion.unit << " " << motion.shift.transpose();
-  const double tolerance = 1e-6 * motion.unit * diagonal + 100 * 2.3e-16 * motion.shift.norm();
+  const double tolerance = 1e-6 * motion.unit * diagonal + 4 * 2.3e-16 * motion.shift.norm();
   for (std::size_t k = 0; k < here.model.primitives.size(); ++k) {
     const Primitive& one = here.model.primitives[k];
     const Primitive& other = there.model.primitives[k];
@@ -134,14 +134,47 @@ TEST(Frame, DoesNotChangeAnExtractionOverGivenPrimitives) {
   }
 }
 
+TEST(Frame, DoesNotChangeARefinement) {
+  const Model model = bracket();
+  const PointCloud cloud = sample_surface(model, {.count = 6000, .noise = 0.003, .seed = 2});
+  const double diagonal = bounds_of(cloud.positions).diagonal().norm();
+  PrimitiveSet rough = model.primitives;
+  rough[0].pose.position.x() += 0.01;
+  const Extraction here = extract_refined_csg(cloud, rough);
+  ASSERT_TRUE(here.statistics.refine->is_taken);
+  for (const double power : {4.0, 9.0}) {
+    const Motion motion{.unit = 1, .shift = std::pow(10, power) * diagonal * Eigen::Vector3d(0.6, -0.64, 0.48)};
+    PrimitiveSet there = rough;
+    for (Primitive& primitive : there) primitive.pose.position += motion.shift;
+    expect_moved(here, extract_refined_csg(moved(cloud, motion), there), motion, diagonal);
+  }
+}
+
+TEST(Frame, MovesRegionsBack) {
+  const Model model = bracket();
+  const PointCloud cloud = sample_surface(model, {.count = 6000, .noise = 0.003, .seed = 2});
+  const Motion motion{.unit = 1, .shift = {512345.678, -6123456.789, 98.7}};
+  PrimitiveSet here(model.primitives.begin(), model.primitives.begin() + 2);
+  PrimitiveSet there = here;
+  for (Primitive& primitive : there) primitive.pose.position += motion.shift;
+  const Verdict one = extract_csg(cloud, here).statistics.verdict;
+  const Verdict other = extract_csg(moved(cloud, motion), there).statistics.verdict;
+  ASSERT_FALSE(one.regions.empty());
+  ASSERT_EQ(other.regions.size(), one.regions.size());
+  EXPECT_LT((one.regions[0].place + motion.shift - other.regions[0].place).norm(), 1e-8);
+}
+
 TEST(Frame, LeavesKnownPrimitivesAsTheyAre) {
   const Model model = bracket();
   const Motion motion{.unit = 1, .shift = {512345.678, -6123456.789, 98.7}};
   Primitive base = model.primitives[0];
   base.pose.position += motion.shift;
   const PointCloud cloud = moved(sample_surface(model, {.count = 6000, .noise = 0.003, .seed = 2}), motion);
-  const Extraction result = reconstruct(cloud, {.known = {base}});
+  Primitive ball = model.primitives[2];
+  ball.pose.position += motion.shift;
+  const Extraction result = reconstruct(cloud, {.known = {base, ball}});
   EXPECT_EQ(result.model.primitives[0].pose.position, base.pose.position);
+  EXPECT_EQ(result.model.primitives[1].pose.position, ball.pose.position);
   EXPECT_EQ(result.statistics.verdict.grade, Grade::good) << to_text(result.statistics.verdict);
 }
 

@@ -122,7 +122,7 @@ TEST(Verdict, IsDoubtfulWhereAPrimitiveIsMissing) {
   EXPECT_NEAR(verdict.regions[0].size, std::sqrt(3.0), 0.1);  // the bounds of a ball of diameter 1
   EXPECT_EQ(region_lines(verdict).size(), 1U);
 
-  const Json json = Json::parse(verdict_json(statistics));
+  const Json json = Json::parse(to_json(verdict));
   EXPECT_EQ(json, Json::parse(to_json(statistics))["verdict"]);
   EXPECT_EQ(json["grade"], "doubtful");
   EXPECT_EQ(json["text"], to_text(verdict));
@@ -132,19 +132,44 @@ TEST(Verdict, IsDoubtfulWhereAPrimitiveIsMissing) {
 
 TEST(Verdict, FailsWhereMostPointsContradictTheTree) {
   PointCloud cloud = sample_surface(box_with_ball(), {.count = 4000, .noise = 0.002});
-  // Normals into the solid leave nothing but its complement.
-  const auto share = cloud.size() * 2 / 5;
-  const PrimitiveSet box{box_with_ball().primitives[0]};
-  for (std::size_t i = share; i < cloud.size(); ++i) cloud.positions.z[i] += 10;
-  const Verdict verdict = extract_csg(cloud, box).statistics.verdict;
+  for (std::size_t i = cloud.size() * 2 / 5; i < cloud.size(); ++i) cloud.positions.z[i] += 10;
+  const Verdict verdict = extract_csg(cloud, {box_with_ball().primitives[0]}).statistics.verdict;
   EXPECT_EQ(verdict.grade, Grade::failed);
   EXPECT_LT(verdict.share_within, 0.5);
 }
 
-TEST(Verdict, FailsForAnEmptyTree) {
-  const FitStatistics none;
-  const Verdict verdict = judge_fit(CsgTree::empty(), none, flat_lattice());
-  EXPECT_EQ(to_text(verdict), "failed: the result is empty: no formula over the primitives explains the points");
+TEST(Verdict, FailsForAConstantTree) {
+  const Points points = flat_lattice();
+  const Verdict empty = judge_fit({.primitives = {}, .tree = CsgTree::empty()}, {}, points);
+  EXPECT_EQ(to_text(empty), "failed: the result is empty: no formula over the primitives explains the points");
+  EXPECT_EQ(empty.share_within, 0);
+  EXPECT_EQ(empty.unexplained_points, points.size());
+  const Verdict full = judge_fit({.primitives = {}, .tree = CsgTree::full()}, {}, points);
+  EXPECT_EQ(to_text(full), "failed: the result is all of space: normals may lead inward");
+}
+
+TEST(Verdict, IsDoubtfulForAnUnboundedSolid) {
+  const Model model{.primitives = {box_with_ball().primitives[0]}, .tree = CsgTree::leaf(0)};
+  PointCloud cloud = sample_surface(model, {.count = 4000, .noise = 0.002});
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.normals.set(i, -cloud.normals[i]);
+  const Verdict verdict = extract_csg(cloud, model.primitives).statistics.verdict;
+  EXPECT_EQ(verdict.grade, Grade::doubtful);
+  EXPECT_NE(to_text(verdict).find("the solid is unbounded"), std::string::npos);
+}
+
+TEST(Verdict, CountsOnlyPointsOfTheCloud) {
+  const Model box{.primitives = {test::placed("box", Box{{300, 300, 2}}, {50, 50, -1})}, .tree = CsgTree::leaf(0)};
+  FitStatistics fit{.tolerances = {.distance = 0.5, .cosine = 0}, .far_points = {0, 9999}};
+  const Points points = flat_lattice();
+  EXPECT_EQ(judge_fit(box, fit, points).share_within, 0.9998);
+  EXPECT_EQ(judge_fit(box, fit, points, 5000).share_within, 0.9998);
+  EXPECT_EQ(judge_fit(box, fit, points, 5000).points, 5000U);
+  fit.unexplained_points = 1001;
+  EXPECT_EQ(judge_fit(box, fit, points).grade, Grade::doubtful);
+  fit.unexplained_points = 1000;
+  EXPECT_EQ(judge_fit(box, fit, points).grade, Grade::good);
+  fit.unexplained_points = 5001;
+  EXPECT_EQ(judge_fit(box, fit, points).grade, Grade::failed);
 }
 
 /// What judged() says of this tree and the places of a cloud of a box.
@@ -168,7 +193,7 @@ TEST(Verdict, FailsWhereTheEmptySolidIsAsGood) {
                           .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))});
   EXPECT_EQ(hollow.verdict.grade, Grade::doubtful);
   EXPECT_NE(to_text(hollow.verdict).find("of its volume and surface, worst near"), std::string::npos);
-  EXPECT_NEAR(hollow.finding->bare_surface, 1.44 / 5.44, 0.02);
+  EXPECT_NEAR(hollow.verdict.bare_surface.value(), 1.44 / 5.44, 0.02);
   EXPECT_NE(to_text(hollow.verdict).find("of its surface has no points nearby"), std::string::npos);
 }
 
@@ -202,6 +227,12 @@ TEST(FindPrimitives, GivesSurfacesThatBoundNoSolid) {
   EXPECT_EQ(found.statistics.verdict.grade, Grade::doubtful);
   EXPECT_NE(to_text(found.statistics.verdict).find("the surfaces bound no solid"), std::string::npos);
   EXPECT_THROW((void)reconstruct(sheet), Error);
+
+  const Primitive known = test::placed("known", Box{{6, 6, 1}}, {2.95, 2.95, 5});
+  const Extraction with_known = find_primitives(sheet, {.known = {known}});
+  ASSERT_EQ(with_known.model.primitives.size(), 1U);
+  EXPECT_EQ(with_known.model.primitives[0].id, "known");
+  EXPECT_EQ(with_known.statistics.verdict.grade, Grade::doubtful);
 }
 
 }  // namespace

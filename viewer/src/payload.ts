@@ -106,6 +106,7 @@ export interface Statistics {
     regularities: { type: string; primitives: number[]; spread: number }[];
     [field: string]: unknown;
   } | null;
+  verdict: { text: string; doubts: string[] };
   warnings: string[];
 }
 

@@ -123,7 +123,8 @@ function parameters(report: Report): HTMLElement[] {
 }
 
 export function warningsOf(report: Report): string[] {
-  return [...(report.text.statistics?.warnings ?? []), ...report.text.warnings];
+  const { statistics } = report.text;
+  return [...(statistics?.verdict.doubts ?? []), ...(statistics?.warnings ?? []), ...report.text.warnings];
 }
 
 export function runPane(report: Report): HTMLElement {

@@ -11,10 +11,17 @@
 #include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/advanced/segmentation.hpp"
 #include "cloud2csg/csg_tree.hpp"
+#include "cloud2csg/error.hpp"
 #include "cloud2csg/point_cloud.hpp"
 
 /// From detected surfaces to few solids and a small tree over them.
 namespace cloud2csg {
+
+/// The surface of the cloud encloses nothing.
+class NoInside : public Error {
+ public:
+  using Error::Error;
+};
 
 /// Places with a known label: in the solid or out of it.
 struct LabelledPlaces {
@@ -44,7 +51,7 @@ void option_table(OptionsOf<PlaceOptions>, auto&& field) {
 
 /// Labels places in the volume by the winding number of the oriented points (Barill et al. 2018) and places beside a
 /// point by its normal. Leaves out unclear places. O((places + points) log points + places x some thousand voxels)
-/// @throws Error (where = "cloud", "noise"...) for no normals, no inside, fewer than 16 points, a bad option; Cancelled
+/// @throws NoInside; Error (where = "cloud", "noise"...) for no normals, fewer than 16 points, a bad option; Cancelled
 [[nodiscard]] LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options = {},
                                           const RunContext& run = {});
 

@@ -28,8 +28,10 @@ constexpr std::size_t k_chunk_places = 256;  // places between two looks at the 
 }
 
 [[noreturn]] void refuse_without_inside() {
-  refuse("cloud", "expected the surface of a solid, found one that encloses nothing",
-         "give points from all sides of the object, and outward normals or sensor positions if there are any");
+  throw NoInside(
+      {.where = "cloud",
+       .expected = "expected the surface of a solid, found one that encloses nothing",
+       .remedy = "give points from all sides of the object, and outward normals or sensor positions if there are any"});
 }
 
 void check(const PointCloud& cloud, const PlaceOptions& options) {
