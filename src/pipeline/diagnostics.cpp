@@ -19,11 +19,11 @@ constexpr double k_many_outliers = 0.01;
 constexpr double k_much_doubt = 0.01;
 constexpr double k_coarse = 0.05;  ///< tolerance as a share of the diagonal
 
-double share(std::size_t part, std::size_t all) {
-  return static_cast<double>(part) / static_cast<double>(all);
-}
-
 }  // namespace
+
+double share(std::size_t part, std::size_t all) {
+  return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
+}
 
 std::size_t count_of(std::span<const SurfacePoints> primitives) {
   std::size_t count = 0;

@@ -13,6 +13,9 @@ inline void append(std::vector<std::string>& warnings, std::span<const std::stri
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
 
+/// 0 of nothing.
+[[nodiscard]] double share(std::size_t part, std::size_t all);
+
 [[nodiscard]] std::size_t count_of(std::span<const SurfacePoints> primitives);
 
 /// Warns of loss in a merge, and of an early stop.

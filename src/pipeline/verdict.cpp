@@ -14,6 +14,7 @@
 #include "core/geometry/place_text.hpp"
 #include "core/geometry/subset.hpp"
 #include "pipeline/coverage.hpp"
+#include "pipeline/diagnostics.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -33,10 +34,6 @@ struct Doubt {
 /// Never rounded up, so that 100 % means all.
 std::string percent(double share) {
   return fmt::format("{} %", std::floor(1000 * share) / 10);
-}
-
-double share(std::size_t part, std::size_t all) {
-  return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
 }
 
 Verdict with_doubts(Verdict verdict, std::vector<Doubt> doubts) {
