@@ -152,6 +152,31 @@ RC_GTEST_PROP(WriteSolids, TheTreeDecidesAsTheListDoes, ()) {
   RC_ASSERT(of_tree >= of_list - 1e-9);
 }
 
+TEST(WriteSolids, NothingIsAddedFarFromThePart) {
+  TermSpace space = scene().space;
+  const auto cylinder = std::ranges::find_if(
+      space.revolved, [](const RevolvedFamily& family) { return family.surface.type == SurfaceType::cylinder; });
+  ASSERT_NE(cylinder, space.revolved.end());
+  const TermPart part{.kind = PartKind::revolved,
+                      .family = static_cast<std::uint32_t>(cylinder - space.revolved.begin()),
+                      .ranges = {BinRange{.first = 0, .last = cylinder->bins.count() - 1}}};
+  const Term term{.parts = {part}};
+  const DecisionList list{{.term = term, .members = members_of(space, term), .is_in = true}};
+  const auto is_inside = [](const WrittenSolids& written, const Eigen::Vector3d& place) {
+    Points places;
+    places.push_back(place);
+    return implicit_value(written.tree, written.solids, places)[0] < 0;
+  };
+  const Eigen::Vector3d in_part = cylinder->surface.position;
+  const Eigen::Vector3d far =
+      in_part + 20 * space.part_bounds.diagonal().norm() * cylinder->surface.axis.unitOrthogonal();
+  EXPECT_EQ(write_solids(space, list).solids.size(), 1U) << "a solid of the part's size needs no box";
+  cylinder->surface.radius = 30 * space.part_bounds.diagonal().norm();
+  const WrittenSolids written = write_solids(space, list);
+  EXPECT_TRUE(is_inside(written, in_part));
+  EXPECT_FALSE(is_inside(written, far));
+}
+
 RC_GTEST_PROP(TermSearch, TheBestBoxIsNoWorseThanAnyOther, ()) {
   const TermSpace& space = scene().space;
   const std::vector<double> gains = any_gains();

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cloud2csg/csg_tree.hpp"
+#include "core/geometry/boxes.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -311,6 +312,14 @@ class SolidWriter {
     return static_cast<PrimitiveIndex>(solids.size() - 1);
   }
 
+  /// A box around the part. It is the last solid, because indices are counted from the first one that was added.
+  PrimitiveIndex add_part_box(const TermSpace& space) {
+    Primitive box{.id = {}, .shape = Box{space.part_bounds.sizes()}, .pose = {.position = space.part_bounds.center()}};
+    box.id = new_id(std::string(type_name(box.shape)));
+    solids.push_back(std::move(box));
+    return static_cast<PrimitiveIndex>(solids.size() - 1);
+  }
+
   PrimitiveSet solids;
 
  private:
@@ -329,6 +338,25 @@ class SolidWriter {
   std::map<std::string, std::size_t> numbers_;
 };
 
+/// A rule's term as a tree, and where it may be.
+struct WrittenTerm {
+  CsgTree tree = {};
+  AlignedBox reach = everywhere();
+};
+
+WrittenTerm write_term(const TermSpace& space, const Rule& rule, const std::vector<Overshoots>& overshoots,
+                       SolidWriter& writer) {
+  WrittenTerm term;
+  for (std::size_t p = 0; p < rule.term.parts.size(); ++p) {
+    const TermPart& part = rule.term.parts[p];
+    const PrimitiveIndex solid = writer.add(space, part, overshoots[p], rule.is_in != part.is_inverted);
+    const CsgTree leaf = CsgTree::leaf(solid);
+    term.tree = p == 0 ? leaf : part.is_inverted ? subtract(term.tree, leaf) : intersect(term.tree, leaf);
+    if (!part.is_inverted) term.reach = term.reach.intersection(bounds(writer.solids[solid]));
+  }
+  return term;
+}
+
 }  // namespace
 
 WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
@@ -336,14 +364,18 @@ WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
   const std::vector<std::vector<Overshoots>> overshoots = FreeEnds::of(space, list);
   SolidWriter writer(space.known);
   std::vector<CsgTree> terms;
+  std::vector<std::size_t> endless;  // rules that add where no solid can subtract, such as cylinders of many diagonals
   for (std::size_t r = 0; r < list.size(); ++r) {
-    std::optional<CsgTree> term;
-    for (std::size_t p = 0; p < list[r].term.parts.size(); ++p) {
-      const TermPart part = list[r].term.parts[p];
-      const CsgTree leaf = CsgTree::leaf(writer.add(space, part, overshoots[r][p], list[r].is_in != part.is_inverted));
-      term = !term ? leaf : part.is_inverted ? subtract(*term, leaf) : intersect(*term, leaf);
-    }
-    terms.push_back(*term);
+    const WrittenTerm term = write_term(space, list[r], overshoots[r], writer);
+    terms.push_back(term.tree);
+    const bool is_given = std::ranges::any_of(list[r].term.parts,
+                                              [](const TermPart& part) { return part.is_known && !part.is_inverted; });
+    // A given solid stays as it is.
+    if (list[r].is_in && !is_given && !space.bounds.contains(term.reach)) endless.push_back(r);
+  }
+  if (!endless.empty()) {
+    const CsgTree part_box = CsgTree::leaf(writer.add_part_box(space));
+    for (const std::size_t r : endless) terms[r] = intersect(terms[r], part_box);
   }
   CsgTree tree;
   for (std::size_t r = list.size(); r-- > 0;) {
