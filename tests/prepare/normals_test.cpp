@@ -301,6 +301,11 @@ TEST(PrepareCloud, EstimatesRandomNormalsAnew) {
   EXPECT_TRUE(prepared.normals_estimated);
   EXPECT_TRUE(test::mentions(prepared.warnings, "estimated again"));
   EXPECT_EQ(rightly_oriented(prepared.cloud.normals, prepared.cloud.positions), 1.0);
+  const PreparedCloud without = prepare_cloud(without_normals(cloud));
+  EXPECT_EQ(prepared.cloud.positions.x, without.cloud.positions.x);
+  EXPECT_EQ(prepared.cloud.normals.x, without.cloud.normals.x) << "as if no normals were given";
+  EXPECT_EQ(prepared.doubted, without.doubted);
+  EXPECT_EQ(prepared.scale.noise, without.scale.noise);
   // Signs alone by chance are of no use, either.
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     cloud.normals.set(i, (random.chance(0.5) ? 1.0 : -1.0) * cloud.positions[i].normalized());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -32,20 +33,41 @@ void turn(Points& normals) {
   }
 }
 
-/// Keeps the given normals if those of the sure points are good, and returns whether they are.
-bool keep_given_normals(PreparedCloud& prepared, const PointCloud& sure, const RunContext& run) {
-  switch (check_normals(sure, prepared.scale, run)) {
-    case NormalsVerdict::outward:
-      return true;
-    case NormalsVerdict::inward:
-      turn(prepared.cloud.normals);
-      prepared.warnings.emplace_back("The normals pointed into the solid and were turned.");
-      return true;
-    case NormalsVerdict::unoriented:
-      prepared.warnings.emplace_back("The normals contradicted the surface or each other and were estimated again.");
-      return false;
+/// Whether removing so many points changes the rest noticeably.
+bool is_much(std::size_t left_out, std::size_t points) {
+  return static_cast<double>(left_out) >= k_settled * static_cast<double>(points);
+}
+
+/// Cleans the cloud. Its normals play no part.
+PreparedCloud cleaned(const PointCloud& cloud, const CleanOptions& options, PreparedCloud prepared,
+                      const RunContext& run) {
+  const Stopwatch watch;
+  CleanCloud clean = clean_cloud(cloud, prepared.scale, options, run);
+  prepared.cloud = std::move(clean.cloud);
+  prepared.cleaning = clean.report;
+  prepared.doubted = std::move(clean.doubted);
+  // Outliers and duplicates distorted the first estimate.
+  const PointCloud sure = without_points(prepared.cloud, prepared.doubted);
+  if (is_much(cloud.size() - sure.size(), cloud.size())) prepared.scale = estimate_scale(sure, run);
+  warn_of_noise(prepared);
+  prepared.clean_seconds = watch.seconds();
+  return prepared;
+}
+
+/// Keeps the given normals if those of the sure points are good; else the result is absent.
+std::optional<PreparedCloud> prepare_with_normals(const PointCloud& cloud, const PrepareOptions& options,
+                                                  const PreparedCloud& measured, const RunContext& run) {
+  PreparedCloud prepared = cleaned(cloud, options.clean, measured, run);
+  const Stopwatch watch;
+  const PointCloud sure = without_points(prepared.cloud, prepared.doubted);
+  const NormalsVerdict verdict = check_normals(sure, prepared.scale, run);
+  if (verdict == NormalsVerdict::unoriented) return std::nullopt;
+  if (verdict == NormalsVerdict::inward) {
+    turn(prepared.cloud.normals);
+    prepared.warnings.emplace_back("The normals pointed into the solid and were turned.");
   }
-  return false;
+  prepared.normals_seconds = watch.seconds();
+  return prepared;
 }
 
 /// `doubted`: points that may yet be left out, so that their normals do not count.
@@ -60,11 +82,6 @@ void note_normals(PreparedCloud& prepared, const PointCloud& cloud, const Estima
   prepared.doubtful_place = cloud.positions[doubtful[doubtful.size() / 2]];
 }
 
-/// Whether removing so many points changes the rest noticeably.
-bool is_much(std::size_t left_out, std::size_t points) {
-  return static_cast<double>(left_out) >= k_settled * static_cast<double>(points);
-}
-
 bool has_duplicates(const LocalFits& fits) {
   for (std::size_t i = 0; i < fits.points.size(); ++i) {
     const std::span<const float> distances = fits.neighbours.distances_of(i);
@@ -73,21 +90,22 @@ bool has_duplicates(const LocalFits& fits) {
   return false;
 }
 
-/// If cleaning removes almost nothing, as usual, its planes serve the normals. @returns whether this did it all.
-bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options, PreparedCloud& prepared,
-                         Stopwatch& watch, const RunContext& run) {
-  if (!options.clean.remove_outliers || cloud.size() > options.clean.point_budget) return false;
+/// If cleaning removes almost nothing, as usual, its planes serve the normals; else the result is absent.
+std::optional<PreparedCloud> prepare_clean_cloud(const PointCloud& cloud, const CleanOptions& options,
+                                                 PreparedCloud prepared, const RunContext& run) {
+  if (!options.remove_outliers || cloud.size() > options.point_budget) return std::nullopt;
+  Stopwatch watch;
   // If this fails, cleaning starts again, and this counts as its first pass.
   const StageShare cleaning("clean", cloud.size(), "points");
   const StageShare trial = cleaning.part(0, 0.25);
   const LocalFits fits =
       fit_locally(cloud, plane_neighbours(prepared.scale), prepared.scale.noise, run, trial.part(0, 0.9));
-  if (has_duplicates(fits)) return false;
+  if (has_duplicates(fits)) return std::nullopt;
   const std::vector<PointFate> fates =
       judge_points(fits, prepared.scale, Strictness::trusting, run, trial.part(0.9, 1));
   const std::vector<bool> is_dense = dense_points(fits, prepared.scale);
   const KeptPoints kept = kept_points(fates, fits, [&](std::uint32_t i) { return is_dense[i]; });
-  if (is_much(cloud.size() - kept.sure.size(), cloud.size())) return false;
+  if (is_much(cloud.size() - kept.sure.size(), cloud.size())) return std::nullopt;
   cleaning.report(run, 1);
   prepared.clean_seconds = watch.lap();
   EstimatedNormals estimated =
@@ -102,37 +120,45 @@ bool prepare_clean_cloud(const PointCloud& cloud, const PrepareOptions& options,
   prepared.cleaning.off_surface = kept.off_surface;
   warn_of_noise(prepared);
   note_normals(prepared, cloud, estimated, kept.doubted);
-  return true;
+  return prepared;
+}
+
+/// Estimates the normals. Given ones play no part.
+PreparedCloud prepare_positions(const PointCloud& cloud, const PrepareOptions& options, const PreparedCloud& measured,
+                                const RunContext& run) {
+  if (std::optional<PreparedCloud> prepared = prepare_clean_cloud(cloud, options.clean, measured, run)) {
+    return *std::move(prepared);
+  }
+  PreparedCloud prepared = cleaned(cloud, options.clean, measured, run);
+  const Stopwatch watch;
+  EstimatedNormals estimated = estimate_normals(prepared.cloud, prepared.scale, run);
+  prepared.cloud.normals = std::move(estimated.normals);
+  prepared.normals_seconds = watch.seconds();
+  note_normals(prepared, prepared.cloud, estimated, prepared.doubted);
+  return prepared;
 }
 
 }  // namespace
 
 PreparedCloud prepare_cloud(const PointCloud& cloud, const PrepareOptions& options, const RunContext& run) {
-  Stopwatch watch;
-  PreparedCloud prepared{.cloud = {}, .scale = estimate_scale(cloud, run), .cleaning = {}};
+  PreparedCloud measured{.cloud = {}, .scale = estimate_scale(cloud, run), .cleaning = {}};
   if (options.is_exact) {
-    prepared.cloud = cloud;
-    prepared.scale.noise = 0;
-    return prepared;
+    measured.cloud = cloud;
+    measured.scale.noise = 0;
+    return measured;
   }
-  const bool has_given_normals = options.keep_normals && cloud.has_normals();
-  if (!has_given_normals && prepare_clean_cloud(cloud, options, prepared, watch, run)) return prepared;
-  CleanCloud clean = clean_cloud(cloud, prepared.scale, options.clean, run);
-  prepared.cloud = std::move(clean.cloud);
-  prepared.cleaning = clean.report;
-  prepared.doubted = std::move(clean.doubted);
-  // Outliers and duplicates distorted the first estimate.
-  const PointCloud sure = without_points(prepared.cloud, prepared.doubted);
-  if (is_much(cloud.size() - sure.size(), cloud.size())) prepared.scale = estimate_scale(sure, run);
-  warn_of_noise(prepared);
-  prepared.clean_seconds = watch.lap();
-  const bool are_good = has_given_normals && keep_given_normals(prepared, sure, run);
-  prepared.normals_seconds = watch.seconds();
-  if (are_good) return prepared;
-  EstimatedNormals estimated = estimate_normals(prepared.cloud, prepared.scale, run);
-  prepared.cloud.normals = std::move(estimated.normals);
-  prepared.normals_seconds = watch.seconds();
-  note_normals(prepared, prepared.cloud, estimated, prepared.doubted);
+  if (!options.keep_normals || !cloud.has_normals()) return prepare_positions(cloud, options, measured, run);
+  const Stopwatch watch;
+  if (std::optional<PreparedCloud> prepared = prepare_with_normals(cloud, options, measured, run)) {
+    return *std::move(prepared);
+  }
+  const double in_vain = watch.seconds();
+  // Start anew, so that the result is that of a cloud without normals. Progress would start anew, too.
+  RunContext silent = run;
+  silent.on_progress = {};
+  PreparedCloud prepared = prepare_positions(cloud, options, measured, silent);
+  prepared.normals_seconds += in_vain;
+  prepared.warnings.emplace_back("The normals contradicted the surface or each other and were estimated again.");
   return prepared;
 }
 
