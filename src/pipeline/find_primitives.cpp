@@ -183,6 +183,7 @@ void choose(FoundPrimitives& found, std::span<const KnownSolid> known, const Rec
     return;
   }
   if (!found.choice.solids.empty()) return;
+  run.throw_if_stopped();  // no solid so far tells nothing
   found.no_solid =
       Error({.expected = fmt::format("the {} detected surfaces in a cloud of {} points bound no solid",
                                      found.detection.surfaces.size(), found.prepared.cloud.size()),
