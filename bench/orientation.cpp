@@ -63,7 +63,8 @@ c2c::PointCloud of_model(const c2c::Model& model, std::size_t points) {
 }
 
 c2c::PointCloud of_file(const std::filesystem::path& file, std::size_t points) {
-  if (file.extension() != ".json") return c2c::read_cloud_or_mesh(file, {.mesh_points = points}).cloud;
+  if (file.extension() != ".json")
+    return c2c::sample_mesh(c2c::mend_mesh(c2c::read_mesh(file)).mesh, {.mesh_points = points});
   return of_model(c2c::read_model(file), points);
 }
 

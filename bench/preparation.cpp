@@ -29,7 +29,8 @@ constexpr std::size_t k_points = 30'000;
 const c2c::RunContext k_run{.threads = 2};
 
 c2c::PointCloud truth(const std::filesystem::path& file, std::size_t points) {
-  if (file.extension() != ".json") return c2c::read_cloud_or_mesh(file, {.mesh_points = points}).cloud;
+  if (file.extension() != ".json")
+    return c2c::sample_mesh(c2c::mend_mesh(c2c::read_mesh(file)).mesh, {.mesh_points = points});
   const c2c::Model model = c2c::read_model(file);
   return c2c::sample_surface(model, {.count = points});
 }

@@ -38,9 +38,9 @@ inline void share_values(ReconstructOptions& options, InputOptions& reading) {
   reading.mesh_points = std::min(reading.mesh_points, options.preparation.clean.point_budget);
 }
 
-/// Points drawn from a mesh are exact and need no cleaning.
+/// Points drawn from an exact mesh need no cleaning.
 [[nodiscard]] inline ReconstructOptions options_for(const Input& input, ReconstructOptions options) {
-  options.preparation.is_exact = input.mesh.has_value() && options.preparation.keep_normals;
+  options.preparation.is_exact = input.is_exact && options.preparation.keep_normals;
   return options;
 }
 

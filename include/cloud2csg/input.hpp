@@ -21,20 +21,24 @@ struct InputOptions {
 void option_table(OptionsOf<InputOptions>, auto&& field) {
   using O = InputOptions;
   field(&O::mesh_points, "mesh_points",
-        "Points to draw from a mesh. With the default, details of a hundredth of the part still have dozens of points.",
+        "Points to draw from a mesh. With the default, details of a hundredth of the part still have dozens of points. "
+        "If the mesh was made from a scan, all vertices are taken.",
         at_least(1));
   field(&O::seed, k_inner_seed);
 }
 
 struct Input {
   PointCloud cloud;
-  /// The mesh that the points were drawn from, after mend_mesh(); absent when the file holds a cloud.
+  /// The mesh that the points come from, after mend_mesh(); absent when the file holds a cloud.
   std::optional<TriangleMesh> mesh = {};
+  bool is_exact = false;                   ///< the points were drawn from a mesh without noise: they are on its surface
   std::vector<std::string> warnings = {};  ///< sentences for the user
 };
 
 /// Reads a point cloud (.pcd .xyz .xyzn .txt .pts, .ply without faces), or draws points with normals from a mesh (.stl
-/// .off .obj .3mf .glb, .ply with faces). Warns of invalid points and repairs. O(points) or O(triangles log triangles).
+/// .off .obj .3mf .glb, .ply with faces). Takes the vertices of a mesh that was made from a scan: one with vertices
+/// everywhere, whose noise tilts the facets. Warns of invalid points, of repairs and of scans. O(points) or O(triangles
+/// log triangles).
 /// @throws Error when the file cannot be read or has no valid points or triangles, or for a bad option; Cancelled.
 [[nodiscard]] Input read_cloud_or_mesh(const std::filesystem::path& file, const InputOptions& options = {},
                                        const RunContext& run = {});

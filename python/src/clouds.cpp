@@ -111,14 +111,15 @@ void bind_cloud(py::module_& module) {
       "Points with outward unit normals and the positions of their sensors, if known. Immutable.\n\npositions, "
       "normals, sensor_positions: shape (n, 3); normals and sensor_positions may be None. They are copied once into "
       "the library's columns; float32, integers and lists are converted. Normals are scaled to unit length.\nis_exact: "
-      "the points lie on the surface and have its normals, such as points drawn from a mesh.\n\nRaises ValueError for "
+      "the points lie on the surface and have its normals, such as points drawn from an exact mesh.\n\nRaises "
+      "ValueError for "
       "other shapes, NaN, infinity, and normals of length 0.");
   cloud.def(py::init(&make_cloud), py::arg("positions"), py::arg("normals") = py::none(),
             py::arg("sensor_positions") = py::none(), py::arg("is_exact") = false);
   bind_arrays(cloud);
   cloud.def("__len__", [](const Cloud& self) { return self.points().size(); })
       .def_property_readonly("is_exact", &Cloud::is_exact,
-                             "Whether the points were drawn from a mesh or are equally exact.")
+                             "Whether the points were drawn from an exact mesh or are equally exact.")
       .def_property_readonly("warnings", &Cloud::warnings, "Sentences about doubts when the cloud was read.")
       .def("select", &select, py::arg("indices"),
            "The points with these indices, shape (k,), in this order, with their normals and sensor positions.")
@@ -207,7 +208,7 @@ Cloud read_cloud(const std::filesystem::path& file, const std::optional<InputOpt
   const InputOptions reading = with_fields(options, fields);
   Input input = run_work({.threads = threads, .progress = progress},
                          [&](const RunContext& run) { return read_cloud_or_mesh(file, reading, run); });
-  return Cloud(std::move(input.cloud), input.mesh.has_value(), std::move(input.warnings));
+  return Cloud(std::move(input.cloud), input.is_exact, std::move(input.warnings));
 }
 
 }  // namespace
@@ -218,7 +219,8 @@ void bind_clouds(py::module_& module) {
   module.def("read_cloud", &read_cloud, py::arg("file"), py::arg("options") = py::none(), py::kw_only(),
              py::arg("threads") = 0, py::arg("progress") = py::none(),
              "Reads a point cloud (.ply .pcd .xyz .xyzn .txt .pts), or draws points with normals from a mesh (.stl "
-             ".off .obj .3mf .glb, .ply with faces).\n\nLeaves out invalid points and repairs meshes, with warnings in "
+             ".off .obj .3mf .glb, .ply with faces). The vertices of a mesh that was made from a scan are taken as a "
+             "cloud.\n\nLeaves out invalid points and repairs meshes, with warnings in "
              "PointCloud.warnings. Further keywords are fields of InputOptions. Raises Error when the file cannot be "
              "read or has no valid points.");
   module.def(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "core/base/parallel.hpp"
 #include "core/primitive/surface_points.hpp"
 #include "io/formats/formats.hpp"
+#include "io/scanned_mesh.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -52,10 +54,22 @@ void warn_of_coarse_corners(const TriangleMesh& mesh, std::vector<std::string>& 
                   step));
 }
 
+/// Points of the mesh and the warnings.
+Input points_of(const TriangleMesh& mesh, std::vector<std::string> warnings, const InputOptions& options,
+                const RunContext& run) {
+  validate(options);
+  std::optional<ScannedPoints> scan = scanned_points(mesh, options.seed, run);
+  if (!scan) return {.cloud = sample_mesh(mesh, options, run), .is_exact = true, .warnings = std::move(warnings)};
+  warnings.push_back(
+      fmt::format("The mesh was made from a scan: its vertices have a noise of {:.2g} and are taken as a point cloud.",
+                  scan->noise));
+  return {.cloud = std::move(scan->cloud), .warnings = std::move(warnings)};
+}
+
 Input read_and_sample(const std::filesystem::path& file, const InputOptions& options, const RunContext& run) {
   MendedMesh mended = mend_mesh(read_mesh(file), run);
   try {
-    Input input{.cloud = sample_mesh(mended.mesh, options, run), .warnings = std::move(mended.warnings)};
+    Input input = points_of(mended.mesh, std::move(mended.warnings), options, run);
     warn_of_coarse_corners(mended.mesh, input.warnings);
     input.mesh = std::move(mended.mesh);
     return input;
