@@ -24,6 +24,16 @@ struct Agreement {
 /// Of normally distributed points, 1 in 370 is more standard deviations off its surface.
 constexpr double k_deviations = 3;
 
+/// Logarithm of the ratio of likelihoods from which on a surface is no chance: a million.
+constexpr double k_evidence = 14;
+
+/// Negative logarithm of the likelihood of a distance with normally distributed noise, up to a constant. A distance of
+/// more than three standard deviations counts as that: then the point is an outlier.
+inline double cost_of(double distance, double noise) {
+  const double off = std::min(std::abs(distance / noise), k_deviations);
+  return off * off / 2;
+}
+
 /// Limits within which a point lies on a surface.
 struct AgreementLimits {
   double distance;         ///< greatest absolute value, for the noise and a form error, such as that of facets

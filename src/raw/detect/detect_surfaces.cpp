@@ -121,14 +121,9 @@ Surface in_the_cloud(Surface surface, const WorkCloud& work) {
 }
 
 double rms_distance(const GrownSurface& grown, const WorkCloud& work) {
-  return with_agreement(grown.surface, [&](const auto& rule) {
-    double sum = 0;
-    for (const std::uint32_t i : grown.points) {
-      const double distance = rule(work.points[i].position, work.points[i].normal).distance;
-      sum += distance * distance;
-    }
-    return std::sqrt(sum / static_cast<double>(grown.points.size()));
-  });
+  double sum = 0;
+  for (const double d : distances_of(grown.surface, work, grown.points)) sum += d * d;
+  return std::sqrt(sum / static_cast<double>(grown.points.size()));
 }
 
 /// Uncertainty of the axis in degrees, which is large for a short piece of a pipe.
@@ -162,9 +157,8 @@ double detection_noise(const DetectOptions& options, const Scale& scale) {
 /// at random in it lies within the tolerance of a surface with the chance of the band's share of the width. The
 /// parameters fit some of the points anyway; all others must be as unlikely as one in a million.
 std::size_t least_points_of(const DetectOptions& options, const Scale& scale, std::size_t cloud_points) {
-  // ln(10^6). 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 10 do;
-  // with double, 18.
-  constexpr double k_evidence = 14;
+  // 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 10 do; with
+  // double, 18.
   constexpr std::size_t k_parameters = 7;  // of a torus
   if (options.least_points) return *options.least_points;
   const double band = 2 * detection_tolerance(options, scale);

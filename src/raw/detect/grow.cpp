@@ -60,6 +60,18 @@ std::vector<std::vector<std::uint32_t>> connected_groups(std::span<const Oriente
   return groups;
 }
 
+std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
+                                 std::span<const std::uint32_t> points) {
+  return with_agreement(surface, [&](const auto& rule) {
+    std::vector<double> distances;
+    distances.reserve(points.size());
+    for (const std::uint32_t i : points) {
+      distances.push_back(rule(cloud.points[i].position, cloud.points[i].normal).distance);
+    }
+    return distances;
+  });
+}
+
 double preference(SurfaceType type) {
   switch (type) {
     case SurfaceType::plane:
@@ -79,13 +91,8 @@ double reach_of(const Surface& surface, const WorkCloud& cloud, std::span<const 
                 const AgreementLimits& limits) {
   const double least = k_deviations * limits.noise;
   if (points.empty() || least >= limits.distance) return limits.distance;
-  std::vector<double> distances;
-  distances.reserve(points.size());
-  with_agreement(surface, [&](const auto& rule) {
-    for (const std::uint32_t i : points) {
-      distances.push_back(std::abs(rule(cloud.points[i].position, cloud.points[i].normal).distance));
-    }
-  });
+  std::vector<double> distances = distances_of(surface, cloud, points);
+  for (double& d : distances) d = std::abs(d);
   return std::clamp(k_deviations * robust_deviation(distances), least, limits.distance);
 }
 

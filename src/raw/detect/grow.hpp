@@ -30,6 +30,10 @@ struct GrownSurface {
   double reach = 0;    ///< distance within which its points lie: see reach_of()
 };
 
+/// Signed distances of the points from the surface. O(n)
+[[nodiscard]] std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
+                                               std::span<const std::uint32_t> points);
+
 /// Three robust standard deviations of the points that agree with the surface, between those of the noise and the
 /// limit. A surface with form errors, such as facets, reaches farther than an exact one. O(n)
 [[nodiscard]] double reach_of(const Surface& surface, const WorkCloud& cloud, std::span<const std::uint32_t> points,

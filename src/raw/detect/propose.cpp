@@ -160,6 +160,12 @@ std::optional<Surface> fit_plausible(const Surface& start, std::span<const Orien
   return if_plausible(fit ? std::optional(fit->surface) : std::nullopt, limits);
 }
 
+std::optional<Surface> fit_plausible(const Surface& start, const WorkCloud& cloud,
+                                     const std::vector<std::uint32_t>& points, const AgreementLimits& limits) {
+  constexpr std::size_t k_most = 4000;
+  return fit_plausible(start, cloud.some_of(points, k_most), limits);
+}
+
 std::optional<Surface> estimate_plausible(SurfaceType type, std::span<const OrientedPoint> points,
                                           const AgreementLimits& limits) {
   const Columns columns = columns_of(points);

@@ -26,6 +26,11 @@ namespace cloud2csg {
 [[nodiscard]] std::optional<Surface> fit_plausible(const Surface& start, std::span<const OrientedPoint> points,
                                                    const AgreementLimits& limits);
 
+/// The same for some of these points of the cloud.
+[[nodiscard]] std::optional<Surface> fit_plausible(const Surface& start, const WorkCloud& cloud,
+                                                   const std::vector<std::uint32_t>& points,
+                                                   const AgreementLimits& limits);
+
 /// estimate_surface(), then fit_plausible().
 [[nodiscard]] std::optional<Surface> estimate_plausible(SurfaceType type, std::span<const OrientedPoint> points,
                                                         const AgreementLimits& limits);

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "core/base/parallel.hpp"
+#include "raw/detect/split_surfaces.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -78,26 +80,47 @@ void claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, cons
   });
 }
 
-/// Drops surfaces, the smallest first, whose points nearly all lie on others. @throws Cancelled
-void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
-                    const RunContext& run) {
+/// Costs of the points on a surface with this noise, if their normals are not on another side of an edge.
+std::vector<double> costs_of(const Surface& surface, const std::vector<OrientedPoint>& points, double noise) {
+  // Estimated normals near an edge are between those of its faces: 45 degrees off both, give or take their noise.
+  constexpr double k_edge_cosine = 0.5;
+  return with_agreement(surface, [&](const auto& rule) {
+    std::vector<double> costs;
+    costs.reserve(points.size());
+    for (const OrientedPoint& p : points) {
+      const Agreement agreement = rule(p.position, p.normal);
+      costs.push_back(cost_of(agreement.cosine >= k_edge_cosine ? agreement.distance : k_deviations * noise, noise));
+    }
+    return costs;
+  });
+}
+
+/// Logarithm of the ratio of the likelihoods of a surface's points with and without it. O(surfaces)
+double evidence_for(std::size_t k, const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud) {
+  const std::vector<OrientedPoint> sample = cloud.some_of(surfaces[k].points, k_equal_sample);
+  const double noise = surfaces[k].reach / k_deviations;
+  std::vector<double> without(sample.size(), cost_of(k_deviations, 1));
+  for (std::size_t other = 0; other < surfaces.size(); ++other) {
+    if (other == k) continue;
+    std::ranges::transform(without, costs_of(surfaces[other].surface, sample, noise), without.begin(),
+                           [](double a, double b) { return std::min(a, b); });
+  }
+  const std::vector<double> with = costs_of(surfaces[k].surface, sample, noise);
+  const double gain =
+      std::accumulate(without.begin(), without.end(), 0.0) - std::accumulate(with.begin(), with.end(), 0.0);
+  return sample.empty() ? 0
+                        : gain * static_cast<double>(surfaces[k].points.size()) / static_cast<double>(sample.size());
+}
+
+/// Drops surfaces without evidence, the smallest first. @throws Cancelled
+void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const RunContext& run) {
   std::stable_sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) {
     return preference(a.surface.type) * a.support > preference(b.surface.type) * b.support;
   });
   for (std::size_t k = surfaces.size(); k-- > 0;) {
     run.throw_if_stopped();
-    std::vector<OrientedPoint> left = cloud.some_of(surfaces[k].points, k_equal_sample);
-    const std::size_t count = left.size();
-    for (std::size_t other = 0; other < surfaces.size() && !left.empty(); ++other) {
-      if (other == k) continue;
-      const AgreementLimits own = limits.within(surfaces[other].reach);
-      with_agreement(surfaces[other].surface, [&](const auto& rule) {
-        std::erase_if(left, [&](const OrientedPoint& p) { return own.hold(rule(p.position, p.normal)); });
-      });
-    }
-    if (static_cast<double>(left.size()) < (1 - k_nearly_all) * static_cast<double>(count)) {
-      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(k));
-    }
+    if (evidence_for(k, surfaces, cloud) >= k_evidence) continue;
+    surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(k));
   }
 }
 
@@ -125,22 +148,22 @@ std::vector<std::uint32_t> nearest_surfaces(const std::vector<GrownSurface>& sur
   return nearest;
 }
 
-void share_points(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const SearchLimits& limits,
-                  const RunContext& run) {
-  const std::vector<std::uint32_t> nearest = nearest_surfaces(surfaces, cloud, limits.agreement, run);
+/// Gives each point to the nearest agreeing surface. Surfaces with fewer than `least` points are dropped.
+void share_points(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
+                  std::size_t least, const RunContext& run) {
+  const std::vector<std::uint32_t> nearest = nearest_surfaces(surfaces, cloud, limits, run);
   for (GrownSurface& surface : surfaces) surface.points.clear();
   for (std::uint32_t i = 0; i < nearest.size(); ++i) {
     if (nearest[i] < surfaces.size()) surfaces[nearest[i]].points.push_back(i);
   }
-  std::erase_if(surfaces, [&](const GrownSurface& s) { return s.points.size() < limits.least_points; });
+  std::erase_if(surfaces, [&](const GrownSurface& s) { return s.points.size() < least; });
 }
 
 void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
              const RunContext& run) {
-  constexpr std::size_t k_most = 4000;
   for_each_index(surfaces.size(), run, [&](std::size_t k) {
     GrownSurface& s = surfaces[k];
-    const auto fitted = fit_plausible(s.surface, cloud.some_of(s.points, k_most), limits.within(s.reach));
+    const auto fitted = fit_plausible(s.surface, cloud, s.points, limits.within(s.reach));
     if (!fitted) return;
     s.surface = *fitted;
     s.reach = reach_of(s.surface, cloud, s.points, limits);
@@ -152,16 +175,19 @@ void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const 
 std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                           const SearchLimits& limits, const RunContext& run) {
   for (int round = 0; round < 2; ++round) {
+    // Shared points do not drag a surface to its neighbour, as those do that agree with its far continuation.
     for (int again = 0; again < 5; ++again) {
       fit_all(surfaces, cloud, limits.agreement, run);
-      claim_all(surfaces, cloud, limits.agreement, run);
+      share_points(surfaces, cloud, limits.agreement, 0, run);
     }
+    fit_all(surfaces, cloud, limits.agreement, run);
+    claim_all(surfaces, cloud, limits.agreement, run);
     join_all(surfaces, cloud, limits.agreement, run);
-    drop_explained(surfaces, cloud, limits.agreement, run);
-    share_points(surfaces, cloud, limits, run);
+    drop_explained(surfaces, cloud, run);
+    share_points(surfaces, cloud, limits.agreement, limits.least_points, run);
     fit_all(surfaces, cloud, limits.agreement, run);
   }
-  return surfaces;
+  return split_surfaces(std::move(surfaces), cloud, limits, run);
 }
 
 }  // namespace cloud2csg

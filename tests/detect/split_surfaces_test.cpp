@@ -1,0 +1,138 @@
+#include "raw/detect/split_surfaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "core/base/random.hpp"
+#include "support/random_scene.hpp"
+
+namespace cloud2csg {
+namespace {
+
+constexpr double k_noise = 0.001;
+constexpr std::size_t k_points = 3000;
+
+/// Points at random on the unit square of a surface through the middle of the cloud, displaced along its normal.
+struct Patch {
+  WorkCloud cloud;
+  GrownSurface grown;
+};
+
+using Height = std::function<double(double, double)>;
+
+Surface flat() {
+  return {.type = SurfaceType::plane};
+}
+
+Surface bent() {
+  return {.type = SurfaceType::cylinder, .position = {0, 0, -1}, .axis = Eigen::Vector3d::UnitY(), .radius = 1};
+}
+
+/// `height`: of the surface's place with coordinates -1/2 to 1/2, in standard deviations of the noise.
+Patch make_patch(const Surface& surface, const Height& height, std::uint64_t seed) {
+  RandomStream random(seed);
+  PointCloud cloud;
+  for (std::size_t k = 0; k < k_points; ++k) {
+    const double x = random.uniform(-0.5, 0.5);
+    const double y = random.uniform(-0.5, 0.5);
+    const double rise = k_noise * (height(x, y) + random.normal());
+    const bool is_flat = surface.type == SurfaceType::plane;
+    const Eigen::Vector3d normal = is_flat ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(std::sin(x), 0, std::cos(x));
+    const Eigen::Vector3d foot = is_flat ? Eigen::Vector3d(x, y, 0) : Eigen::Vector3d(normal.x(), y, normal.z() - 1);
+    cloud.positions.push_back(foot + rise * normal);
+    cloud.normals.push_back(normal);
+  }
+  Patch patch{.cloud = make_work_cloud(cloud), .grown = {}};
+  // Undo the scaling, so that the surface and the noise are the given ones.
+  for (OrientedPoint& point : patch.cloud.points) {
+    point.position = point.position * patch.cloud.diagonal + patch.cloud.middle;
+  }
+  patch.grown = {.surface = surface, .points = {}, .reach = k_deviations * k_noise};
+  for (std::uint32_t i = 0; i < patch.cloud.size(); ++i) patch.grown.points.push_back(i);
+  return patch;
+}
+
+std::vector<GrownSurface> split(const Patch& patch) {
+  const SearchLimits limits{.agreement = {.distance = k_deviations * k_noise, .noise = k_noise, .cosine = 0.9},
+                            .link = 0.1,
+                            .least_points = 15};
+  return split_surfaces({patch.grown}, patch.cloud, limits, {.threads = 2});
+}
+
+// Seeds are fixed, because noise can look like anything, though rarely.
+constexpr std::uint64_t k_seeds = 20;
+
+TEST(SplitSurfaces, NoiseIsNoStep) {
+  const Height none = [](double, double) { return 0.0; };
+  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+    EXPECT_EQ(split(make_patch(flat(), none, seed)).size(), 1U);
+    EXPECT_EQ(split(make_patch(bent(), none, seed)).size(), 1U);
+  }
+}
+
+TEST(SplitSurfaces, GradualFormErrorsAreNoSteps) {
+  const Height bulge = [](double x, double y) { return 6 * (x * x + x * y - y * y); };
+  const Height rounded_edge = [](double x, double) { return x > 0.4 ? -250 * (x - 0.4) * (x - 0.4) : 0.0; };
+  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+    for (const Height& height : {bulge, rounded_edge}) {
+      EXPECT_EQ(split(make_patch(flat(), height, seed)).size(), 1U);
+      EXPECT_EQ(split(make_patch(bent(), height, seed)).size(), 1U);
+    }
+  }
+}
+
+bool is_high(double x, double y) {
+  return std::abs(x) < 0.2 && std::abs(y) < 0.25;
+}
+
+/// Share of the points of a part that are on the given side of the step.
+double share_on_side(const GrownSurface& part, const Patch& patch, bool high) {
+  const auto count = std::ranges::count_if(part.points, [&](std::uint32_t i) {
+    const Eigen::Vector3d& p = patch.cloud.points[i].position;
+    const double x = patch.grown.surface.type == SurfaceType::plane ? p.x() : std::asin(p.x());
+    return is_high(x, p.y()) == high;
+  });
+  return static_cast<double>(count) / static_cast<double>(part.points.size());
+}
+
+void expect_step(const Surface& surface, double rise, std::uint64_t seed) {
+  const Patch patch = make_patch(
+      surface, [&](double x, double y) { return is_high(x, y) ? rise : 0; }, seed);
+  const std::vector<GrownSurface> parts = split(patch);
+  ASSERT_EQ(parts.size(), 2U) << rise << " standard deviations, seed " << seed;
+  for (const GrownSurface& part : parts) EXPECT_EQ(part.surface.type, surface.type);
+  EXPECT_GT(share_on_side(parts[0], patch, false), 0.9);
+  EXPECT_GT(share_on_side(parts[1], patch, true), 0.9);
+  EXPECT_GT(parts[0].points.size(), k_points * 3 / 5);
+  EXPECT_GT(parts[1].points.size(), k_points / 6);
+  std::vector<std::uint32_t> common;
+  std::ranges::set_intersection(parts[0].points, parts[1].points, std::back_inserter(common));
+  EXPECT_TRUE(common.empty());
+}
+
+TEST(SplitSurfaces, StepsAreFoundWhereTheyAre) {
+  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+    for (const double rise : {-5.0, -3.0, 3.0, 5.0}) {
+      expect_step(flat(), rise, seed);
+      expect_step(bent(), rise, seed);
+    }
+  }
+}
+
+TEST(SplitSurfaces, FreePointsNearbyAreAStep) {
+  Patch patch = make_patch(
+      flat(), [](double x, double y) { return is_high(x, y) ? 6 : 0; }, 1);
+  std::erase_if(patch.grown.points, [&](std::uint32_t i) {
+    return signed_distance(flat(), patch.cloud.points[i].position) > k_deviations * k_noise;
+  });
+  const std::vector<GrownSurface> parts = split(patch);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_GT(parts[1].points.size(), k_points / 6);
+}
+
+}  // namespace
+}  // namespace cloud2csg
