@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/error.hpp"
 
 namespace cloud2csg::bench {
@@ -71,11 +70,15 @@ PointCloud with_true_normals(const Scene& scene) {
   return cloud;
 }
 
-std::vector<DetectedSurface> find_surfaces(const PointCloud& cloud) {
+std::vector<DetectedSurface> detect_by_default(const PreparedCloud& prepared) {
+  return detect_surfaces(prepared.cloud, prepared.scale).surfaces;
+}
+
+std::vector<DetectedSurface> find_surfaces(const PointCloud& cloud, const Detector& detector) {
   try {
     const PreparedCloud prepared = prepare_cloud(cloud);
     const std::vector<std::uint32_t> before = indices_before(cloud, prepared.cloud);
-    std::vector<DetectedSurface> found = detect_surfaces(prepared.cloud, prepared.scale).surfaces;
+    std::vector<DetectedSurface> found = detector(prepared);
     for (DetectedSurface& surface : found) {
       for (std::uint32_t& i : surface.points) i = before[i];
     }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "cloud2csg/advanced/detect.hpp"
+#include "cloud2csg/advanced/prepare.hpp"
 #include "detection/scene.hpp"
 
 /// Which true surfaces were found.
@@ -27,9 +29,15 @@ namespace cloud2csg::bench {
 /// The cloud with the normals of the true surfaces; outliers have arbitrary ones.
 [[nodiscard]] PointCloud with_true_normals(const Scene& scene);
 
-/// prepare_cloud() and detect_surfaces() with default options. The surfaces have the indices of the given cloud's
-/// points. None for a cloud that is refused.
-[[nodiscard]] std::vector<DetectedSurface> find_surfaces(const PointCloud& cloud);
+using Detector = std::function<std::vector<DetectedSurface>(const PreparedCloud&)>;
+
+/// detect_surfaces() with default options.
+[[nodiscard]] std::vector<DetectedSurface> detect_by_default(const PreparedCloud& prepared);
+
+/// prepare_cloud() and the detector. The surfaces have the indices of the given cloud's points. None for a cloud that
+/// is refused.
+[[nodiscard]] std::vector<DetectedSurface> find_surfaces(const PointCloud& cloud,
+                                                         const Detector& detector = detect_by_default);
 
 [[nodiscard]] bool is_answered(const Scene& scene, const Question& question, std::span<const DetectedSurface> found);
 
