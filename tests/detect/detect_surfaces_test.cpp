@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stop_token>
 
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/error.hpp"
 #include "detect/detected_parts.hpp"
 
@@ -129,6 +130,35 @@ TEST(DetectSurfaces, TellsTwoFacesAtAThinStepApart) {
   EXPECT_GT(detection.distance_tolerance, 0.005);
   EXPECT_EQ(count_of(detection, SurfaceType::plane), 7U);
   EXPECT_EQ(detection.surfaces.size(), 7U);  // the riser is too low to be a surface
+}
+
+/// A bar with a thicker half, without normals.
+PointCloud noisy_step(double height, double noise, std::uint64_t seed) {
+  const PrimitiveSet boxes{test::placed("bar", Box{{1, 0.3, 0.3}}, {0, 0, 0}),
+                           test::placed("step", Box{{0.5, 0.3, 0.3}}, {0.25, 0, height})};
+  PointCloud cloud = sample_surface(
+      {.primitives = boxes, .tree = height == 0 ? CsgTree::leaf(0) : unite(CsgTree::leaf(0), CsgTree::leaf(1))},
+      {.count = 14'000, .noise = noise, .seed = seed});
+  cloud.normals = {};
+  return cloud;
+}
+
+std::size_t planes_of(const PointCloud& cloud, const DetectOptions& options = {}) {
+  const PreparedCloud prepared = prepare_cloud(cloud);
+  const Detection detection = detect_surfaces(prepared.cloud, prepared.scale, options);
+  EXPECT_EQ(count_of(detection, SurfaceType::plane), detection.surfaces.size()) << "all surfaces are planes";
+  return detection.surfaces.size();
+}
+
+TEST(DetectSurfaces, FindsNoSurfacesAlongEdges) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(planes_of(noisy_step(0, 0.002, seed)), 6U);
+}
+
+TEST(DetectSurfaces, FindsAStepWithinTheNoiseUnlessAToleranceIsGiven) {
+  constexpr double k_noise = 0.002;
+  const PointCloud cloud = noisy_step(3 * k_noise, k_noise, 1);
+  EXPECT_GE(planes_of(cloud), 7U);
+  EXPECT_EQ(planes_of(cloud, {.distance_tolerance = 3 * k_noise}), 6U);
 }
 
 TEST(DetectSurfaces, TakesAShortConeForNoSphere) {

@@ -24,7 +24,7 @@ struct Agreement {
 /// Of normally distributed points, 1 in 370 is more standard deviations off its surface.
 constexpr double k_deviations = 3;
 
-/// Logarithm of the ratio of likelihoods from which on a surface is no chance: a million.
+/// A surface is no chance if the logarithm of its likelihood ratio is at least this. e^14 is about a million.
 constexpr double k_evidence = 14;
 
 /// Negative logarithm of the likelihood of a distance with normally distributed noise, up to a constant. A distance of

@@ -15,6 +15,7 @@
 #include "raw/detect/grow.hpp"
 #include "raw/detect/propose.hpp"
 #include "raw/detect/settle_surfaces.hpp"
+#include "raw/detect/split_surfaces.hpp"
 #include "raw/detect/unexplained.hpp"
 
 namespace cloud2csg {
@@ -222,8 +223,11 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
 
   const StageShare share("detect", cloud.size(), "points");
   Detection result{.surfaces = {}, .unexplained = cloud.size(), .distance_tolerance = tolerance};
-  for (const GrownSurface& grown :
-       settle_surfaces(find_in_two_passes(work, limits, options.seed, run, share), work, limits, run)) {
+  std::vector<GrownSurface> surfaces =
+      settle_surfaces(find_in_two_passes(work, limits, options.seed, run, share), work, limits, run);
+  // A given tolerance says that nearer surfaces are one.
+  if (!options.distance_tolerance) surfaces = split_surfaces(std::move(surfaces), work, limits, run);
+  for (const GrownSurface& grown : surfaces) {
     if (!has_allowed_size(grown, work, options, limits.link)) continue;
     result.surfaces.push_back(detected(grown, work));
     result.unexplained -= grown.points.size();

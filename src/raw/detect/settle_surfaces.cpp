@@ -4,11 +4,9 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "core/base/parallel.hpp"
-#include "raw/detect/split_surfaces.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -38,7 +36,7 @@ std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b,
   if (!fitted || !explains(*fitted, of_a, limits, k_nearly_all) || !explains(*fitted, of_b, limits, k_nearly_all)) {
     return std::nullopt;
   }
-  GrownSurface both{.surface = *fitted, .points = {}, .reach = limits.distance};
+  GrownSurface both{.surface = *fitted, .points = {}, .support = a.support + b.support, .reach = limits.distance};
   std::set_union(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both.points));
   return both;
 }
@@ -95,9 +93,11 @@ std::vector<double> costs_of(const Surface& surface, const std::vector<OrientedP
   });
 }
 
-/// Logarithm of the ratio of the likelihoods of a surface's points with and without it. O(surfaces)
+/// Logarithm of the ratio of the likelihoods of a surface's points: all on it, or each on the nearest of the others.
+/// Two standard errors less if a sample must do. O(surfaces)
 double evidence_for(std::size_t k, const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud) {
   const std::vector<OrientedPoint> sample = cloud.some_of(surfaces[k].points, k_equal_sample);
+  if (sample.empty()) return 0;
   const double noise = surfaces[k].reach / k_deviations;
   std::vector<double> without(sample.size(), cost_of(k_deviations, 1));
   for (std::size_t other = 0; other < surfaces.size(); ++other) {
@@ -106,10 +106,16 @@ double evidence_for(std::size_t k, const std::vector<GrownSurface>& surfaces, co
                            [](double a, double b) { return std::min(a, b); });
   }
   const std::vector<double> with = costs_of(surfaces[k].surface, sample, noise);
-  const double gain =
-      std::accumulate(without.begin(), without.end(), 0.0) - std::accumulate(with.begin(), with.end(), 0.0);
-  return sample.empty() ? 0
-                        : gain * static_cast<double>(surfaces[k].points.size()) / static_cast<double>(sample.size());
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    sum += without[i] - with[i];
+    squares += (without[i] - with[i]) * (without[i] - with[i]);
+  }
+  const auto count = static_cast<double>(sample.size());
+  const auto all = static_cast<double>(surfaces[k].points.size());
+  const double variance = std::max(0.0, squares / count - sum / count * sum / count);
+  return all * (sum / count - 2 * std::sqrt(variance * (1 / count - 1 / all)));
 }
 
 /// Drops surfaces without evidence, the smallest first. @throws Cancelled
@@ -175,7 +181,8 @@ void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const 
 std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                           const SearchLimits& limits, const RunContext& run) {
   for (int round = 0; round < 2; ++round) {
-    // Shared points do not drag a surface to its neighbour, as those do that agree with its far continuation.
+    // A small surface also agrees with points on its far continuation. These would turn it onto its neighbour, so each
+    // point counts for its nearest surface only.
     for (int again = 0; again < 5; ++again) {
       fit_all(surfaces, cloud, limits.agreement, run);
       share_points(surfaces, cloud, limits.agreement, 0, run);
@@ -187,7 +194,7 @@ std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, co
     share_points(surfaces, cloud, limits.agreement, limits.least_points, run);
     fit_all(surfaces, cloud, limits.agreement, run);
   }
-  return split_surfaces(std::move(surfaces), cloud, limits, run);
+  return surfaces;
 }
 
 }  // namespace cloud2csg

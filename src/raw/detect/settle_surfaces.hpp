@@ -8,8 +8,8 @@
 namespace cloud2csg {
 
 /// Joins equal surfaces (a face in several pieces, a shaft through a wall). Drops those that others explain or that
-/// have too few points. Each point goes to the nearest agreeing surface, which is fitted to it. In the end,
-/// split_surfaces(). O(points x surfaces) @throws Cancelled
+/// have too few points. Each point goes to the nearest agreeing surface, which is fitted to it.
+/// O(points x surfaces) @throws Cancelled
 [[nodiscard]] std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                                         const SearchLimits& limits, const RunContext& run);
 

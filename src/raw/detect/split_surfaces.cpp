@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -27,7 +28,8 @@ constexpr double k_clear_share = 0.75;
 /// Distance of the two surfaces where their points meet, over that of the smaller one's points.
 constexpr double k_least_gap = 0.7;
 constexpr int k_rounds = 6;
-constexpr std::size_t k_patch = 32;  // points for an estimate of the noise
+constexpr std::size_t k_least_window = 16;  // successive points that hint at a step
+constexpr std::size_t k_patch = 32;         // points for an estimate of the noise
 
 /// Standard deviation of the points around the mean of their patch, of the median patch. Successive points are near
 /// each other.
@@ -46,24 +48,24 @@ double noise_of(const std::vector<double>& distances, double least) {
   return variances.empty() ? least : std::max(least, std::sqrt(median_of(variances)));
 }
 
-/// Mean of the successive distances whose mean is least likely by chance, of windows of all powers of two. 0 if that
-/// may be chance.
+/// Mean of the successive distances whose mean is least likely by chance, of windows of all powers of two. 0 if none
+/// is off by 3.7 standard errors: this is a cheap first look, and most surfaces end here.
 double strongest_offset(const std::vector<double>& distances, double noise) {
   const double most = 10 * noise;  // a single outlier is no step
   std::vector<double> sums{0};
   for (const double d : distances) sums.push_back(sums.back() + std::clamp(d, -most, most));
   double best = k_evidence * noise * noise;
-  double offset = 0;
-  for (std::size_t width = k_around; width <= distances.size(); width *= 2) {
+  std::span<const double> strongest;
+  for (std::size_t width = k_least_window; width <= distances.size(); width *= 2) {
     for (std::size_t first = 0; first + width <= distances.size(); first += width / 2) {
-      const double mean = (sums[first + width] - sums[first]) / static_cast<double>(width);
-      const double evidence = mean * mean * static_cast<double>(width);
-      if (evidence <= best) continue;
-      best = evidence;
-      offset = mean;
+      const double sum = sums[first + width] - sums[first];
+      if (sum * sum / static_cast<double>(width) <= best) continue;
+      best = sum * sum / static_cast<double>(width);
+      strongest = std::span(distances).subspan(first, width);
     }
   }
-  return offset;
+  const double sum = std::accumulate(strongest.begin(), strongest.end(), 0.0);
+  return strongest.empty() ? 0 : sum / static_cast<double>(strongest.size());
 }
 
 /// The least cost of points whose distances are a quadratic function of their places, found by iterated trimming.
@@ -96,6 +98,7 @@ double smooth_cost(std::span<const double> distances, std::span<const Vector3d> 
       products += distances[k] * terms;
     }
     least = trim == 0 ? cost : std::min(least, cost);
+    if (trim == k_trims) break;
     // On a plane or sphere, the terms depend on each other.
     constexpr double k_ridge = 1e-9;
     squares.diagonal().array() += k_ridge * static_cast<double>(places.size());
@@ -224,11 +227,12 @@ bool matches_averages(const TwoSurfaces& two, const NearPoints& near, std::size_
 
 /// Whether the surfaces are apart where their points meet, too. Else they cross there: a slight bend is no step.
 bool are_apart(const TwoSurfaces& two, const NearPoints& near) {
+  const std::uint8_t smaller = smaller_side(two);
   std::array<double, 2> gaps{};  // of points near the other side, and of clear ones
   std::array<std::size_t, 2> counts{};
   for (std::size_t k = 0; k < near.points.size(); ++k) {
     const std::size_t is_clear = share_on_own_side(two, near, k) >= k_clear_share ? 1 : 0;
-    if (is_clear == 1 && two.side[k] != smaller_side(two)) continue;
+    if (is_clear == 1 && two.side[k] != smaller) continue;
     gaps[is_clear] += std::abs(two.distances[0][k] - two.distances[1][k]);
     ++counts[is_clear];
   }
@@ -236,26 +240,35 @@ bool are_apart(const TwoSurfaces& two, const NearPoints& near) {
   return gaps[0] / static_cast<double>(counts[0]) >= k_least_gap * gaps[1] / static_cast<double>(counts[1]);
 }
 
-std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& near) {
+/// The surfaces with the points within their reach. A point beyond that of its own side may be on the other.
+std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& near, const AgreementLimits& limits) {
+  std::array<std::vector<std::uint32_t>, 2> points;
+  for (std::size_t k = 0; k < near.points.size(); ++k) points[two.side[k]].push_back(near.points[k]);
   std::array<GrownSurface, 2> parts;
   for (std::size_t side = 0; side < 2; ++side) {
-    parts[side] = {.surface = two.surfaces[side], .points = {}, .reach = near.fit_limits.distance};
+    const Surface& surface = two.surfaces[side];
+    parts[side] = {.surface = surface, .points = {}, .reach = reach_of(surface, near.cloud, points[side], limits)};
   }
+  const auto is_within = [&](std::size_t side, std::size_t k) {
+    return std::abs(two.distances[side][k]) <= parts[side].reach;
+  };
   for (std::size_t k = 0; k < near.points.size(); ++k) {
-    if (std::abs(two.distance(k)) <= near.fit_limits.distance) parts[two.side[k]].points.push_back(near.points[k]);
+    const std::size_t own = two.side[k];
+    const std::size_t side = is_within(own, k) ? own : 1 - own;
+    if (is_within(side, k)) parts[side].points.push_back(near.points[k]);
   }
   return parts;
 }
 
 /// The two parts, if there is a step.
 std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, const NearPoints& near,
-                                                 std::size_t least_points) {
+                                                 const SearchLimits& limits) {
   std::optional<TwoSurfaces> two = fit_two(grown.surface, near);
-  if (!two || gain_of(*two, grown.surface, near) < k_evidence) return std::nullopt;
+  if (!two || !(gain_of(*two, grown.surface, near) >= k_evidence)) return std::nullopt;
   if (!refit(*two, clear_points(*two, near, [](std::size_t) { return true; }), near)) return std::nullopt;
-  if (!matches_averages(*two, near, least_points) || !are_apart(*two, near)) return std::nullopt;
-  std::array<GrownSurface, 2> parts = parts_of(*two, near);
-  if (std::ranges::any_of(parts, [&](const auto& part) { return part.points.size() < least_points; })) {
+  if (!matches_averages(*two, near, limits.least_points) || !are_apart(*two, near)) return std::nullopt;
+  std::array<GrownSurface, 2> parts = parts_of(*two, near, limits.agreement);
+  if (std::ranges::any_of(parts, [&](const auto& part) { return part.points.size() < limits.least_points; })) {
     return std::nullopt;
   }
   return parts;
@@ -277,7 +290,7 @@ std::vector<std::uint32_t> points_near(const GrownSurface& grown, const WorkClou
   return points;
 }
 
-/// Absent if the points show no step at first sight.
+/// Absent if no run of neighbouring points is off the surface.
 std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
                                       const std::vector<bool>& is_free, const SearchLimits& limits,
                                       const RunContext& run) {
@@ -287,8 +300,7 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   std::vector<double> distances = distances_of(grown.surface, cloud, points);
   const double offset = strongest_offset(distances, noise);
   if (offset == 0) return std::nullopt;
-  Points positions(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) positions.set(k, cloud.points[points[k]].position);
+  const Points positions = cloud.positions_of(points);
   return NearPoints{.cloud = cloud,
                     .points = std::move(points),
                     .distances = std::move(distances),
@@ -310,7 +322,7 @@ std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, con
   for (std::size_t s = 0; s < surfaces.size();) {
     run.throw_if_stopped();
     const std::optional<NearPoints> near = near_points(surfaces[s], cloud, is_free, limits, run);
-    auto parts = near ? split(surfaces[s], *near, limits.least_points) : std::nullopt;
+    auto parts = near ? split(surfaces[s], *near, limits) : std::nullopt;
     if (!parts) {
       ++s;
       continue;

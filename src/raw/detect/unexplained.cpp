@@ -88,14 +88,12 @@ WorkCloud unexplained_part(const FreePoints& points, double noise, const RunCont
                  .index = points_together(points, all, tree, run),
                  .middle = cloud.middle,
                  .diagonal = cloud.diagonal};
-  Points positions(part.index.size());
-  for (std::size_t k = 0; k < part.index.size(); ++k) {
-    positions.set(k, all[part.index[k]]);
-    part.points.push_back(cloud.points[part.index[k]]);
-    part.code.push_back(cloud.code[part.index[k]]);
+  for (const std::uint32_t i : part.index) {
+    part.points.push_back(cloud.points[i]);
+    part.code.push_back(cloud.code[i]);
   }
   if (part.points.empty()) return part;
-  estimate_normals_among(part.points, positions, noise, run);
+  estimate_normals_among(part.points, cloud.positions_of(part.index), noise, run);
   orient_part(part, points, all, tree, run);
   return part;
 }

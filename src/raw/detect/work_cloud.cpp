@@ -23,6 +23,12 @@ double WorkCloud::extent_of(const std::vector<std::uint32_t>& indices) const {
   return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
+Points WorkCloud::positions_of(const std::vector<std::uint32_t>& indices) const {
+  Points positions(indices.size());
+  for (std::size_t k = 0; k < indices.size(); ++k) positions.set(k, points[indices[k]].position);
+  return positions;
+}
+
 std::vector<OrientedPoint> WorkCloud::some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const {
   std::vector<OrientedPoint> some;
   for (const std::uint32_t i : cloud2csg::some_of(indices, most)) some.push_back(points[i]);

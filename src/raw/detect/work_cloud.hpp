@@ -28,6 +28,8 @@ struct WorkCloud {
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> cell_of(std::uint32_t i, int level) const;
   /// Diagonal of the points' bounding box. O(n)
   [[nodiscard]] double extent_of(const std::vector<std::uint32_t>& indices) const;
+  /// O(indices)
+  [[nodiscard]] Points positions_of(const std::vector<std::uint32_t>& indices) const;
   /// At most `most` of the points, evenly spaced along the list.
   [[nodiscard]] std::vector<OrientedPoint> some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const;
 };
