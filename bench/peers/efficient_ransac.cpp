@@ -1,12 +1,16 @@
 #include "peers/efficient_ransac.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Random.h>
 #include <CGAL/Shape_detection/Efficient_RANSAC.h>
 #include <CGAL/property_map.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace cloud2csg::bench {
 namespace {
@@ -80,6 +84,7 @@ std::vector<DetectedSurface> detect_by_ransac(const PreparedCloud& prepared, con
     const Eigen::Vector3d n = prepared.cloud.normals[i];
     points.emplace_back(Kernel::Point_3(p.x(), p.y(), p.z()), Kernel::Vector_3(n.x(), n.y(), n.z()));
   }
+  CGAL::get_default_random() = CGAL::Random(1);  // else seeded by the time
   Ransac ransac;
   ransac.set_input(points);
   ransac.add_shape_factory<CGAL::Shape_detection::Plane<Traits>>();
