@@ -23,8 +23,7 @@
 namespace cloud2csg::bench {
 namespace {
 
-constexpr std::size_t k_few_points = 50;  // rows with more points have to reach the goal
-constexpr double k_goal = 0.85;           // share of the oracle's detections
+constexpr double k_goal = 0.85;  // share of the oracle's detections
 
 struct Arguments {
   std::string part = "all";
@@ -77,9 +76,7 @@ std::vector<Row> rows_of(const Trial& trial, const std::vector<Answer>& answers)
   for (std::size_t f = 0; f < trial.features.size(); ++f) {
     const TestedFeature& feature = trial.features[f];
     Row row{.cloud = trial.cloud, .feature = feature};
-    row.points = static_cast<std::size_t>(
-        std::count(scene.surface.begin(), scene.surface.begin() + static_cast<std::ptrdiff_t>(scene.aligned.size()),
-                   feature.question.surfaces.front()));
+    row.points = count_points(scene, feature);
     for (const Answer& answer : answers) {
       row.counts.oracle += answer.is_detected[f] ? 1U : 0U;
       row.counts.found += answer.is_found[f] ? 1U : 0U;

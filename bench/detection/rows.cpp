@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 
@@ -126,6 +127,11 @@ std::vector<Trial> household_trials() {
 }
 
 }  // namespace
+
+std::size_t count_points(const Scene& scene, const TestedFeature& feature) {
+  const auto last = scene.surface.begin() + static_cast<std::ptrdiff_t>(scene.aligned.size());
+  return static_cast<std::size_t>(std::count(scene.surface.begin(), last, feature.question.surfaces.front()));
+}
 
 std::vector<TrialGroup> all_trials() {
   const Conditions with_clusters{.clustered_outliers = 0.05};

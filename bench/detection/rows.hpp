@@ -32,4 +32,9 @@ struct TrialGroup {
 
 [[nodiscard]] std::vector<TrialGroup> all_trials();
 
+constexpr std::size_t k_few_points = 50;  ///< rows with more points have to reach the goal
+
+/// Points on the first tested surface, copies and outliers not counted.
+[[nodiscard]] std::size_t count_points(const Scene& scene, const TestedFeature& feature);
+
 }  // namespace cloud2csg::bench

@@ -5,7 +5,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
 #include <ctime>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -17,8 +20,6 @@
 
 namespace cloud2csg::bench {
 namespace {
-
-constexpr std::size_t k_few_points = 50;  // on a surface; as bench_detection
 
 struct Candidate {
   std::string name, tolerance, least_points;
@@ -48,39 +49,47 @@ double processor_seconds() {
 }
 
 /// Features with more than a few points that the oracle detects.
-std::vector<const TestedFeature*> shown_features(const Trial& trial, const Scene& scene) {
+std::vector<const TestedFeature*> shown_features(const Trial& trial, const std::vector<double>& thresholds,
+                                                 const Scene& scene) {
   std::vector<const TestedFeature*> shown;
-  for (const TestedFeature& feature : trial.features) {
-    const auto points = std::ranges::count(scene.surface, feature.question.surfaces.front());
-    if (feature.size == 0 || points <= static_cast<std::ptrdiff_t>(k_few_points)) continue;
-    if (oracle_statistic(scene, feature.question) > oracle_threshold(scene, feature.question)) {
-      shown.push_back(&feature);
-    }
+  for (std::size_t f = 0; f < trial.features.size(); ++f) {
+    const TestedFeature& feature = trial.features[f];
+    if (feature.size == 0 || count_points(scene, feature) <= k_few_points) continue;
+    if (oracle_statistic(scene, feature.question) > thresholds[f]) shown.push_back(&feature);
   }
   return shown;
 }
 
+/// Runs all candidates on one cloud. @returns the features that could be found
+std::size_t measure(const Trial& trial, const std::vector<double>& thresholds, std::uint64_t seed,
+                    std::vector<Candidate>& candidates) {
+  const Scene scene = trial.make(seed);
+  const std::vector<const TestedFeature*> shown = shown_features(trial, thresholds, scene);
+  for (Candidate& candidate : candidates) {
+    const Detector timed = [&](const PreparedCloud& prepared) {
+      const double start = processor_seconds();
+      std::vector<DetectedSurface> surfaces = candidate.detect(prepared);
+      candidate.seconds += processor_seconds() - start;
+      return surfaces;
+    };
+    const std::vector<DetectedSurface> found = find_surfaces(scene.cloud, timed);
+    candidate.found += static_cast<std::size_t>(std::ranges::count_if(
+        shown, [&](const TestedFeature* feature) { return is_answered(scene, feature->question, found); }));
+    candidate.unmatched += count_unmatched(scene, found);
+  }
+  return shown.size();
+}
+
 void print(const TrialGroup& group, std::size_t seeds) {
   std::vector<Candidate> candidates = all_candidates();
-  std::size_t shown_count = 0;
+  std::size_t shown = 0;
   for (const Trial& trial : group.trials) {
-    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      const Scene scene = trial.make(seed);
-      const std::vector<const TestedFeature*> shown = shown_features(trial, scene);
-      shown_count += shown.size();
-      for (Candidate& candidate : candidates) {
-        const Detector timed = [&](const PreparedCloud& prepared) {
-          const double start = processor_seconds();
-          std::vector<DetectedSurface> surfaces = candidate.detect(prepared);
-          candidate.seconds += processor_seconds() - start;
-          return surfaces;
-        };
-        const std::vector<DetectedSurface> found = find_surfaces(scene.cloud, timed);
-        candidate.found += static_cast<std::size_t>(std::ranges::count_if(
-            shown, [&](const TestedFeature* feature) { return is_answered(scene, feature->question, found); }));
-        candidate.unmatched += count_unmatched(scene, found);
-      }
+    const Scene first = trial.make(1);
+    std::vector<double> thresholds;
+    for (const TestedFeature& feature : trial.features) {
+      thresholds.push_back(oracle_threshold(first, feature.question));
     }
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) shown += measure(trial, thresholds, seed, candidates);
   }
   const auto clouds = static_cast<double>(group.trials.size() * seeds);
   Table table{.name = group.name,
@@ -90,7 +99,8 @@ void print(const TrialGroup& group, std::size_t seeds) {
   for (const Candidate& candidate : candidates) {
     table.rows.push_back(
         {candidate.name, candidate.tolerance, candidate.least_points,
-         fmt::format("{:.0f} %", 100 * static_cast<double>(candidate.found) / static_cast<double>(shown_count)),
+         shown == 0 ? "-"
+                    : fmt::format("{:.0f} %", 100 * static_cast<double>(candidate.found) / static_cast<double>(shown)),
          fmt::format("{:.2f}", static_cast<double>(candidate.unmatched) / clouds),
          fmt::format("{:.3f}", candidate.seconds / clouds)});
   }
@@ -100,9 +110,16 @@ void print(const TrialGroup& group, std::size_t seeds) {
 int run(int argc, char** argv) {
   CLI::App app("Prints recall against seconds of cloud2csg's detection and of CGAL's Efficient RANSAC.");
   std::size_t seeds = 2;
+  std::string part = "all";
+  const std::vector<TrialGroup> groups = all_trials();
+  std::vector<std::string> parts{"all"};
+  for (const TrialGroup& group : groups) parts.push_back(group.name);
+  app.add_option("--part", part, "What to measure")->check(CLI::IsMember(parts))->capture_default_str();
   app.add_option("--seeds", seeds, "Clouds of each kind")->check(CLI::PositiveNumber)->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  for (const TrialGroup& group : all_trials()) print(group, seeds);
+  for (const TrialGroup& group : groups) {
+    if (part == "all" || part == group.name) print(group, seeds);
+  }
   return 0;
 }
 
