@@ -112,8 +112,7 @@ void bind_cloud(py::module_& module) {
       "normals, sensor_positions: shape (n, 3); normals and sensor_positions may be None. They are copied once into "
       "the library's columns; float32, integers and lists are converted. Normals are scaled to unit length.\nis_exact: "
       "the points lie on the surface and have its normals, such as points drawn from an exact mesh.\n\nRaises "
-      "ValueError for "
-      "other shapes, NaN, infinity, and normals of length 0.");
+      "ValueError for other shapes, NaN, infinity, and normals of length 0.");
   cloud.def(py::init(&make_cloud), py::arg("positions"), py::arg("normals") = py::none(),
             py::arg("sensor_positions") = py::none(), py::arg("is_exact") = false);
   bind_arrays(cloud);

@@ -1,6 +1,5 @@
 #include "io/scanned_mesh.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/input.hpp"
 #include "core/base/robust_deviation.hpp"
+#include "core/geometry/facet.hpp"
 #include "core/geometry/subset.hpp"
 
 namespace cloud2csg {
@@ -44,11 +44,6 @@ struct FacetSizes {
   [[nodiscard]] double small_area() const { return area - large_area; }
 };
 
-double area_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& corners) {
-  const Vector3d a = mesh.vertices[corners[0]];
-  return 0.5 * (mesh.vertices[corners[1]] - a).cross(mesh.vertices[corners[2]] - a).norm();
-}
-
 double longest_edge_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& corners) {
   const Vector3d a = mesh.vertices[corners[0]];
   const Vector3d b = mesh.vertices[corners[1]];
@@ -58,12 +53,12 @@ double longest_edge_of(const TriangleMesh& mesh, const std::array<std::uint32_t,
 
 FacetSizes by_size(const TriangleMesh& mesh) {
   FacetSizes sizes;
-  for (const auto& corners : mesh.triangles) sizes.area += area_of(mesh, corners);
+  for (const auto& corners : mesh.triangles) sizes.area += 0.5 * doubled_area(mesh, corners).norm();
   const double mean_edge = std::sqrt(4 / std::sqrt(3.0) * sizes.area / static_cast<double>(mesh.triangles.size()));
   for (const auto& corners : mesh.triangles) {
     if (longest_edge_of(mesh, corners) <= k_small_facet * mean_edge) continue;
     sizes.large.push_back(corners);
-    sizes.large_area += area_of(mesh, corners);
+    sizes.large_area += 0.5 * doubled_area(mesh, corners).norm();
   }
   return sizes;
 }
@@ -79,10 +74,9 @@ std::vector<std::uint32_t> used_vertices(const TriangleMesh& mesh) {
 /// Unit normals of vertices, weighted by the facets' areas.
 Points vertex_normals(const TriangleMesh& mesh) {
   Points normals(mesh.vertices.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vector3d corner = mesh.vertices[a];
-    const Vector3d facet = (mesh.vertices[b] - corner).cross(mesh.vertices[c] - corner);
-    for (const std::uint32_t vertex : {a, b, c}) normals.set(vertex, normals[vertex] + facet);
+  for (const auto& corners : mesh.triangles) {
+    const Vector3d facet = doubled_area(mesh, corners);
+    for (const std::uint32_t vertex : corners) normals.set(vertex, normals[vertex] + facet);
   }
   for (std::size_t i = 0; i < normals.size(); ++i) normals.set(i, normals[i].stableNormalized());
   return normals;

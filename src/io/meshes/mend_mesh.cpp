@@ -13,6 +13,7 @@
 
 #include "cloud2csg/input.hpp"
 #include "cloud2csg/mesh.hpp"
+#include "core/geometry/facet.hpp"
 #include "core/geometry/place_text.hpp"
 #include "io/meshes/mesh_faults.hpp"
 
@@ -65,11 +66,6 @@ Neighbours neighbours_of(const TriangleMesh& mesh) {
   return neighbours;
 }
 
-Vector3d doubled_area(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-}
-
 void turn(TriangleMesh& mesh, std::uint32_t triangle) {
   std::swap(mesh.triangles[triangle][1], mesh.triangles[triangle][2]);
 }
@@ -99,7 +95,7 @@ std::size_t make_agree(TriangleMesh& mesh, const Reached& reached) {
   double against = 0;
   double all = 0;
   for (std::size_t k = 0; k < reached.triangles.size(); ++k) {
-    const double area = doubled_area(mesh, reached.triangles[k]).norm();
+    const double area = doubled_area(mesh, mesh.triangles[reached.triangles[k]]).norm();
     all += area;
     if (reached.is_against[k]) against += area;
   }
@@ -210,8 +206,7 @@ CornerIndices rotated(CornerIndices corners) {
 }
 
 bool has_area(const TriangleMesh& mesh, const CornerIndices& corners, double least) {
-  const Eigen::Vector3d a = mesh.vertices[corners[0]];
-  return (mesh.vertices[corners[1]] - a).cross(mesh.vertices[corners[2]] - a).norm() > least;
+  return doubled_area(mesh, corners).norm() > least;
 }
 
 void leave_out_flat(MendedMesh& mended) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/facet.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -113,8 +115,7 @@ void MeshAssembly::cut_ring(FilePosition where) {
 }
 
 double MeshAssembly::area(const Corners& corners, const Vector3d& normal) const {
-  const Vector3d a = mesh_.vertices[corners[0]];
-  return normal.dot((mesh_.vertices[corners[1]] - a).cross(mesh_.vertices[corners[2]] - a));
+  return normal.dot(doubled_area(mesh_, corners));
 }
 
 bool MeshAssembly::is_in(std::uint32_t vertex, const Corners& ear, const Vector3d& normal) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/fields/bounded_field.hpp"
+#include "core/geometry/facet.hpp"
 
 namespace cloud2csg::brep {
 namespace {
@@ -19,11 +20,6 @@ std::vector<double> offsets_of_surface(const Model& field, const Points& points)
     if (steepness > 0 && std::isfinite(values[i])) offsets[i] = -values[i] / steepness;
   }
   return offsets;
-}
-
-Eigen::Vector3d area_of(const TriangleMesh& mesh, std::size_t triangle) {
-  const auto [a, b, c] = mesh.triangles[triangle];
-  return 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
 }
 
 Points middles_of(const TriangleMesh& mesh) {
@@ -53,7 +49,7 @@ void balance_facets(TriangleMesh& mesh, const Model& model) {
     std::vector<Share> shares(mesh.vertices.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto [a, b, c] = mesh.triangles[t];
-      const Eigen::Vector3d area = area_of(mesh, t);
+      const Eigen::Vector3d area = 0.5 * doubled_area(mesh, mesh.triangles[t]);
       // The mean over the triangle, exact for quadratic offsets.
       const double mean = 0.75 * at_middles[t] + (at_vertices[a] + at_vertices[b] + at_vertices[c]) / 12;
       const double longest = std::sqrt(area.norm());
