@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "detection/match.hpp"
 #include "detection/oracle.hpp"
 #include "detection/rows.hpp"
+#include "run_main.hpp"
 
 namespace cloud2csg::bench {
 namespace {
@@ -92,12 +92,7 @@ std::vector<Row> measure(const TrialGroup& group, const Arguments& arguments) {
   const RunContext run{.threads = arguments.threads};
   const std::size_t trials = group.trials.size();
   std::vector<std::vector<double>> thresholds(trials);
-  for_each_index(trials, run, [&](std::size_t t) {
-    const Scene scene = group.trials[t].make(1);
-    for (const TestedFeature& feature : group.trials[t].features) {
-      thresholds[t].push_back(oracle_threshold(scene, feature.question));
-    }
-  });
+  for_each_index(trials, run, [&](std::size_t t) { thresholds[t] = thresholds_of(group.trials[t]); });
   std::vector<std::vector<Answer>> answers(trials, std::vector<Answer>(arguments.seeds));
   for_each_index(trials * arguments.seeds, run, [&](std::size_t i) {
     const std::size_t t = i / arguments.seeds;
@@ -195,8 +190,6 @@ int run(int argc, char** argv) {
                "Give the true normals, to tell what detection loses from what estimated normals lose; the oracle sees "
                "positions only");
   CLI11_PARSE(app, argc, argv);
-  // Line-buffered, so that tables appear one by one, also in a file.
-  (void)std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   std::vector<Row> all_rows;
   for (const TrialGroup& group : groups) {
     if (arguments.part != "all" && arguments.part != group.name) continue;
@@ -213,10 +206,5 @@ int run(int argc, char** argv) {
 }  // namespace cloud2csg::bench
 
 int main(int argc, char** argv) {
-  try {
-    return cloud2csg::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    (void)std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return cloud2csg::bench::run_main(argc, argv, cloud2csg::bench::run);
 }

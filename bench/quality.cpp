@@ -4,9 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 
 #include "quality/parts.hpp"
+#include "run_main.hpp"
 
 namespace cloud2csg::bench {
 namespace {
@@ -71,8 +71,6 @@ int run(int argc, char** argv) {
   for (const Setting& setting : all_settings()) {
     if (std::ranges::count(arguments.settings, setting.name) > 0) options.run.settings.push_back(setting);
   }
-  // Line-buffered, so that tables appear one by one, also in a file.
-  (void)std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   print_part(arguments.part, options);
   return 0;
 }
@@ -81,10 +79,5 @@ int run(int argc, char** argv) {
 }  // namespace cloud2csg::bench
 
 int main(int argc, char** argv) {
-  try {
-    return cloud2csg::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    (void)std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return cloud2csg::bench::run_main(argc, argv, cloud2csg::bench::run);
 }

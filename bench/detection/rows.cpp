@@ -8,6 +8,7 @@
 
 #include "detection/bar.hpp"
 #include "detection/household.hpp"
+#include "detection/oracle.hpp"
 
 namespace cloud2csg::bench {
 namespace {
@@ -127,6 +128,13 @@ std::vector<Trial> household_trials() {
 }
 
 }  // namespace
+
+std::vector<double> thresholds_of(const Trial& trial) {
+  const Scene scene = trial.make(1);
+  std::vector<double> thresholds;
+  for (const TestedFeature& feature : trial.features) thresholds.push_back(oracle_threshold(scene, feature.question));
+  return thresholds;
+}
 
 std::size_t count_points(const Scene& scene, const TestedFeature& feature) {
   const auto last = scene.surface.begin() + static_cast<std::ptrdiff_t>(scene.aligned.size());

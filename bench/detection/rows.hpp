@@ -32,6 +32,9 @@ struct TrialGroup {
 
 [[nodiscard]] std::vector<TrialGroup> all_trials();
 
+/// The oracle's threshold for each feature.
+[[nodiscard]] std::vector<double> thresholds_of(const Trial& trial);
+
 constexpr std::size_t k_few_points = 50;  ///< rows with more points have to reach the goal
 
 /// Points on the first tested surface, copies and outliers not counted.

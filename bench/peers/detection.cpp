@@ -6,9 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <ctime>
-#include <exception>
 #include <string>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "detection/oracle.hpp"
 #include "detection/rows.hpp"
 #include "peers/efficient_ransac.hpp"
+#include "run_main.hpp"
 
 namespace cloud2csg::bench {
 namespace {
@@ -84,11 +83,7 @@ void print(const TrialGroup& group, std::size_t seeds) {
   std::vector<Candidate> candidates = all_candidates();
   std::size_t shown = 0;
   for (const Trial& trial : group.trials) {
-    const Scene first = trial.make(1);
-    std::vector<double> thresholds;
-    for (const TestedFeature& feature : trial.features) {
-      thresholds.push_back(oracle_threshold(first, feature.question));
-    }
+    const std::vector<double> thresholds = thresholds_of(trial);
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) shown += measure(trial, thresholds, seed, candidates);
   }
   const auto clouds = static_cast<double>(group.trials.size() * seeds);
@@ -127,10 +122,5 @@ int run(int argc, char** argv) {
 }  // namespace cloud2csg::bench
 
 int main(int argc, char** argv) {
-  try {
-    return cloud2csg::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    (void)std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return cloud2csg::bench::run_main(argc, argv, cloud2csg::bench::run);
 }
