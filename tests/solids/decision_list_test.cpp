@@ -177,6 +177,30 @@ TEST(WriteSolids, NothingIsAddedFarFromThePart) {
   EXPECT_FALSE(is_inside(written, far));
 }
 
+TEST(WriteSolids, WhatSubtractsEverythingButASolidIsWrittenAsThatSolid) {
+  const TermSpace& space = scene().space;
+  const auto box_within = [&](std::uint32_t bins) {
+    TermPart box;
+    for (std::size_t side = 0; side < 3; ++side)
+      box.ranges[side] = {bins, space.boxes[0].bins[side].count() - 1 - bins};
+    return box;
+  };
+  TermPart round{.kind = PartKind::revolved, .ranges = {BinRange{0, space.revolved[0].bins.count() - 1}}};
+  const auto rule_of = [&](const Term& term, bool is_in) {
+    return Rule{.term = term, .members = members_of(space, term), .is_in = is_in};
+  };
+  const auto text_of = [&](std::uint32_t bins) {
+    const Rule subtracts = rule_of({.parts = {box_within(bins), round}}, false);
+    const WrittenSolids written = write_solids(space, {subtracts, rule_of({.parts = {box_within(1)}}, true)});
+    return to_text(written.tree, written.solids);
+  };
+  EXPECT_EQ(text_of(0), "box_0 - cylinder_0") << "the cylinder of everything";
+  round.is_inverted = true;
+  EXPECT_EQ(text_of(0), "box_0 & cylinder_0") << "everything but the cylinder";
+  EXPECT_EQ(text_of(1), "box_0 & cylinder_0") << "all of the part but the cylinder";
+  EXPECT_EQ(text_of(2), "box_1 - (box_0 - cylinder_0)") << "only some of the part";
+}
+
 RC_GTEST_PROP(TermSearch, TheBestBoxIsNoWorseThanAnyOther, ()) {
   const TermSpace& space = scene().space;
   const std::vector<double> gains = any_gains();

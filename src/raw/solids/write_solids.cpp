@@ -13,168 +13,12 @@
 
 #include "cloud2csg/csg_tree.hpp"
 #include "core/geometry/boxes.hpp"
+#include "raw/solids/term_ends.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr double k_most_overshoot = 0.01;  // in diagonals of the bounds, which are far out
-
-/// By part, side and end: whether an end moves into a bin that makes no difference.
-using Overshoots = std::array<std::array<bool, 2>, 3>;
-
-std::vector<std::uint8_t> decisions_of(const DecisionList& list, std::size_t places) {
-  const std::vector<std::uint16_t> deciding = deciding_rules(list, places);
-  std::vector<std::uint8_t> is_in(places);
-  for (std::size_t i = 0; i < places; ++i) {
-    is_in[i] = deciding[i] < list.size() && list[deciding[i]].is_in ? 1 : 0;
-  }
-  return is_in;
-}
-
-const Bins& bins_of(const TermSpace& space, const TermPart& part, std::size_t side) {
-  return part.kind == PartKind::box ? space.boxes[part.family].bins[side] : space.revolved[part.family].bins;
-}
-
-std::size_t sides_of(const TermPart& part) {
-  return part.kind == PartKind::box ? 3 : part.kind == PartKind::revolved ? 1 : 0;
-}
-
-void set_term(const TermSpace& space, Rule& rule, const Term& term) {
-  rule.term = term;
-  rule.members = members_of(space, term);
-}
-
-/// Moves the ends of all parts inward as long as the list decides all places as before.
-class DrawnIn {
- public:
-  static DecisionList of(const TermSpace& space, DecisionList list) {
-    DrawnIn drawn(space, std::move(list));
-    for (std::size_t r = 0; r < drawn.list_.size(); ++r) {
-      for (std::size_t p = 0; p < drawn.list_[r].term.parts.size(); ++p) drawn.draw_in(r, p);
-    }
-    return std::move(drawn.list_);
-  }
-
- private:
-  DrawnIn(const TermSpace& space, DecisionList list)
-      : space_(space), list_(std::move(list)), wanted_(decisions_of(list_, space.size())) {}
-
-  void draw_in(std::size_t rule, std::size_t part) {
-    for (std::size_t side = 0; side < sides_of(list_[rule].term.parts[part]); ++side) {
-      while (try_shorter(rule, part, side, 1, 0)) {
-      }
-      while (try_shorter(rule, part, side, 0, 1)) {
-      }
-    }
-  }
-
-  bool try_shorter(std::size_t rule, std::size_t part, std::size_t side, std::uint32_t at_first,
-                   std::uint32_t at_last) {
-    const Term kept = list_[rule].term;
-    Term moved = kept;
-    BinRange& range = moved.parts[part].ranges[side];
-    if (range.first == range.last) return false;
-    range = {range.first + at_first, range.last - at_last};
-    set_term(space_, list_[rule], moved);
-    if (decisions_of(list_, space_.size()) == wanted_) return true;
-    set_term(space_, list_[rule], kept);
-    return false;
-  }
-
-  const TermSpace& space_;
-  DecisionList list_;
-  std::vector<std::uint8_t> wanted_;
-};
-
-/// Finds ends that may lie anywhere in the next bin. Any choice of such ends must leave all decisions unchanged. So a
-/// place that enters or leaves one rule's term must not depend on that rule, nor enter or leave another rule's term.
-class FreeEnds {
- public:
-  /// By rule and part.
-  static std::vector<std::vector<Overshoots>> of(const TermSpace& space, const DecisionList& list) {
-    FreeEnds ends(space, list);
-    std::vector<std::vector<Overshoots>> result;
-    for (std::size_t r = 0; r < list.size(); ++r) {
-      const std::vector<std::uint8_t> is_free = ends.places_that_do_not_depend_on(r);
-      std::vector<Overshoots>& of_parts = result.emplace_back(list[r].term.parts.size());
-      for (std::size_t p = 0; p < of_parts.size(); ++p) {
-        for (std::size_t side = 0; side < sides_of(list[r].term.parts[p]); ++side) {
-          for (std::size_t end = 0; end < 2; ++end) of_parts[p][side][end] = ends.free(r, p, side, end, is_free);
-        }
-      }
-    }
-    return result;
-  }
-
- private:
-  FreeEnds(const TermSpace& space, const DecisionList& list) : space_(space), list_(list), owners_(space.size(), 0) {
-    for (const Rule& rule : list) longest_.push_back(rule.term);
-  }
-
-  [[nodiscard]] std::vector<std::uint8_t> places_that_do_not_depend_on(std::size_t rule) const {
-    DecisionList list = list_;
-    list[rule].members.assign(space_.size(), 1);
-    std::vector<std::uint8_t> result = decisions_of(list, space_.size());
-    list[rule].members.assign(space_.size(), 0);
-    const std::vector<std::uint8_t> without = decisions_of(list, space_.size());
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[i] == without[i] ? 1 : 0;
-    return result;
-  }
-
-  bool free(std::size_t rule, std::size_t part, std::size_t side, std::size_t end,
-            const std::vector<std::uint8_t>& is_free) {
-    const TermPart& exact = list_[rule].term.parts[part];
-    const BinRange range = exact.ranges[side];
-    if (end == 0 ? range.first == 0 : range.last + 1 == bins_of(space_, exact, side).count()) return false;
-    TermPart moved = exact;
-    lengthen(moved.ranges[side], end);
-    if (!reaches_other_places(exact, moved)) return false;
-    Term longer = longest_[rule];
-    lengthen(longer.parts[part].ranges[side], end);
-    const std::vector<std::uint32_t> changing = places_that_change(list_[rule].term, longer);
-    for (const std::uint32_t i : changing) {
-      if (is_free[i] == 0 || (owners_[i] != 0 && owners_[i] != rule + 1)) return false;
-    }
-    for (const std::uint32_t i : changing) owners_[i] = static_cast<std::uint32_t>(rule + 1);
-    longest_[rule] = std::move(longer);
-    return true;
-  }
-
-  static void lengthen(BinRange& range, std::size_t end) {
-    if (end == 0)
-      --range.first;
-    else
-      ++range.last;
-  }
-
-  /// Places whose membership in the term depends on the lengths of its parts.
-  [[nodiscard]] std::vector<std::uint32_t> places_that_change(const Term& exact, const Term& longest) const {
-    Term most = longest;
-    Term least = exact;
-    for (std::size_t p = 0; p < exact.parts.size(); ++p) {
-      if (exact.parts[p].is_inverted) std::swap(most.parts[p], least.parts[p]);
-    }
-    const std::vector<std::uint8_t> in_most = members_of(space_, most);
-    const std::vector<std::uint8_t> in_least = members_of(space_, least);
-    std::vector<std::uint32_t> places;
-    for (std::uint32_t i = 0; i < in_most.size(); ++i) {
-      if (in_most[i] != in_least[i]) places.push_back(i);
-    }
-    return places;
-  }
-
-  /// Nothing is known about a bin without places.
-  [[nodiscard]] bool reaches_other_places(TermPart a, TermPart b) const {
-    a.is_inverted = false;
-    b.is_inverted = false;
-    return members_of(space_, {.parts = {a}}) != members_of(space_, {.parts = {b}});
-  }
-
-  const TermSpace& space_;
-  const DecisionList& list_;
-  std::vector<Term> longest_;          ///< by rule, with all free ends one bin farther
-  std::vector<std::uint32_t> owners_;  ///< by place: the rule, from 1, whose term it may enter or leave
-};
 
 struct Span {
   double low, high;
@@ -347,6 +191,11 @@ struct WrittenTerm {
 WrittenTerm write_term(const TermSpace& space, const Rule& rule, const std::vector<Overshoots>& overshoots,
                        SolidWriter& writer) {
   WrittenTerm term;
+  if (keeps_one_part(space, rule)) {
+    const TermPart& kept = rule.term.parts[1];
+    const CsgTree leaf = CsgTree::leaf(writer.add(space, kept, overshoots[1], kept.is_inverted));
+    return {.tree = kept.is_inverted ? complement(leaf) : leaf};
+  }
   for (std::size_t p = 0; p < rule.term.parts.size(); ++p) {
     const TermPart& part = rule.term.parts[p];
     const PrimitiveIndex solid = writer.add(space, part, overshoots[p], rule.is_in != part.is_inverted);
@@ -360,8 +209,8 @@ WrittenTerm write_term(const TermSpace& space, const Rule& rule, const std::vect
 }  // namespace
 
 WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
-  list = DrawnIn::of(space, std::move(list));
-  const std::vector<std::vector<Overshoots>> overshoots = FreeEnds::of(space, list);
+  list = drawn_in(space, std::move(list));
+  const std::vector<std::vector<Overshoots>> overshoots = free_ends(space, list);
   SolidWriter writer(space.known);
   std::vector<CsgTree> terms;
   std::vector<std::size_t> endless;  // rules that add where no solid can subtract, such as cylinders of many diagonals
