@@ -45,6 +45,37 @@ RC_GTEST_PROP(WithAgreement, IsDistanceAndNormalOfTheSurface, ()) {
   }
 }
 
+RC_GTEST_PROP(ForEachAgreeing, FindsThePointsThatAPlainLoopFinds, ()) {
+  RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
+  PointCloud cloud;
+  for (const SurfaceType type : k_types) {
+    const Surface surface = random_surface(type, random);
+    for (int k = 0; k < 300; ++k) {
+      const OrientedPoint point = random_point_on(surface, random);
+      cloud.positions.push_back(point.position + test::random_within(0.01, random));
+      cloud.normals.push_back(point.normal);
+    }
+  }
+  const WorkCloud work = make_work_cloud(cloud);
+  for (const SurfaceType type : k_types) {
+    Surface surface = random_surface(type, random);
+    if (random.chance(0.5))
+      surface.position = work.runs[random.below(work.runs.size())].middle;  // where a distance has no gradient
+    const AgreementLimits limits{
+        .distance = random.uniform(0.001, 0.1), .noise = 0.001, .cosine = random.uniform(-1, 1)};
+    const auto is_odd = [](std::uint32_t i) { return i % 2 == 1; };
+    std::vector<std::uint32_t> plain;
+    std::vector<std::uint32_t> fast;
+    with_agreement(surface, [&](const auto& rule) {
+      for (std::uint32_t i = 0; i < work.size(); ++i) {
+        if (is_odd(i) && limits.hold(rule(work.points[i].position, work.points[i].normal))) plain.push_back(i);
+      }
+    });
+    for_each_agreeing(surface, work, limits, is_odd, [&](std::uint32_t i, const Agreement&) { fast.push_back(i); });
+    RC_ASSERT(fast == plain);
+  }
+}
+
 template <std::size_t Count>
 std::array<OrientedPoint, Count> points_on(const Surface& surface, RandomStream& random) {
   std::array<OrientedPoint, Count> points;

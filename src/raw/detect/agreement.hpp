@@ -97,10 +97,15 @@ auto with_agreement(const Surface& s, const Function& f) {
     case SurfaceType::torus:
       break;
   }
-  return f([&](const Vector& x, const Vector& n) {
+  return f([&](const Vector& x, const Vector& n) -> Agreement {
     const Vector v = x - s.position;
-    const Vector across = v - s.axis.dot(v) * s.axis;
-    return round(v - s.radius / std::max(across.norm(), tiny) * across, n, s.minor_radius);
+    const double height = s.axis.dot(v);
+    const Vector across = v - height * s.axis;
+    const double radial = across.norm();
+    const Vector outward = (radial - s.radius) / std::max(radial, tiny) * across + height * s.axis;
+    const double length =
+        std::sqrt((radial - s.radius) * (radial - s.radius) + height * height);  // also right on the axis
+    return {side * (length - s.minor_radius), side * outward.dot(n) / std::max(length, tiny)};
   });
 }
 

@@ -15,22 +15,13 @@ namespace {
 /// This many points suffice to fit a surface.
 constexpr std::size_t k_sample = 400;
 
-std::vector<std::uint32_t> agreeing_of(const Surface& surface, const FreePoints& points,
-                                       const AgreementLimits& limits) {
-  return with_agreement(surface, [&](const auto& rule) {
-    std::vector<std::uint32_t> agreeing;
-    for (const std::uint32_t i : points.list()) {
-      const OrientedPoint& p = points[i];
-      if (limits.hold(rule(p.position, p.normal))) agreeing.push_back(i);
-    }
-    return agreeing;
-  });
-}
-
 /// The largest connected group of agreeing points; empty if it is smaller than the limit.
 std::vector<std::uint32_t> connected_points(const Surface& surface, const FreePoints& points,
                                             const SearchLimits& limits) {
-  const std::vector<std::uint32_t> agreeing = agreeing_of(surface, points, limits.agreement);
+  std::vector<std::uint32_t> agreeing;
+  for_each_agreeing(
+      surface, points.cloud(), limits.agreement, [&](std::uint32_t i) { return points.is_free(i); },
+      [&](std::uint32_t i, const Agreement&) { agreeing.push_back(i); });
   if (agreeing.size() < limits.least_points) return {};
   std::vector<std::uint32_t> largest =
       std::move(connected_groups(points.cloud().points, agreeing, limits.link).front());

@@ -26,8 +26,9 @@ struct SearchLimits {
 struct GrownSurface {
   Surface surface;
   std::vector<std::uint32_t> points;
-  double support = 0;  ///< see support_of()
-  double reach = 0;    ///< distance within which its points lie: see reach_of()
+  double support = 0;                         ///< see support_of()
+  double reach = 0;                           ///< distance within which its points lie: see reach_of()
+  std::vector<std::uint32_t> fitted_to = {};  ///< the points of the last fit while surfaces settle
 };
 
 /// Signed distances of the points from the surface. O(n)

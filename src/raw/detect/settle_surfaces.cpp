@@ -60,22 +60,23 @@ void join_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const
 }
 
 /// Gives each surface all agreeing points, whoever found them first: the true surface of a face gets all of it.
-void claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
-               const RunContext& run) {
+/// @returns the points' distances, by surface
+std::vector<std::vector<double>> claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
+                                           const AgreementLimits& limits, const RunContext& run) {
+  std::vector<std::vector<double>> distances(surfaces.size());
   for_each_index(surfaces.size(), run, [&](std::size_t k) {
     GrownSurface& surface = surfaces[k];
-    const AgreementLimits own = limits.within(surface.reach);
-    with_agreement(surface.surface, [&](const auto& rule) {
-      surface.points.clear();
-      surface.support = 0;
-      for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-        const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
-        if (!own.hold(agreement)) continue;
-        surface.points.push_back(i);
-        surface.support += limits.support(agreement);
-      }
-    });
+    surface.points.clear();
+    surface.support = 0;
+    const auto always = [](std::uint32_t) { return true; };
+    for_each_agreeing(surface.surface, cloud, limits.within(surface.reach), always,
+                      [&](std::uint32_t i, const Agreement& agreement) {
+                        surface.points.push_back(i);
+                        surface.support += limits.support(agreement);
+                        distances[k].push_back(std::abs(agreement.distance));
+                      });
   });
+  return distances;
 }
 
 /// Costs of the points on a surface with this noise, if their normals are not on another side of an edge.
@@ -130,50 +131,52 @@ void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
   }
 }
 
-/// The nearest agreeing surface for each point; surfaces.size() if there is none.
-std::vector<std::uint32_t> nearest_surfaces(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                                            const AgreementLimits& limits, const RunContext& run) {
-  constexpr std::size_t k_block = 4096;
-  std::vector<std::uint32_t> nearest(cloud.size(), static_cast<std::uint32_t>(surfaces.size()));
-  for_each_index((cloud.size() + k_block - 1) / k_block, run, [&](std::size_t block) {
-    const std::size_t first = block * k_block;
-    const std::size_t last = std::min(first + k_block, cloud.size());
-    std::vector<double> distance(last - first, std::numeric_limits<double>::infinity());
-    for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
-      const AgreementLimits own = limits.within(surfaces[s].reach);
-      with_agreement(surfaces[s].surface, [&](const auto& rule) {
-        for (std::size_t i = first; i < last; ++i) {
-          const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
-          if (!own.hold(agreement) || std::abs(agreement.distance) >= distance[i - first]) continue;
-          distance[i - first] = std::abs(agreement.distance);
-          nearest[i] = s;
-        }
-      });
-    }
-  });
-  return nearest;
-}
-
 /// Gives each point to the nearest agreeing surface. Surfaces with fewer than `least` points are dropped.
 void share_points(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
                   std::size_t least, const RunContext& run) {
-  const std::vector<std::uint32_t> nearest = nearest_surfaces(surfaces, cloud, limits, run);
-  for (GrownSurface& surface : surfaces) surface.points.clear();
-  for (std::uint32_t i = 0; i < nearest.size(); ++i) {
-    if (nearest[i] < surfaces.size()) surfaces[nearest[i]].points.push_back(i);
+  const std::vector<std::vector<double>> distances = claim_all(surfaces, cloud, limits, run);
+  std::vector<double> nearest(cloud.size(), std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> owner(cloud.size());
+  for (std::size_t k = 0; k < surfaces.size(); ++k) {
+    for (std::size_t n = 0; n < distances[k].size(); ++n) {
+      const std::uint32_t i = surfaces[k].points[n];
+      if (distances[k][n] >= nearest[i]) continue;
+      nearest[i] = distances[k][n];
+      owner[i] = k;
+    }
+  }
+  for (std::size_t k = 0; k < surfaces.size(); ++k) {
+    std::erase_if(surfaces[k].points, [&](std::uint32_t i) { return owner[i] != k; });
   }
   std::erase_if(surfaces, [&](const GrownSurface& s) { return s.points.size() < least; });
 }
 
-void fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
+/// Whether so many points came or went since the last fit that a new one would move the surface noticeably. m of n
+/// points at the limit of three deviations shift it by 3 m / n deviations, and its standard error is 1 / sqrt(n).
+bool must_fit(const GrownSurface& s) {
+  // At half of this, settling takes a tenth longer; at double, surfaces may end .7 standard errors off.
+  constexpr double k_share_of_error = 0.35;
+  std::vector<std::uint32_t> changed;
+  std::ranges::set_symmetric_difference(s.points, s.fitted_to, std::back_inserter(changed));
+  return static_cast<double>(changed.size()) >
+         k_share_of_error / k_deviations * std::sqrt(static_cast<double>(s.points.size()));
+}
+
+/// @returns whether any surface was fitted to other points than before
+bool fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
              const RunContext& run) {
+  std::vector<std::uint8_t> is_new(surfaces.size(), 0);
   for_each_index(surfaces.size(), run, [&](std::size_t k) {
     GrownSurface& s = surfaces[k];
+    if (!must_fit(s)) return;
+    is_new[k] = 1;
+    s.fitted_to = s.points;
     const auto fitted = fit_plausible(s.surface, cloud, s.points, limits.within(s.reach));
     if (!fitted) return;
     s.surface = *fitted;
     s.reach = reach_of(s.surface, cloud, s.points, limits);
   });
+  return std::ranges::find(is_new, 1) != is_new.end();
 }
 
 }  // namespace
@@ -183,8 +186,7 @@ std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, co
   for (int round = 0; round < 2; ++round) {
     // A small surface also agrees with points on its far continuation. These would turn it onto its neighbour, so each
     // point counts for its nearest surface only.
-    for (int again = 0; again < 5; ++again) {
-      fit_all(surfaces, cloud, limits.agreement, run);
+    for (int again = 0; again < 5 && fit_all(surfaces, cloud, limits.agreement, run); ++again) {
       share_points(surfaces, cloud, limits.agreement, 0, run);
     }
     fit_all(surfaces, cloud, limits.agreement, run);

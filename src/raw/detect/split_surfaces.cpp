@@ -280,11 +280,9 @@ std::vector<std::uint32_t> points_near(const GrownSurface& grown, const WorkClou
   AgreementLimits wide = limits;
   wide.distance *= 3;
   std::vector<std::uint32_t> points;
-  with_agreement(grown.surface, [&](const auto& rule) {
-    for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-      if (is_free[i] && wide.hold(rule(cloud.points[i].position, cloud.points[i].normal))) points.push_back(i);
-    }
-  });
+  for_each_agreeing(
+      grown.surface, cloud, wide, [&](std::uint32_t i) { return is_free[i]; },
+      [&](std::uint32_t i, const Agreement&) { points.push_back(i); });
   const auto middle = points.insert(points.end(), grown.points.begin(), grown.points.end());
   std::inplace_merge(points.begin(), middle, points.end());
   return points;

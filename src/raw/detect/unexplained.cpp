@@ -86,12 +86,14 @@ WorkCloud unexplained_part(const FreePoints& points, double noise, const RunCont
   WorkCloud part{.points = {},
                  .code = {},
                  .index = points_together(points, all, tree, run),
+                 .runs = {},
                  .middle = cloud.middle,
                  .diagonal = cloud.diagonal};
   for (const std::uint32_t i : part.index) {
     part.points.push_back(cloud.points[i]);
     part.code.push_back(cloud.code[i]);
   }
+  part.runs = runs_of(part.points);
   if (part.points.empty()) return part;
   estimate_normals_among(part.points, cloud.positions_of(part.index), noise, run);
   orient_part(part, points, all, tree, run);

@@ -51,7 +51,24 @@ WorkCloud make_work_cloud(const PointCloud& cloud) {
     work.code.push_back(curve.cell_of(position.x(), position.y(), position.z()));
     work.points.push_back({(position - work.middle) / work.diagonal, cloud.normals[i]});
   }
+  work.runs = runs_of(work.points);
   return work;
+}
+
+std::vector<PointRun> runs_of(std::span<const OrientedPoint> points) {
+  constexpr std::size_t k_run = 64;
+  constexpr double k_rounding = 1e-12;  // of distances, in a cloud of diagonal 1
+  std::vector<PointRun> runs;
+  for (std::size_t first = 0; first < points.size(); first += k_run) {
+    const std::size_t last = std::min(first + k_run, points.size());
+    AlignedBox box;
+    for (const OrientedPoint& p : points.subspan(first, last - first)) box.extend(p.position);
+    runs.push_back({.first = static_cast<std::uint32_t>(first),
+                    .last = static_cast<std::uint32_t>(last),
+                    .middle = box.center(),
+                    .radius = 0.5 * box.diagonal().norm() + k_rounding});
+  }
+  return runs;
 }
 
 FreePoints::FreePoints(const WorkCloud& cloud) : cloud_(cloud), is_free_(cloud.size(), true), list_(cloud.size()) {

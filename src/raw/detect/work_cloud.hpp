@@ -12,11 +12,19 @@
 
 namespace cloud2csg {
 
+/// The points [first, last), successive on the Z curve, within a ball.
+struct PointRun {
+  std::uint32_t first, last;
+  Eigen::Vector3d middle;
+  double radius;
+};
+
 /// A cloud for sampling: centred, scaled to a diagonal of 1 and sorted along a Z curve, so octree cells are runs.
 struct WorkCloud {
   std::vector<OrientedPoint> points;
   std::vector<std::uint32_t> code;   ///< position on the curve, ascending: k_levels bits an axis
   std::vector<std::uint32_t> index;  ///< original index of each point
+  std::vector<PointRun> runs;        ///< of all points, ascending
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   double diagonal = 1;
 
@@ -36,6 +44,27 @@ struct WorkCloud {
 
 /// O(n log n). Precondition: the cloud has normals and points.
 [[nodiscard]] WorkCloud make_work_cloud(const PointCloud& cloud);
+
+/// Runs of points that are sorted along a Z curve. O(n)
+[[nodiscard]] std::vector<PointRun> runs_of(std::span<const OrientedPoint> points);
+
+/// Calls f(index, agreement) for each point on the surface of those with is_wanted(index), ascending. Skips runs that
+/// are too far from the surface, since the distance of two points differs by no more than they are apart. O(n / 64) and
+/// the points near the surface.
+template <class IsWanted, class Function>
+void for_each_agreeing(const Surface& surface, const WorkCloud& cloud, const AgreementLimits& limits,
+                       const IsWanted& is_wanted, const Function& f) {
+  with_agreement(surface, [&](const auto& rule) {
+    for (const PointRun& run : cloud.runs) {
+      if (std::abs(rule(run.middle, surface.axis).distance) > limits.distance + run.radius) continue;
+      for (std::uint32_t i = run.first; i < run.last; ++i) {
+        if (!is_wanted(i)) continue;
+        const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
+        if (limits.hold(agreement)) f(i, agreement);
+      }
+    }
+  });
+}
 
 /// The points that no surface has taken yet.
 class FreePoints {
