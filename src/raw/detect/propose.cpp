@@ -47,8 +47,8 @@ Columns columns_of(std::span<const OrientedPoint> points) {
 /// Whether points of a cloud of diagonal 1 can tell the surface from a simpler one.
 bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
   if (!surface.position.allFinite() || !surface.axis.allFinite()) return false;
-  constexpr double k_most_apex = 3;                      // from the middle of the cloud
-  const double least = 2 * k_deviations * limits.noise;  // detectable radius
+  constexpr double k_most_apex = 3;                  // from the middle of the cloud
+  const double least = k_deviations * limits.noise;  // detectable radius
   switch (surface.type) {
     case SurfaceType::plane:
       return true;

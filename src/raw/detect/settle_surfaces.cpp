@@ -154,7 +154,7 @@ void share_points(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, c
 /// Whether so many points came or went since the last fit that a new one would move the surface noticeably. m of n
 /// points at the limit of three deviations shift it by 3 m / n deviations, and its standard error is 1 / sqrt(n).
 bool must_fit(const GrownSurface& s) {
-  // At half of this, settling takes a tenth longer; at double, surfaces may end .7 standard errors off.
+  // At half or double of this, detection takes 2 % longer or shorter.
   constexpr double k_share_of_error = 0.35;
   std::vector<std::uint32_t> changed;
   std::ranges::set_symmetric_difference(s.points, s.fitted_to, std::back_inserter(changed));
