@@ -1,6 +1,7 @@
 #include "quality/defects.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "cloud2csg/advanced/restrict.hpp"
 #include "cloud2csg/mesh.hpp"
@@ -74,25 +75,12 @@ PointCloud with_turned_normals(PointCloud cloud, RandomStream& random) {
   return cloud;
 }
 
-void scale(Shape& shape, double factor) {
-  std::visit(
-      Overloaded{[&](Box& box) { box.size *= factor; }, [&](Sphere& sphere) { sphere.radius *= factor; },
-                 [&](Cylinder& cylinder) { cylinder.radius *= factor, cylinder.height *= factor; },
-                 [&](Cone& cone) { cone.radius_bottom *= factor, cone.radius_top *= factor, cone.height *= factor; },
-                 [&](Torus& torus) { torus.major_radius *= factor, torus.minor_radius *= factor; },
-                 [&](Polytope& polytope) {
-                   for (Plane& plane : polytope.planes) plane.offset *= factor;
-                 },
-                 [](HalfSpace&) {}, [](Expression&) {}},
-      shape);
-}
-
 /// A copy shifted by less than half of its smallest width, so that it overlaps the original.
 Primitive spurious_copy(const PrimitiveSet& primitives, RandomStream& random) {
   Primitive copy = primitives[random.below(primitives.size())];
   copy.id = "spurious";
   const double half_width = oriented_bounds(copy).half_size.minCoeff();
-  scale(copy.shape, random.uniform(0.6, 1.4));
+  copy.shape = scaled(std::move(copy.shape), random.uniform(0.6, 1.4));
   copy.pose.position += half_width * random.uniform(0.3, 0.9) * random_direction(random);
   return copy;
 }

@@ -14,7 +14,8 @@
 /// Primitives: the solids at the leaves of a CSG tree, as plain values.
 ///
 /// Every solid has a signed distance f (negative inside, positive outside, in the cloud's units), its gradient, and
-/// bounds. All shapes are centred at the origin of their local frame; `Primitive::pose` places them in the world.
+/// bounds. All shapes are centred at the origin of their local frame, but for the places of profiles; `Primitive::pose`
+/// places them in the world.
 namespace cloud2csg {
 
 /// Position in a PrimitiveSet: the identity of a primitive everywhere in the library.
@@ -53,13 +54,35 @@ struct Plane {
 struct Polytope {
   std::vector<Plane> planes;
 };
+/// The start of a segment of a closed path. The segment ends at the next corner, the last one at the first.
+struct PathCorner {
+  Eigen::Vector2d point;
+  /// 0 for a line; else tan(angle / 4) of an arc that turns left by this angle, as in DXF. 1 and -1 are half circles.
+  double bulge = 0;
+};
+using ClosedPath = std::vector<PathCorner>;
+/// A region of the plane: the places inside an odd number of its paths. Paths neither cross nor touch themselves or
+/// each other.
+struct Profile {
+  std::vector<ClosedPath> paths;
+};
+/// The profile in local (x, y), times |z| <= height / 2.
+struct Extrusion {
+  Profile profile;
+  double height;
+};
+/// The profile in the half-plane (r, z), r >= 0, turned about local z. It meets the axis in lines with r = 0, which
+/// are no surface, or not at all.
+struct Revolution {
+  Profile profile;
+};
 /// A formula in x, y, z (muParser), negative inside. `bounds` encloses the displaced solid in its local frame.
 struct Expression {
   std::string distance;
   AlignedBox bounds;
 };
 
-using Shape = std::variant<Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope, Expression>;
+using Shape = std::variant<Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope, Extrusion, Revolution, Expression>;
 
 /// Adds sin(kx) sin(ky) sin(kz), k = frequency, to the distance, in the primitive's local frame.
 struct Displacement {
@@ -83,11 +106,13 @@ struct Primitive {
 
 using PrimitiveSet = std::vector<Primitive>;
 
-/// As in model files: "box", "sphere", "cylinder", "cone", "torus", "half_space", "polytope", "expression".
+/// As in model files: "box", "sphere", "cylinder", "cone", "torus", "half_space", "polytope", "extrusion",
+/// "revolution", "expression".
 [[nodiscard]] std::string_view type_name(const Shape& shape);
 
 /// @throws Error (where = "radius", "size"... ) when a parameter is not finite or not positive, a polytope is empty or
-/// unbounded, an expression does not parse, or the rms of the evidence is not finite or negative.
+/// unbounded, a path of a profile crosses or touches itself or another (the message names both segments), an expression
+/// does not parse, or the rms of the evidence is not finite or negative.
 void validate(const Primitive& primitive);
 
 /// Whether the primitive is neither an Expression nor displaced. Then its surface has a closed form, its gradient has
@@ -101,7 +126,7 @@ void validate(const Primitive& primitive);
 /// Whether the solid is convex and undisplaced, so that support() holds.
 [[nodiscard]] bool is_convex(const Primitive& primitive);
 
-/// Signed distances at points (world frame), one per point, negative inside. O(points x planes).
+/// Signed distances at points (world frame), one per point, negative inside. O(points x planes or segments).
 [[nodiscard]] std::vector<double> signed_distance(const Primitive& primitive, PointsView points);
 
 /// Gradients of signed_distance at points (world frame), not normalised: unit length where the distance is Euclidean.

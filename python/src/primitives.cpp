@@ -83,6 +83,38 @@ PlaneRows planes_of(const Polytope& polytope) {
   return rows;
 }
 
+using PathLists = std::vector<std::vector<std::vector<double>>>;
+
+Profile make_profile(const PathLists& lists) {
+  Profile profile;
+  for (const auto& corners : lists) {
+    ClosedPath& path = profile.paths.emplace_back();
+    for (const std::vector<double>& corner : corners) {
+      if (corner.size() != 2 && corner.size() != 3) {
+        throw py::value_error(
+            fmt::format("profile: expected corners (x, y) or (x, y, bulge), found {} numbers in "
+                        "corner {} of path {}",
+                        corner.size(), path.size(), profile.paths.size() - 1));
+      }
+      path.push_back({.point = {corner[0], corner[1]}, .bulge = corner.size() == 3 ? corner[2] : 0.0});
+    }
+  }
+  return profile;
+}
+
+PathLists lists_of(const Profile& profile) {
+  PathLists lists;
+  for (const ClosedPath& path : profile.paths) {
+    auto& corners = lists.emplace_back();
+    for (const PathCorner& corner : path) corners.push_back({corner.point.x(), corner.point.y(), corner.bulge});
+  }
+  return lists;
+}
+
+std::string text_of(const Profile& profile) {
+  return py::repr(py::cast(lists_of(profile))).cast<std::string>();
+}
+
 void bind_flat_shapes(py::module_& module) {
   py::class_<Box>(module, "Box", "Centred at the origin of its own frame. size: edge lengths, shape (3,).")
       .def(py::init([](const Vector3d& size) { return Box{size}; }), py::arg("size"))
@@ -99,6 +131,27 @@ void bind_flat_shapes(py::module_& module) {
       .def_property_readonly("planes", &planes_of,
                              "Rows (nx, ny, nz, offset), shape (k, 4), with normals of unit length.")
       .def("__repr__", [](const Polytope& self) { return fmt::format("<Polytope of {} planes>", self.planes.size()); });
+  py::class_<Extrusion>(
+      module, "Extrusion",
+      "A profile in local x, y times |z| <= height / 2. profile: closed paths, each a list of corners "
+      "(x, y) or, where an arc starts, (x, y, bulge): bulge = tan(angle / 4), positive if it turns "
+      "left. Inside is what an odd number of paths surrounds.")
+      .def(py::init([](const PathLists& profile, double height) {
+             return Extrusion{make_profile(profile), height};
+           }),
+           py::arg("profile"), py::arg("height"))
+      .def_property_readonly(
+          "profile", [](const Extrusion& self) { return lists_of(self.profile); }, "Closed paths of (x, y, bulge).")
+      .def_readonly("height", &Extrusion::height, "Length along local z.")
+      .def("__repr__", [](const Extrusion& self) {
+        return fmt::format("Extrusion({}, height={})", text_of(self.profile), self.height);
+      });
+  py::class_<Revolution>(module, "Revolution",
+                         "A profile in the half-plane (r, z), r >= 0, turned about local z. profile: as of Extrusion.")
+      .def(py::init([](const PathLists& profile) { return Revolution{make_profile(profile)}; }), py::arg("profile"))
+      .def_property_readonly(
+          "profile", [](const Revolution& self) { return lists_of(self.profile); }, "Closed paths of (r, z, bulge).")
+      .def("__repr__", [](const Revolution& self) { return fmt::format("Revolution({})", text_of(self.profile)); });
   py::class_<Expression>(module, "Expression",
                          "A solid given by a formula in x, y, z (muParser syntax), negative inside. lower and upper, "
                          "shape (3,), are corners of a box around the solid, in its own frame.")
@@ -148,8 +201,9 @@ std::string repr_of(const Primitive& self) {
 void bind_primitive(py::module_& module) {
   py::class_<Primitive>(
       module, "Primitive",
-      "A named solid. Immutable.\n\nshape: Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope or Expression, in "
-      "its own frame. position, shape (3,), and quaternion, (w, x, y, z), place it in the world: x_world = rotation "
+      "A named solid. Immutable.\n\nshape: Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope, Extrusion, "
+      "Revolution or Expression, in its own frame. position, shape (3,), and quaternion, (w, x, y, z), place it in the "
+      "world: x_world = rotation "
       "x_local + position. displacement_frequency k: adds sin(kx) sin(ky) sin(kz) to the distance, in the shape's own "
       "frame.\n\nRaises Error for sizes that make no solid.")
       .def(py::init(&make_primitive), py::arg("id"), py::arg("shape"),
@@ -161,7 +215,7 @@ void bind_primitive(py::module_& module) {
       .def_property_readonly(
           "type", [](const Primitive& self) { return std::string(type_name(self.shape)); },
           "Type name as in model files: 'box', 'sphere', 'cylinder', 'cone', 'torus', 'half_space', 'polytope', "
-          "'expression'.")
+          "'extrusion', 'revolution', 'expression'.")
       .def_property_readonly(
           "position", [](const Primitive& self) { return self.pose.position; },
           "Position of the frame's origin, shape (3,).")

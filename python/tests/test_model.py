@@ -19,6 +19,8 @@ def test_primitives_are_what_was_given():
         "cone": cloud2csg.Cone(1, 0, 2), "torus": cloud2csg.Torus(2, 0.5), "half_space": cloud2csg.HalfSpace(),
         "polytope": cloud2csg.Polytope([[2, 0, 0, 2], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1],
                                         [0, 0, -1, 1]]),
+        "extrusion": cloud2csg.Extrusion([[(0, 0), (2, 0, 1), (2, 1), (0, 1)], [(1, 0.5, 1), (1.2, 0.5, 1)]], height=3),
+        "revolution": cloud2csg.Revolution(profile=[[(0, 0), (1, 0), (0, 2, 0)]]),
         "expression": cloud2csg.Expression("sqrt(x^2 + y^2 + z^2) - 1", (-1, -1, -1), (1, 1, 1)),
     }
     primitives = [cloud2csg.Primitive(name, shape, (1, 2, 3), (0, 2, 0, 0)) for name, shape in shapes.items()]
@@ -28,7 +30,15 @@ def test_primitives_are_what_was_given():
         assert primitive.position.tolist() == [1, 2, 3] and primitive.quaternion.tolist() == [0, 1, 0, 0]
         assert repr(primitive.shape) == repr(shape) and primitive.displacement_frequency is None
     np.testing.assert_allclose(model.primitives[6].shape.planes[0], [1, 0, 0, 1])
+    assert model.primitives[7].shape.profile[0][:2] == [[0, 0, 0], [2, 0, 1]] and model.primitives[7].shape.height == 3
     assert cloud2csg.Primitive("a", cloud2csg.Box((1, 1, 1)), displacement_frequency=2).displacement_frequency == 2
+
+
+def test_profiles_that_make_no_solid_are_refused():
+    with pytest.raises(cloud2csg.Error, match="segment 0 of path 0"):
+        cloud2csg.Primitive("bow", cloud2csg.Extrusion([[(0, 0), (1, 1), (1, 0), (0, 1)]], 1))
+    with pytest.raises(ValueError, match="found 1 numbers in corner 1 of path 0"):
+        cloud2csg.Revolution([[(0, 0), (1,), (0, 1)]])
 
 
 def test_primitive_fields():

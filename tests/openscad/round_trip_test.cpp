@@ -41,13 +41,16 @@ void expect_same_solid(const Model& expected, const Model& found, RandomStream& 
   }
 }
 
-/// Of the solids that .scad files hold as such: no half-spaces (cubes there), displaced solids and formulas (meshes).
+/// Of the solids that .scad files hold as such: no half-spaces (cubes there), displaced solids and formulas (meshes),
+/// and of those that are read: no profiles.
 Model random_model(RandomStream& random) {
   Model model{.primitives = test::random_primitives(6, random)};
   for (Primitive& primitive : model.primitives) {
     primitive.displacement.reset();
     const bool is_mesh = std::holds_alternative<Expression>(primitive.shape);
-    if (is_mesh || std::holds_alternative<HalfSpace>(primitive.shape)) {
+    const bool has_profile =
+        std::holds_alternative<Extrusion>(primitive.shape) || std::holds_alternative<Revolution>(primitive.shape);
+    if (is_mesh || has_profile || std::holds_alternative<HalfSpace>(primitive.shape)) {
       primitive.shape =
           Polytope{.planes = {{{-1, 0, 0}, 1}, {{0, -1, 0}, 1}, {{0, 0, -1}, 1}, {{0.6, 0.8, 0}, 1}, {{0, 0, 1}, 0.5}}};
     }

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <tuple>
 
 #include "cloud2csg/primitive.hpp"
+#include "core/primitive/profile.hpp"
 #include "primitive/random_primitives.hpp"
 
 namespace cloud2csg {
@@ -19,6 +22,25 @@ using testing::distance_at;
 using testing::gradient_at;
 using testing::points_near;
 using testing::vector_within;
+
+/// By the angle that the paths, cut into short lines, turn around the place.
+bool contains(const Profile& profile, const Eigen::Vector2d& place) {
+  constexpr int k_lines = 1000;
+  double turns = 0;
+  for (const ClosedPath& path : profile.paths) {
+    double angle = 0;
+    for (const ProfileSegment& s : segments_of(path)) {
+      Eigen::Vector2d from = s.start - place;
+      for (int k = 1; k <= k_lines; ++k) {
+        const Eigen::Vector2d to = s.at(k / double{k_lines}) - place;
+        angle += std::atan2(cross(from, to), from.dot(to));
+        from = to;
+      }
+    }
+    turns += std::abs(std::round(angle / (2 * std::numbers::pi)));
+  }
+  return std::lround(turns) % 2 == 1;
+}
 
 /// Membership straight from each solid's definition, in its own frame.
 struct Contains {
@@ -40,6 +62,12 @@ struct Contains {
   bool operator()(const Polytope& polytope) const {
     return std::ranges::all_of(polytope.planes, [&](const Plane& plane) { return plane.normal.dot(p) < plane.offset; });
   }
+  bool operator()(const Extrusion& extrusion) const {
+    return 2 * std::abs(p.z()) < extrusion.height && contains(extrusion.profile, p.head<2>());
+  }
+  bool operator()(const Revolution& revolution) const {
+    return contains(revolution.profile, {std::hypot(p.x(), p.y()), p.z()});
+  }
   bool operator()(const Expression& /*expression*/) const {
     return Eigen::Vector3d(p.x(), p.y() / 1.5, 2 * p.z()).norm() < 1;  // any_expression()
   }
@@ -51,10 +79,73 @@ RC_GTEST_PROP(SignedDistance, IsNegativeInsideOnly, ()) {
   const Points points = points_near(primitive, 32);
   const std::vector<double> distance = signed_distance(primitive, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (std::abs(distance[i]) < 1e-12) continue;
+    const bool has_profile =
+        primitive.shape.index() == Shape(Extrusion()).index() || primitive.shape.index() == Shape(Revolution()).index();
+    if (std::abs(distance[i]) < (has_profile ? 1e-5 : 1e-12)) continue;  // arcs are cut into lines
     const bool inside = std::visit(Contains{primitive.pose.to_local(points[i])}, primitive.shape);
     RC_ASSERT((distance[i] < 0) == inside);
   }
+}
+
+/// Corners of a profile often lie in line with places, so that these are on chords of arcs and in line with edges.
+RC_GTEST_PROP(SignedDistance, IsNegativeInsideProfilesOnAGrid, ()) {
+  Profile profile;
+  const int corners = testing::integer(3, 7);
+  do {
+    ClosedPath path;
+    for (int k = 0; k < corners; ++k) {
+      path.push_back({.point = Eigen::Vector2d(testing::integer(-4, 5), testing::integer(-4, 5)),
+                      .bulge = std::array{0.0, 1.0, -1.0, 0.5}[static_cast<std::size_t>(testing::integer(0, 4))]});
+    }
+    profile.paths = {path};
+  } while (!test::is_valid(profile));
+  const Primitive solid{.id = "p", .shape = Extrusion{.profile = profile, .height = 2}};
+  for (int x = -8; x <= 8; ++x) {
+    for (int y = -8; y <= 8; ++y) {
+      const double distance = testing::distance_at(solid, Eigen::Vector3d(x, y, 0));
+      if (std::abs(distance) > 1e-4) RC_ASSERT((distance < 0) == contains(profile, Eigen::Vector2d(x, y)));
+    }
+  }
+}
+
+/// The distance of the nearest segment, each by itself.
+double plain_distance(const Profile& profile, const Eigen::Vector2d& place, bool is_turned) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ProfileSegment& s : segments_of(profile)) {
+    const bool is_on_axis = is_turned && !s.is_arc() && s.start.x() == 0 && s.end.x() == 0;
+    if (!is_on_axis) least = std::min(least, (nearest(s, place) - place).norm());
+  }
+  return least;
+}
+
+RC_GTEST_PROP(SignedDistance, OfAProfileIsThatOfItsNearestSegment, ()) {
+  Profile profile = test::any_profile(testing::real);
+  // Some arcs are nearly lines.
+  for (PathCorner& corner : profile.paths[0]) {
+    if (testing::integer(0, 4) == 0) corner.bulge = testing::real(-1, 1) * std::pow(10.0, -testing::integer(2, 12));
+  }
+  if (!test::is_valid(profile)) profile = test::any_profile(testing::real);
+  const Primitive extruded{.id = "e", .shape = Extrusion{.profile = profile, .height = 100}};
+  double largest = 1;  // the plain distance from a large circle loses digits
+  for (const ProfileSegment& s : segments_of(profile)) largest = std::max(largest, s.radius);
+  const Revolution revolution = test::any_revolution(testing::real);
+  const Primitive turned{.id = "r", .shape = revolution};
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::Vector2d place(testing::real(-2, 2), testing::real(-2, 2));
+    const double found = std::abs(testing::distance_at(extruded, {place.x(), place.y(), 0}));
+    RC_ASSERT(std::abs(found - plain_distance(profile, place, false)) < 1e-12 + 1e-15 * largest);
+    const Eigen::Vector2d beside(testing::integer(0, 3) == 0 ? 0 : std::abs(place.x()), place.y());
+    const double around = std::abs(testing::distance_at(turned, {0, beside.x(), beside.y()}));
+    RC_ASSERT(std::abs(around - plain_distance(revolution.profile, beside, true)) < 1e-12);
+  }
+}
+
+TEST(SignedDistance, OfAProfileHoldsFarFromItsOrigin) {
+  const double far = 1e7;
+  const ClosedPath path{{.point = {far, far}}, {.point = {far + 0.1, far}}, {.point = {far + 0.1, far + 0.1}}};
+  const Primitive solid{.id = "p", .shape = Extrusion{.profile = {{path}}, .height = 10}};
+  EXPECT_GT(gradient_at(solid, {far + 0.2, far + 0.05, 0}).x(), 0.99);
+  EXPECT_LT(gradient_at(solid, {far + 0.05, far - 0.1, 0}).y(), -0.99);
 }
 
 RC_GTEST_PROP(SignedDistance, AddsTheProductOfSinesInTheSolidsFrame, ()) {
@@ -141,6 +232,14 @@ RC_GTEST_PROP(Gradient, IsTheSlopeOfTheDistance, ()) {
   }
 }
 
+Extrusion square() {
+  return {.profile = {{{{.point = {0, 0}}, {.point = {1, 0}}, {.point = {1, 1}}, {.point = {0, 1}}}}}, .height = 1};
+}
+
+Revolution ball() {
+  return {{{{{.point = {0, -1}, .bulge = 1}, {.point = {0, 1}}}}}};
+}
+
 /// Solids and points of their own frame where the distance has no gradient.
 class Degenerate : public ::testing::TestWithParam<std::tuple<Shape, Eigen::Vector3d, double>> {};
 
@@ -172,6 +271,12 @@ INSTANTIATE_TEST_SUITE_P(
                       std::tuple(Shape(Cone{0, 3, 4}), Eigen::Vector3d(0, 0, -2), 0.0),       // apex below
                       std::tuple(Shape(Torus{2, 1}), Eigen::Vector3d(0, 0, 0), 1.0),          // axis
                       std::tuple(Shape(Torus{2, 1}), Eigen::Vector3d(2, 0, 0), -1.0),         // core circle
+                      std::tuple(Shape(square()), Eigen::Vector3d(0, 0, 0), 0.0),             // corner
+                      std::tuple(Shape(square()), Eigen::Vector3d(1, 0, 0.5), 0.0),           // corner and rim
+                      std::tuple(Shape(square()), Eigen::Vector3d(0.5, 0.5, 0), -0.5),        // all faces equally near
+                      std::tuple(Shape(ball()), Eigen::Vector3d(0, 0, 0), -1.0),              // centre of an arc
+                      std::tuple(Shape(ball()), Eigen::Vector3d(0, 0, 1), 0.0),  // end of an arc on the axis
+                      std::tuple(Shape(ball()), Eigen::Vector3d(0, 0, 3), 2.0),  // above
                       std::tuple(Shape(Expression{"sqrt(x^2+y^2+z^2)-1",
                                                   AlignedBox(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1))}),
                                  Eigen::Vector3d(0, 0, 0), -1.0)));
@@ -184,6 +289,8 @@ TEST(TypeName, IsThatOfModelFiles) {
   EXPECT_EQ(type_name(Torus{}), "torus");
   EXPECT_EQ(type_name(HalfSpace{}), "half_space");
   EXPECT_EQ(type_name(Polytope{}), "polytope");
+  EXPECT_EQ(type_name(Extrusion{}), "extrusion");
+  EXPECT_EQ(type_name(Revolution{}), "revolution");
   EXPECT_EQ(type_name(Expression{}), "expression");
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/primitive.hpp"
+#include "support/any_profile.hpp"
 
 /// Random solids for the property tests, about one to four units wide, near the origin.
 namespace cloud2csg::testing {
@@ -61,7 +62,7 @@ inline Cone any_cone() {
 }
 
 inline Shape any_exact_shape() {
-  switch (integer(0, 6)) {
+  switch (integer(0, 8)) {
     case 0:
       return Box{.size = {real(0.2, 2), real(0.2, 2), real(0.2, 2)}};
     case 1:
@@ -74,6 +75,10 @@ inline Shape any_exact_shape() {
       const double major = real(0.4, 2);
       return Torus{.major_radius = major, .minor_radius = major * real(0.1, 1)};
     }
+    case 5:
+      return Extrusion{.profile = test::any_profile(real), .height = real(0.2, 2)};
+    case 6:
+      return test::any_revolution(real);
     default:
       return HalfSpace{};
   }

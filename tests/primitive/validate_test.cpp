@@ -7,6 +7,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/primitive.hpp"
 #include "primitive/random_primitives.hpp"
+#include "support/any_profile.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -108,6 +109,63 @@ TEST(Validate, TakesAPolytopeFarFromItsOrigin) {
   for (Plane& plane : far.planes) plane.offset += plane.normal.dot(Eigen::Vector3d(1000, -2000, 500));
   EXPECT_EQ(refused_field(far), "");
   EXPECT_EQ(corners(far).size(), 8U);
+}
+
+Extrusion plate(const std::vector<ClosedPath>& paths) {
+  return {.profile = {paths}, .height = 1};
+}
+
+ClosedPath square(double low, double high) {
+  return {{.point = {low, low}}, {.point = {high, low}}, {.point = {high, high}}, {.point = {low, high}}};
+}
+
+TEST(Validate, TakesPathsOfLinesAndArcs) {
+  EXPECT_EQ(refused_field(plate({square(0, 3)})), "");
+  EXPECT_EQ(refused_field(plate({square(3, 0)})), "") << "in the other direction";
+  EXPECT_EQ(refused_field(plate({test::circle_path({1, 1}, 1)})), "");
+  EXPECT_EQ(refused_field(plate({square(0, 3), square(1, 2)})), "");
+  EXPECT_EQ(refused_field(plate({square(0, 3), square(4, 5)})), "");
+  ClosedPath slot = square(0, 3);
+  slot[1].bulge = slot[3].bulge = 1;
+  EXPECT_EQ(refused_field(plate({slot})), "");
+  EXPECT_EQ(refused_field(plate({{{.point = {0, 0}, .bulge = 0.5}, {.point = {1, 0}}}})), "") << "an arc and its chord";
+}
+
+TEST(Validate, NamesTheSegmentThatCrossesOrTouchesAnother) {
+  EXPECT_EQ(refused_field(plate({})), "profile");
+  EXPECT_EQ(refused_field(plate({{}})), "profile/0");
+  EXPECT_EQ(refused_field(plate({square(0, 3), {{.point = {1, 1}}}})), "profile/1");
+  EXPECT_EQ(refused_field(plate({{{.point = {0, 0}}, {.point = {1, 0}}}})), "profile/0/1") << "back on itself";
+  EXPECT_EQ(refused_field(plate({{{.point = {0, 0}, .bulge = 1}, {.point = {1, 0}, .bulge = -1}}})), "profile/0/1");
+  const ClosedPath bow{{.point = {0, 0}}, {.point = {1, 1}}, {.point = {1, 0}}, {.point = {0, 1}}};
+  EXPECT_EQ(refused_field(plate({bow})), "profile/0/2");
+  ClosedPath bulging = square(0, 3);
+  bulging[0].bulge = -1.9;  // out through the sides
+  EXPECT_EQ(refused_field(plate({bulging})), "profile/0/1");
+  EXPECT_EQ(refused_field(plate({square(0, 3), square(2, 5)})), "profile/1/0");
+  EXPECT_EQ(refused_field(plate({square(0, 3), square(3, 5)})), "profile/1/0") << "a common corner";
+  EXPECT_EQ(refused_field(plate({square(0, 3), test::circle_path({1, 1}, 1)})), "profile/1/0") << "tangent";
+  ClosedPath repeated = square(0, 3);
+  repeated[2] = repeated[1];
+  EXPECT_EQ(refused_field(plate({repeated})), "profile/0/1");
+  ClosedPath endless = square(0, 3);
+  endless[2].bulge = k_nan;
+  EXPECT_EQ(refused_field(plate({endless})), "profile/0/2");
+  ClosedPath full = square(0, 3);
+  full[2].bulge = 1e10;
+  EXPECT_EQ(refused_field(plate({full})), "profile/0/2");
+  EXPECT_EQ(refused_field(Extrusion{.profile = {{square(0, 3)}}, .height = 0}), "height");
+}
+
+TEST(Validate, TakesProfilesOnOneSideOfTheAxisOnly) {
+  EXPECT_EQ(refused_field(Revolution{{{square(0, 3)}}}), "");
+  EXPECT_EQ(refused_field(Revolution{{{{{.point = {0, -1}, .bulge = 1}, {.point = {0, 1}}}}}}), "") << "a ball";
+  EXPECT_EQ(refused_field(Revolution{{{{{.point = {0, -1}, .bulge = 0.5}, {.point = {0, 1}}}}}}), "") << "a lemon";
+  EXPECT_EQ(refused_field(Revolution{{{square(-0.1, 3)}}}), "profile/0/0");
+  EXPECT_EQ(refused_field(Revolution{{{test::circle_path({1, 0}, 1.001)}}}), "profile/0/0");
+  EXPECT_EQ(refused_field(Revolution{{{test::circle_path({1, 0}, 1)}}}), "profile/0/0") << "touches the axis";
+  const ClosedPath tip{{.point = {0, 0}}, {.point = {1, -1}}, {.point = {1, 1}}};
+  EXPECT_EQ(refused_field(Revolution{{{tip}}}), "profile/0/0") << "touches the axis";
 }
 
 TEST(Validate, RefusesFormulasThatAreNotOfXYZ) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "cloud2csg/primitive.hpp"
+#include "support/any_profile.hpp"
 
 /// Solids of every type for properties, drawn from RapidCheck's current case.
 namespace cloud2csg::test {
@@ -33,7 +34,7 @@ inline Pose any_pose(double reach) {
 inline Shape any_shape() {
   const double a = any_double(0.3, 0.8);
   const double b = any_double(0.05, 0.3);
-  switch (*rc::gen::inRange(0, 8)) {
+  switch (*rc::gen::inRange(0, 10)) {
     case 0:
       return Box{.size = any_vector(0.1, 1)};
     case 1:
@@ -49,6 +50,10 @@ inline Shape any_shape() {
     case 6:
       return Polytope{
           .planes = {{{-1, 0, 0}, a}, {{0, -1, 0}, b}, {{0, 0, -1}, a}, {{0.6, 0.8, 0}, a}, {{0, 0, 1}, b}}};
+    case 7:
+      return Extrusion{.profile = any_profile(any_double), .height = b};
+    case 8:
+      return any_revolution(any_double);
     default: {
       const Eigen::Vector3d low = any_vector(-0.6, -0.5);
       return Expression{.distance = "sqrt(x^2 + y^2 + 2 * z^2) - 0.5", .bounds = AlignedBox(low, any_vector(0.5, 0.6))};

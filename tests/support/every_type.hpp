@@ -18,12 +18,17 @@ inline Model model_of_every_type() {
     {"id": "keep", "type": "half_space", "pose": {"position": [1, 2, 6.6]}},
     {"id": "polytope", "type": "polytope", "pose": {"position": [1, -1, 3], "quaternion": [0.6, 0.48, 0.64, 0]},
      "planes": [[-1, 0, 0, 1], [0, -1, 0, 1], [0, 0, -1, 1], [0.6, 0.8, 0, 1], [0, 0, 1, 1], [0, 0.6, 0.8, 1.1]]},
+    {"id": "key", "type": "extrusion", "pose": {"position": [4, -1, 3], "quaternion": [0.6, 0.48, 0.64, 0]},
+     "profile": [[[-1, -0.5], [1, -0.5, 1], [1, 0.5], [-1, 0.5, 0.3]], [[0.8, 0, 1], [1.2, 0, 1]]], "height": 1},
+    {"id": "bell", "type": "revolution", "pose": {"position": [-2, -1, 3], "quaternion": [0.6, 0.48, 0.64, 0]},
+     "profile": [[[0, 0], [1, 0], [0.7, 0.6, 0.2], [0, 1.2]]]},
     {"id": "egg", "type": "expression", "pose": {"position": [1, 2, 0.2], "quaternion": [0.6, 0.48, 0.64, 0]},
      "distance": "sqrt(x^2 + y^2 + 0.5 * z^2) - 1", "bounds": [[-1.1, -1.1, -1.5], [1.1, 1.1, 1.5]]}],
     "tree": {"op": "difference", "children": [
       {"op": "intersection", "children": [
         {"op": "union", "children": [{"primitive": "box"}, {"primitive": "cone"}, {"primitive": "torus"},
-          {"primitive": "horn torus"}, {"primitive": "sphere"}, {"primitive": "polytope"}, {"primitive": "egg"}]},
+          {"primitive": "horn torus"}, {"primitive": "sphere"}, {"primitive": "polytope"}, {"primitive": "key"},
+          {"primitive": "bell"}, {"primitive": "egg"}]},
         {"op": "complement", "children": [{"op": "complement", "children": [{"primitive": "keep"}]}]}]},
       {"op": "complement", "children": [{"op": "union", "children": [{"primitive": "cut"}, {"primitive": "sphere"}]}]}]}})");
 }

@@ -10,6 +10,7 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/primitive.hpp"
 #include "core/base/random.hpp"
+#include "support/any_profile.hpp"
 
 /// Random solids, clouds and trees that are made to be awkward: equal solids, coinciding faces, points on faces, edges
 /// and corners. All lies within some two units of the origin. Made from a RandomStream, because drawing each number
@@ -47,7 +48,8 @@ inline Pose random_pose(RandomStream& random) {
 }
 
 inline Shape random_shape(RandomStream& random) {
-  switch (random.below(9)) {
+  const auto draw = [&random](double low, double high) { return random.uniform(low, high); };
+  switch (random.below(11)) {
     case 0:
       return Sphere{.radius = quarters(1, 4, random)};
     case 1:
@@ -58,6 +60,10 @@ inline Shape random_shape(RandomStream& random) {
       return Torus{.major_radius = quarters(2, 4, random), .minor_radius = quarters(1, 2, random)};
     case 4:
       return HalfSpace{};
+    case 5:
+      return Extrusion{.profile = any_profile(draw), .height = quarters(1, 6, random)};
+    case 6:
+      return any_revolution(draw);
     default: {
       const double x = quarters(1, 6, random);
       const double y = quarters(1, 6, random);

@@ -10,6 +10,7 @@
 #include "core/geometry/boxes.hpp"
 #include "core/geometry/octree.hpp"
 #include "core/primitive/polytope.hpp"
+#include "core/primitive/profile.hpp"
 #include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
@@ -154,6 +155,33 @@ AlignedBox cone_bounds(const Cone& cone, const Pose& pose) {
   return box.extend(pose.position + arm - top).extend(pose.position + arm + top);
 }
 
+AlignedBox extrusion_bounds(const Extrusion& extrusion, const Pose& pose) {
+  const Eigen::Matrix3d to_local = pose.orientation.conjugate().toRotationMatrix();
+  const double half = 0.5 * extrusion.height;
+  AlignedBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d direction = to_local.col(axis);
+    const auto [low, high] = extent_along(extrusion.profile, direction.head<2>());
+    const double thickness = half * std::abs(direction.z());
+    box.min()[axis] = pose.position[axis] + low - thickness;
+    box.max()[axis] = pose.position[axis] + high + thickness;
+  }
+  return box;
+}
+
+/// A ring of radius r at height z reaches z a + r sqrt(1 - a^2) along an axis of the world with cosine a to local z.
+AlignedBox revolution_bounds(const Revolution& revolution, const Pose& pose) {
+  const Eigen::Vector3d local_z = pose.orientation * Eigen::Vector3d::UnitZ();
+  AlignedBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cosine = local_z[axis];
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    box.max()[axis] = pose.position[axis] + extent_along(revolution.profile, {sine, cosine}).second;
+    box.min()[axis] = pose.position[axis] + extent_along(revolution.profile, {-sine, cosine}).first;
+  }
+  return box;
+}
+
 AlignedBox shape_bounds(const Shape& shape, const Pose& pose) {
   const auto enclosing = [&pose](const AlignedBox& local) {
     const Pose centre{.position = pose.to_world(local.center()), .orientation = pose.orientation};
@@ -176,6 +204,8 @@ AlignedBox shape_bounds(const Shape& shape, const Pose& pose) {
                                },
                                [&](const HalfSpace&) { return everywhere(); },
                                [&](const Polytope& polytope) { return box_of_corners(polytope, pose); },
+                               [&](const Extrusion& extrusion) { return extrusion_bounds(extrusion, pose); },
+                               [&](const Revolution& revolution) { return revolution_bounds(revolution, pose); },
                                [&](const Expression& expression) { return enclosing(expression.bounds); }},
                     shape);
 }
@@ -254,6 +284,8 @@ Eigen::Vector3d support(const Primitive& primitive, const Eigen::Vector3d& direc
                  [&](const Torus&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); },
                  [&](const HalfSpace&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); },
                  [&](const Polytope& polytope) { return polytope_support(polytope, local); },
+                 [&](const Extrusion&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); },
+                 [&](const Revolution&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); },
                  [&](const Expression&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); }},
       primitive.shape));
 }

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/primitive/displacement-inl.hpp"
+#include "core/primitive/profile-inl.hpp"
 #include "core/primitive/revolved-inl.hpp"
 #include "core/primitive/solids-inl.hpp"
 
@@ -46,6 +47,13 @@ void run_formula(Tag tag, const Primitive& primitive, const Placement& placement
   } else if (const auto* polytope = std::get_if<Polytope>(&shape)) {
     const std::vector<WorldPlane> planes = world_planes(*polytope, primitive.pose);
     loop.run(tag, PolytopeFormula<Tag>(tag, planes));
+  } else if (const auto* extrusion = std::get_if<Extrusion>(&shape)) {
+    const std::vector<ProfileEdge> edges = profile_edges(extrusion->profile, false);
+    run_placed(tag, ExtrusionFormula<Tag>(tag, edges, extrusion->height), placement, loop);
+  } else if (const auto* revolution = std::get_if<Revolution>(&shape)) {
+    const std::vector<ProfileEdge> edges = profile_edges(revolution->profile, true);
+    using Profile = PathsProfile<Tag>;
+    run_placed(tag, Revolved<Tag, Profile>(tag, Profile(tag, edges)), placement, loop);
   }
 }
 

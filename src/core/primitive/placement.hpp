@@ -23,4 +23,22 @@ struct WorldPlane {
 
 [[nodiscard]] std::vector<WorldPlane> world_planes(const Polytope& polytope, const Pose& pose);
 
+/// A segment of a profile, as the kernels read it.
+struct ProfileEdge {
+  double start_x, start_y, end_y;
+  double along_x, along_y, inverse_square;  ///< from start to end, and 1 over its squared length
+  double up;                                ///< 1 if the end is above the start, else -1
+  bool is_left_on_chord;                    ///< as of ProfileSegment::is_left()
+  double normal_x, normal_y;                ///< outward, in the middle
+  bool is_arc, has_surface;
+  double centre_x = 0, centre_y = 0, radius = 0;
+  double outward_x = 0, outward_y = 0;                      ///< unit, from the centre to the start
+  double first_x = 0, first_y = 0, last_x = 0, last_y = 0;  ///< directions of an arc at its ends
+  double turn = 0;                                          ///< 1 if the arc turns left, and so is convex; else -1
+  bool is_long_arc = false;                                 ///< by more than half a turn
+};
+
+/// Lines on the axis of a revolved profile have no surface.
+[[nodiscard]] std::vector<ProfileEdge> profile_edges(const Profile& profile, bool is_revolved);
+
 }  // namespace cloud2csg

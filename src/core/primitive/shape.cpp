@@ -8,11 +8,11 @@
 namespace cloud2csg {
 
 std::string_view type_name(const Shape& shape) {
-  static_assert(
-      std::is_same_v<Shape, std::variant<Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope, Expression>>,
-      "the names below stand in the order of the variant");
-  constexpr std::array<std::string_view, 8> k_names = {"box",   "sphere",     "cylinder", "cone",
-                                                       "torus", "half_space", "polytope", "expression"};
+  static_assert(std::is_same_v<Shape, std::variant<Box, Sphere, Cylinder, Cone, Torus, HalfSpace, Polytope, Extrusion,
+                                                   Revolution, Expression>>,
+                "the names below stand in the order of the variant");
+  constexpr std::array<std::string_view, 10> k_names = {
+      "box", "sphere", "cylinder", "cone", "torus", "half_space", "polytope", "extrusion", "revolution", "expression"};
   return k_names[shape.index()];
 }
 
@@ -25,7 +25,11 @@ bool has_exact_distance(const Primitive& primitive) {
 }
 
 bool is_convex(const Primitive& primitive) {
-  return is_plain(primitive) && !std::holds_alternative<Torus>(primitive.shape);
+  const auto is = [&]<class Solid>(std::type_identity<Solid>) {
+    return std::holds_alternative<Solid>(primitive.shape);
+  };
+  return is_plain(primitive) && !is(std::type_identity<Torus>()) && !is(std::type_identity<Extrusion>()) &&
+         !is(std::type_identity<Revolution>());
 }
 
 std::vector<double> lengths_of(const Shape& shape) {
@@ -45,6 +49,26 @@ std::vector<double> lengths_of(const Shape& shape) {
                                },
                                [](const auto&) { return Lengths(); }},
                     shape);
+}
+
+Shape scaled(Shape shape, double factor) {
+  const auto scale = [factor](Profile& profile) {
+    for (ClosedPath& path : profile.paths) {
+      for (PathCorner& corner : path) corner.point *= factor;
+    }
+  };
+  std::visit(
+      Overloaded{[&](Box& box) { box.size *= factor; }, [&](Sphere& sphere) { sphere.radius *= factor; },
+                 [&](Cylinder& cylinder) { cylinder.radius *= factor, cylinder.height *= factor; },
+                 [&](Cone& cone) { cone.radius_bottom *= factor, cone.radius_top *= factor, cone.height *= factor; },
+                 [&](Torus& torus) { torus.major_radius *= factor, torus.minor_radius *= factor; },
+                 [&](Polytope& polytope) {
+                   for (Plane& plane : polytope.planes) plane.offset *= factor;
+                 },
+                 [&](Extrusion& extrusion) { scale(extrusion.profile), extrusion.height *= factor; },
+                 [&](Revolution& revolution) { scale(revolution.profile); }, [](HalfSpace&) {}, [](Expression&) {}},
+      shape);
+  return shape;
 }
 
 }  // namespace cloud2csg

@@ -17,4 +17,7 @@ Overloaded(Functions...) -> Overloaded<Functions...>;
 /// Sizes, radii and heights in the order of the struct. Empty for shapes without a fixed number of lengths.
 [[nodiscard]] std::vector<double> lengths_of(const Shape& shape);
 
+/// The shape with all lengths times the factor. Half-spaces and expressions stay. Precondition: factor > 0.
+[[nodiscard]] Shape scaled(Shape shape, double factor);
+
 }  // namespace cloud2csg

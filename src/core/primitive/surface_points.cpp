@@ -8,12 +8,20 @@
 #include <vector>
 
 #include "core/primitive/polytope.hpp"
+#include "core/primitive/profile.hpp"
 
 namespace cloud2csg {
 namespace {
 
 Eigen::Vector3d doubled_area_vector(const Triangle& triangle) {
   return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+}
+
+std::vector<double> areas_of(std::span<const Triangle> triangles) {
+  std::vector<double> areas;
+  areas.reserve(triangles.size());
+  for (const Triangle& triangle : triangles) areas.push_back(0.5 * doubled_area_vector(triangle).norm());
+  return areas;
 }
 
 std::vector<Triangle> triangles_of(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners) {
@@ -129,6 +137,63 @@ class LocalSurface {
     return {.area = area, .draw = draw};
   }
 
+  PrimitiveSurface operator()(const Extrusion& extrusion) const {
+    const std::vector<ProfileSegment> segments = segments_of(extrusion.profile);
+    const Eigen::AlignedBox2d box = bounds_of(extrusion.profile);
+    const double cap_area = area_of(extrusion.profile);
+    const double height = extrusion.height;
+    std::vector<double> lengths(segments.size());
+    std::ranges::transform(segments, lengths.begin(), [](const ProfileSegment& s) { return s.length(); });
+    const WeightedChoice side(lengths);
+    const double area = 2 * cap_area + height * side.total();
+    const auto draw = [=](RandomStream& random) {
+      if (random.uniform() * area < 2 * cap_area) {
+        const double sign = random.chance(0.5) ? 1.0 : -1.0;
+        Eigen::Vector2d place;
+        do {
+          for (int axis = 0; axis < 2; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
+        } while (!is_inside(segments, place));
+        return SurfacePoint{.position = {place.x(), place.y(), 0.5 * sign * height},
+                            .normal = sign * Vector3d::UnitZ()};
+      }
+      const ProfileSegment& s = segments[side.draw(random)];
+      const double share = random.uniform();
+      const Eigen::Vector2d place = s.at(share);
+      const Eigen::Vector2d normal = s.normal(share);
+      return SurfacePoint{.position = {place.x(), place.y(), random.uniform(-0.5, 0.5) * height},
+                          .normal = {normal.x(), normal.y(), 0}};
+    };
+    return {.area = area, .draw = draw};
+  }
+
+  PrimitiveSurface operator()(const Revolution& revolution) const {
+    const std::vector<ProfileSegment> segments = segments_of(revolution.profile);
+    // Draws from a ring as wide as the segment's farthest point, then keeps the point in proportion to its own ring.
+    std::vector<double> most_radius;
+    std::vector<double> most_area;
+    double area = 0;
+    for (const ProfileSegment& s : segments) {
+      most_radius.push_back(extent_along(s, Eigen::Vector2d::UnitX()).second);
+      most_area.push_back(2 * pi * s.length() * most_radius.back());
+      area += 2 * pi * s.first_moment();
+    }
+    const WeightedChoice choice(most_area);
+    const auto draw = [=](RandomStream& random) {
+      while (true) {
+        const std::size_t i = choice.draw(random);
+        const double share = random.uniform();
+        const Eigen::Vector2d place = segments[i].at(share);
+        if (!random.chance(place.x() / most_radius[i])) continue;
+        const Eigen::Vector2d normal = segments[i].normal(share);
+        const double angle = random_angle(random);
+        const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
+        return SurfacePoint{.position = place.x() * outward + place.y() * Vector3d::UnitZ(),
+                            .normal = normal.x() * outward + normal.y() * Vector3d::UnitZ()};
+      }
+    };
+    return {.area = area, .draw = draw};
+  }
+
   PrimitiveSurface operator()(const Expression& /*expression*/) const { return {}; }
 
  private:
@@ -166,24 +231,31 @@ class LocalSurface {
 
 }  // namespace
 
-TriangleSampler::TriangleSampler(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
-  cumulative_area_.reserve(triangles_.size());
-  double area = 0.0;
-  for (const Triangle& triangle : triangles_) {
-    area += 0.5 * doubled_area_vector(triangle).norm();
-    cumulative_area_.push_back(area);
+WeightedChoice::WeightedChoice(std::span<const double> weights) {
+  sums_.reserve(weights.size());
+  double sum = 0.0;
+  for (const double weight : weights) {
+    sum += weight;
+    sums_.push_back(sum);
   }
 }
+
+std::size_t WeightedChoice::draw(RandomStream& random) const {
+  const double target = random.uniform() * total();
+  // Rounding of the product may reach the end of the last entry: step back to one with weight.
+  auto found = std::upper_bound(sums_.begin(), sums_.end(), target);
+  if (found == sums_.end()) found = std::lower_bound(sums_.begin(), found, total());
+  return static_cast<std::size_t>(found - sums_.begin());
+}
+
+TriangleSampler::TriangleSampler(std::vector<Triangle> triangles)
+    : triangles_(std::move(triangles)), choice_(areas_of(triangles_)) {}
 
 TriangleSampler::TriangleSampler(const Points& vertices, std::span<const std::array<std::uint32_t, 3>> corners)
     : TriangleSampler(triangles_of(vertices, corners)) {}
 
 TriangleSampler::Draw TriangleSampler::draw(RandomStream& random) const {
-  const double target = random.uniform() * area();
-  // Rounding of the product may reach the end of the last triangle: step back to one with area.
-  auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(), target);
-  if (found == cumulative_area_.end()) found = std::lower_bound(cumulative_area_.begin(), found, area());
-  const auto index = static_cast<std::size_t>(found - cumulative_area_.begin());
+  const std::size_t index = choice_.draw(random);
   const Triangle& triangle = triangles_[index];
   const double root = std::sqrt(random.uniform());
   const double share = random.uniform();

@@ -15,6 +15,19 @@ namespace cloud2csg {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
+/// Draws indices with probabilities in proportion to weights.
+class WeightedChoice {
+ public:
+  explicit WeightedChoice(std::span<const double> weights);
+
+  /// Precondition: total() > 0. O(log weights)
+  [[nodiscard]] std::size_t draw(RandomStream& random) const;
+  [[nodiscard]] double total() const { return sums_.empty() ? 0.0 : sums_.back(); }
+
+ private:
+  std::vector<double> sums_;
+};
+
 /// Draws points from triangles, uniformly by area.
 class TriangleSampler {
  public:
@@ -29,13 +42,13 @@ class TriangleSampler {
   /// Precondition: area() > 0. O(log triangles)
   [[nodiscard]] Draw draw(RandomStream& random) const;
 
-  [[nodiscard]] double area() const { return cumulative_area_.empty() ? 0.0 : cumulative_area_.back(); }
+  [[nodiscard]] double area() const { return choice_.total(); }
   /// By the winding. Zero for a triangle without area, which is never drawn.
   [[nodiscard]] Eigen::Vector3d normal(std::size_t triangle) const;
 
  private:
   std::vector<Triangle> triangles_;
-  std::vector<double> cumulative_area_;
+  WeightedChoice choice_;
 };
 
 /// A point on a primitive's own surface and the primitive's outward normal there, in the world.

@@ -7,6 +7,7 @@
 #include "core/geometry/boxes.hpp"
 #include "core/primitive/expression.hpp"
 #include "core/primitive/polytope.hpp"
+#include "core/primitive/profile.hpp"
 #include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
@@ -86,6 +87,11 @@ void validate(const Primitive& primitive) {
                  },
                  [](const Cone& cone) { validate_cone(cone); }, [](const Torus& torus) { validate_torus(torus); },
                  [](const HalfSpace&) {}, [](const Polytope& polytope) { validate_polytope(polytope); },
+                 [](const Extrusion& extrusion) {
+                   validate_profile(extrusion.profile);
+                   require_positive("height", extrusion.height);
+                 },
+                 [](const Revolution& revolution) { validate_turned_profile(revolution.profile); },
                  [](const Expression& expression) { validate_expression(expression); }},
       primitive.shape);
   validate_pose(primitive.pose);

@@ -195,6 +195,18 @@ Polytope polytope_of(const json& value, const std::string& where) {
   return polytope;
 }
 
+Profile profile_of(const json& value) {
+  Profile profile;
+  for (const json& corners : value["profile"]) {
+    ClosedPath& path = profile.paths.emplace_back();
+    for (const json& corner : corners) {
+      path.push_back({.point = {corner[0].get<double>(), corner[1].get<double>()},
+                      .bulge = corner.size() > 2 ? corner[2].get<double>() : 0.0});
+    }
+  }
+  return profile;
+}
+
 Shape shape_of(const json& value, const std::string& type, const std::string& where) {
   const auto number = [&value](const char* field) { return value[field].get<double>(); };
   if (type == "box") return Box{.size = vector_of(value["size"])};
@@ -207,6 +219,8 @@ Shape shape_of(const json& value, const std::string& type, const std::string& wh
   if (type == "torus") return Torus{.major_radius = number("major_radius"), .minor_radius = number("minor_radius")};
   if (type == "half_space") return HalfSpace{};
   if (type == "polytope") return polytope_of(value, where);
+  if (type == "extrusion") return Extrusion{.profile = profile_of(value), .height = number("height")};
+  if (type == "revolution") return Revolution{.profile = profile_of(value)};
   const json& bounds = value["bounds"];
   return Expression{.distance = value["distance"].get<std::string>(),
                     .bounds = AlignedBox(vector_of(bounds[0]), vector_of(bounds[1]))};

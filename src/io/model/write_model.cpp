@@ -56,6 +56,24 @@ std::string fields_of(const Polytope& polytope) {
   }
   return fmt::format(R"("planes": [{}])", fmt::join(planes, ", "));
 }
+std::string text_of(const Profile& profile) {
+  std::vector<std::string> paths;
+  for (const ClosedPath& path : profile.paths) {
+    std::vector<std::string> corners;
+    for (const PathCorner& corner : path) {
+      corners.push_back(corner.bulge == 0 ? list({corner.point.x(), corner.point.y()})
+                                          : list({corner.point.x(), corner.point.y(), corner.bulge}));
+    }
+    paths.push_back(fmt::format("[{}]", fmt::join(corners, ", ")));
+  }
+  return fmt::format(R"("profile": [{}])", fmt::join(paths, ", "));
+}
+std::string fields_of(const Extrusion& extrusion) {
+  return fmt::format(R"({}, "height": {})", text_of(extrusion.profile), extrusion.height);
+}
+std::string fields_of(const Revolution& revolution) {
+  return text_of(revolution.profile);
+}
 std::string fields_of(const Expression& expression) {
   return fmt::format(R"("distance": {}, "bounds": [{}, {}])", quoted(expression.distance),
                      list(expression.bounds.min()), list(expression.bounds.max()));

@@ -31,6 +31,20 @@ constexpr std::array k_cadquery_functions{
     script::Function{"= torus(", R"(def torus(major_radius, minor_radius, position, axis=(0, 0, 1), degrees=0):
     return placed(cq.Solid.makeTorus(major_radius, minor_radius), position, axis, degrees)
 )"},
+    script::Function{"= extrusion(", R"(def extrusion(regions, height, position, axis=(0, 0, 1), degrees=0):
+    def place(x, y):
+        return cq.Vector(x, y, -height / 2)
+    solids = [cq.Solid.extrudeLinear(path(outline, place), [path(hole, place) for hole in holes],
+                                     cq.Vector(0, 0, height)) for outline, *holes in regions]
+    return placed(solids[0].fuse(*solids[1:]) if solids[1:] else solids[0], position, axis, degrees)
+)"},
+    script::Function{"= revolution(", R"(def revolution(regions, position, axis=(0, 0, 1), degrees=0):
+    def place(x, y):
+        return cq.Vector(x, 0, y)
+    solids = [cq.Solid.revolve(path(outline, place), [path(hole, place) for hole in holes], 360,
+                               cq.Vector(0, 0, 0), cq.Vector(0, 0, 1)) for outline, *holes in regions]
+    return placed(solids[0].fuse(*solids[1:]) if solids[1:] else solids[0], position, axis, degrees)
+)"},
     script::Function{"= polyhedron(", R"(def polyhedron(shells, position, axis=(0, 0, 1), degrees=0):
     solid = None
     for points, faces in shells:
@@ -73,10 +87,24 @@ if "show_object" in globals():
     show_object(part)
 )";
 
+constexpr const char* k_path = R"(
+
+def path(corners, place):
+    """A wire. A corner (x, y, bulge) starts an arc; the bulge is tan(angle / 4), positive if it turns left."""
+    edges = []
+    for (x, y, *bulge), (u, v, *_) in zip(corners, corners[1:] + corners[:1]):
+        if bulge:
+            middle = place((x + u + bulge[0] * (v - y)) / 2, (y + v - bulge[0] * (u - x)) / 2)
+            edges.append(cq.Edge.makeThreePointArc(place(x, y), middle, place(u, v)))
+        else:
+            edges.append(cq.Edge.makeLine(place(x, y), place(u, v)))
+    return cq.Wire.assembleEdges(edges)
+)";
+
 std::set<std::string> cadquery_reserved_names() {
   std::set<std::string> names = script::python_keywords();
-  names.insert({"cq", "part", "placed", "turns_inward", "box", "sphere", "cylinder", "cone", "torus", "polyhedron",
-                "show_object", "globals", "zip", "enumerate"});
+  names.insert({"cq", "part", "path", "extrusion", "revolution", "placed", "turns_inward", "box", "sphere", "cylinder",
+                "cone", "torus", "polyhedron", "show_object", "globals", "zip", "enumerate"});
   return names;
 }
 
@@ -84,7 +112,8 @@ std::set<std::string> cadquery_reserved_names() {
 Eigen::AngleAxisd turn_of(const brep::KernelSolid& solid) {
   const Eigen::Quaterniond& q = solid.pose.orientation;
   if (std::holds_alternative<Sphere>(solid.shape)) return {0, Eigen::Vector3d::UnitZ()};
-  if (std::holds_alternative<Box>(solid.shape) || std::holds_alternative<brep::Facets>(solid.shape)) {
+  if (std::holds_alternative<Box>(solid.shape) || std::holds_alternative<brep::SweptProfile>(solid.shape) ||
+      std::holds_alternative<brep::Facets>(solid.shape)) {
     return Eigen::AngleAxisd(q);
   }
   Eigen::Vector3d axis = q * Eigen::Vector3d::UnitZ();
@@ -136,6 +165,12 @@ class SolidWriter {
     add("minor_radius", number_(torus.minor_radius));
     return "torus";
   }
+  std::string operator()(const brep::SweptProfile& swept) {
+    add("regions", script::regions_text(swept.regions));
+    if (!swept.height) return "revolution";
+    add("height", number_(*swept.height));
+    return "extrusion";
+  }
   std::string operator()(const brep::Facets& facets) {
     add("shells", script::shells_text(facets));
     return "polyhedron";
@@ -178,8 +213,12 @@ script::Dialect dialect(script::UniqueNames& names, const script::NumberFormat& 
 
 std::string cadquery_functions(const std::string& statements) {
   std::string helpers = k_placed;
+  bool has_paths = false;
   for (const script::Function& helper : k_cadquery_functions) {
-    if (statements.find(helper.call) != std::string::npos) helpers += std::string("\n\n") + helper.text;
+    if (statements.find(helper.call) == std::string::npos) continue;
+    const bool needs_path = std::string_view(helper.text).find("path(") != std::string_view::npos;
+    if (needs_path && !std::exchange(has_paths, true)) helpers += k_path;
+    helpers += std::string("\n\n") + helper.text;
   }
   return helpers;
 }

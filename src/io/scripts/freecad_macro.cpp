@@ -32,6 +32,15 @@ constexpr std::array k_freecad_functions{
     script::Function{" = torus(", R"(def torus(label, major, minor, position, rotation=(0, 0, 0, 1)):
     return add("Part::Torus", label, at(position, rotation), Radius1=major, Radius2=minor)
 )"},
+    script::Function{" = extrusion(", R"(def extrusion(label, regions, height, position, rotation=(0, 0, 0, 1)):
+    faces = faces_of(regions, lambda x, y: FreeCAD.Vector(x, y, -height / 2))
+    return swept(label, [face.extrude(FreeCAD.Vector(0, 0, height)) for face in faces], position, rotation)
+)"},
+    script::Function{" = revolution(", R"(def revolution(label, regions, position, rotation=(0, 0, 0, 1)):
+    faces = faces_of(regions, lambda x, y: FreeCAD.Vector(x, 0, y))
+    axis = FreeCAD.Vector(0, 0, 1)
+    return swept(label, [face.revolve(FreeCAD.Vector(0, 0, 0), axis, 360) for face in faces], position, rotation)
+)"},
     script::Function{" = polyhedron(", R"(def polyhedron(label, shells, position, rotation=(0, 0, 0, 1)):
     shape = None
     for points, faces in shells:
@@ -94,6 +103,31 @@ def combine(kind, label, operands, **properties):
     return add(kind, label, FreeCAD.Placement(), **properties)
 )";
 
+constexpr const char* k_profile = R"(
+
+def path(corners, place):
+    """A wire. A corner (x, y, bulge) starts an arc; the bulge is tan(angle / 4), positive if it turns left."""
+    edges = []
+    for (x, y, *bulge), (u, v, *_) in zip(corners, corners[1:] + corners[:1]):
+        if bulge:
+            middle = place((x + u + bulge[0] * (v - y)) / 2, (y + v - bulge[0] * (u - x)) / 2)
+            edges.append(Part.Arc(place(x, y), middle, place(u, v)).toShape())
+        else:
+            edges.append(Part.LineSegment(place(x, y), place(u, v)).toShape())
+    return Part.Wire(edges)
+
+
+def faces_of(regions, place):
+    return [Part.Face([path(corners, place) for corners in region]) for region in regions]
+
+
+def swept(label, solids, position, rotation):
+    thing = add("Part::Feature", label, at(position, rotation))
+    thing.Shape = solids[0].fuse(solids[1:]) if solids[1:] else solids[0]
+    thing.Placement = at(position, rotation)
+    return thing
+)";
+
 constexpr const char* k_freecad_tail = R"(part.Label = "part"
 document.recompute()
 if FreeCAD.GuiUp:
@@ -102,8 +136,10 @@ if FreeCAD.GuiUp:
 
 std::set<std::string> freecad_reserved_names() {
   std::set<std::string> names = script::python_keywords();
-  names.insert({"FreeCAD", "Part", "document", "at", "add", "combine", "part", "box", "sphere", "cylinder", "cone",
-                "torus", "polyhedron", "union", "common", "cut", "setattr", "list", "len"});
+  names.insert({"FreeCAD",  "Part",    "document",  "at",         "add",   "combine",    "part",
+                "box",      "sphere",  "cylinder",  "cone",       "torus", "polyhedron", "path",
+                "faces_of", "swept",   "extrusion", "revolution", "zip",   "union",      "common",
+                "cut",      "setattr", "list",      "len"});
   return names;
 }
 
@@ -112,7 +148,8 @@ struct Making {
   std::string sizes;
 };
 
-Making making_of(const brep::KernelSolid& solid, const std::string& name) {
+/// `lists`: the variable with the regions or shells.
+Making making_of(const brep::KernelSolid& solid, const std::string& lists) {
   return std::visit(
       Overloaded{
           [](const Box& box) -> Making {
@@ -131,18 +168,29 @@ Making making_of(const brep::KernelSolid& solid, const std::string& name) {
           [](const Torus& torus) -> Making {
             return {"torus", fmt::format("major={}, minor={}", exact(torus.major_radius), exact(torus.minor_radius))};
           },
-          [&name](const brep::Facets& /*facets*/) -> Making {
-            return {"polyhedron", name + "_shells"};
+          [&lists](const brep::SweptProfile& swept) -> Making {
+            if (!swept.height) return {"revolution", lists};
+            return {"extrusion", fmt::format("{}, height={}", lists, exact(*swept.height))};
+          },
+          [&lists](const brep::Facets& /*facets*/) -> Making {
+            return {"polyhedron", lists};
           }},
       solid.shape);
 }
 
-script::SolidText solid_text(const std::string& name, const std::string& label, const brep::KernelSolid& solid) {
+script::SolidText solid_text(const std::string& name, const std::string& label, const brep::KernelSolid& solid,
+                             script::UniqueNames& names) {
   script::SolidText text;
-  if (const auto* facets = std::get_if<brep::Facets>(&solid.shape)) {
-    text.parameters = fmt::format("{}_shells = {}\n", name, script::shells_text(*facets));
+  std::string lists;
+  const auto add_lists = [&](const char* what, const std::string& value) {
+    lists = names.take(name + what);
+    text.parameters = fmt::format("{} = {}\n", lists, value);
+  };
+  if (const auto* facets = std::get_if<brep::Facets>(&solid.shape)) add_lists("_shells", script::shells_text(*facets));
+  if (const auto* swept = std::get_if<brep::SweptProfile>(&solid.shape)) {
+    add_lists("_regions", script::regions_text(swept->regions));
   }
-  const Making making = making_of(solid, name);
+  const Making making = making_of(solid, lists);
   const Eigen::Quaterniond& q = solid.pose.orientation;
   const std::string rotation = q.vec().isZero(0) ? ""
                                                  : fmt::format(", rotation=({}, {}, {}, {})", exact(q.x()),
@@ -152,9 +200,10 @@ script::SolidText solid_text(const std::string& name, const std::string& label, 
   return text;
 }
 
-script::Dialect dialect() {
+script::Dialect dialect(script::UniqueNames& names) {
   using Operands = std::span<const std::string>;
-  return {.solid = solid_text,
+  return {.solid = [&names](const std::string& name, const std::string& label,
+                            const brep::KernelSolid& solid) { return solid_text(name, label, solid, names); },
           .unite = [](Operands operands) { return fmt::format("union({})", script::arguments(operands)); },
           .common = [](Operands operands) { return fmt::format("common({})", script::arguments(operands)); },
           .cut =
@@ -168,10 +217,13 @@ script::Dialect dialect() {
 std::string freecad_functions(const std::string& statements) {
   std::string helpers;
   bool combines = false;
+  bool sweeps = false;
   for (const script::Function& helper : k_freecad_functions) {
     if (statements.find(helper.call) == std::string::npos) continue;
     const bool is_operation = std::string_view(helper.text).find("combine(") != std::string_view::npos;
     if (is_operation && !std::exchange(combines, true)) helpers += k_combine;
+    const bool is_swept = std::string_view(helper.text).find("swept(") != std::string_view::npos;
+    if (is_swept && !std::exchange(sweeps, true)) helpers += k_profile;
     helpers += "\n\n";
     helpers += helper.text;
   }
@@ -185,7 +237,7 @@ std::string to_freecad_macro(const Model& model, const ScriptOptions& options) {
   const script::Plan plan = script::plan_script(model);
   script::UniqueNames names(freecad_reserved_names());
   const script::PythonBody body =
-      script::python_body(plan, model.primitives, options.facet_resolution, names, dialect());
+      script::python_body(plan, model.primitives, options.facet_resolution, names, dialect(names));
   return script::comment(options.comment, "# ") + k_freecad_head + freecad_functions(body.solids + body.operations) +
          "\n\n" + body.parameters + body.solids + "\n" + body.operations + k_freecad_tail;
 }

@@ -129,7 +129,9 @@ std::string to_openscad(const Model& model, const OpenScadOptions& options) {
   std::string text = script::comment(options.comment, "// ");
   text += fmt::format("$fn = {};  // facets of a full circle\n", options.facets);
   if (!program.parameters.empty()) text += "\n// Lengths are in the model's units, angles in degrees.\n";
-  return text + program.parameters + "\n" + program.tree + program.modules + program.meshes;
+  const bool has_arcs = program.modules.find("polygon(path(") != std::string::npos;
+  return text + program.parameters + "\n" + program.tree + program.modules +
+         (has_arcs ? openscad::path_functions() : "") + program.meshes;
 }
 
 }  // namespace cloud2csg

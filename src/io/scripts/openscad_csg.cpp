@@ -1,11 +1,14 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <variant>
 
 #include "cloud2csg/export.hpp"
+#include "core/primitive/profile.hpp"
 #include "io/scripts/openscad_blocks.hpp"
 #include "io/scripts/openscad_solids.hpp"
 #include "io/scripts/script_plan.hpp"
@@ -43,12 +46,59 @@ class FlatBody {
     return fmt::format("rotate_extrude({}, convexity = 2) {{ {} }}", round(torus.major_radius + torus.minor_radius),
                        profile);
   }
+  std::string operator()(const brep::SweptProfile& swept) const {
+    const std::string profile = profile_text(swept.regions);
+    if (swept.height) {
+      return fmt::format("linear_extrude(height = {}, center = true, convexity = 2) {{ {} }}", number_(*swept.height),
+                         profile);
+    }
+    double radius = 0;
+    for (const ProfileRegion& region : swept.regions) {
+      for (const ProfileSegment& s : region.outline) {
+        radius = std::max(radius, extent_along(s, Eigen::Vector2d::UnitX()).second);
+      }
+    }
+    return fmt::format("rotate_extrude({}, convexity = 2) {{ {} }}", round(radius), profile);
+  }
   /// FreeCAD requires a convexity.
   std::string operator()(const brep::Facets& facets) const {
     return fmt::format("polyhedron({}, convexity = 2);", openscad::facet_lists(facets, number_, " "));
   }
 
  private:
+  [[nodiscard]] std::string profile_text(const std::vector<ProfileRegion>& regions) const {
+    std::string text;
+    for (const ProfileRegion& region : regions) {
+      if (!text.empty()) text += " ";
+      if (region.holes.empty()) {
+        text += path_text(region.outline);
+        continue;
+      }
+      text += fmt::format("difference() {{ {}", path_text(region.outline));
+      for (const auto& hole : region.holes) text += " " + path_text(hole);
+      text += " }";
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string path_text(const std::vector<ProfileSegment>& path) const {
+    if (is_circle(path)) {
+      return fmt::format("multmatrix({}) {{ circle({}, r = {}); }}",
+                         shift(path.front().centre.x(), path.front().centre.y()), round(path.front().radius),
+                         number_(path.front().radius));
+    }
+    std::vector<std::string> corners;
+    for (const ProfileSegment& s : path) {
+      const double share = std::abs(s.angle) / (2 * std::numbers::pi);
+      const int steps = s.is_arc() ? std::max(2, static_cast<int>(std::lround(facets_ * share))) : 1;
+      for (int k = 0; k < steps; ++k) {
+        const Eigen::Vector2d corner = s.at(static_cast<double>(k) / steps);
+        corners.push_back(fmt::format("[{}, {}]", number_(corner.x()), number_(corner.y())));
+      }
+    }
+    return fmt::format("polygon(points = [{}], paths = undef, convexity = 2);", fmt::join(corners, ", "));
+  }
+
   /// As few facets as requested. FreeCAD keeps a true circle for $fn = 0, or above 16 (its preference for the most
   /// facets). With $fn = 0, OpenSCAD makes no facet shorter than 0.01, so a small circle gets $fn of at least 17.
   [[nodiscard]] std::string round(double radius) const {

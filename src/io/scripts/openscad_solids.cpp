@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/primitive/profile.hpp"
 #include "io/scripts/script_solids.hpp"
 
 namespace cloud2csg::openscad {
@@ -77,6 +78,14 @@ class Body {
     const double half = std::ceil(reach / unit) * unit;
     return fmt::format("translate([-{0}, -{0}, -{1}]) cube({1});", context_.number(half), context_.number(2.0 * half));
   }
+  std::string operator()(const Extrusion& extrusion) const {
+    const std::string profile = profile_text(extrusion.profile);
+    return fmt::format("linear_extrude(height = {}, center = true, convexity = 10) {}",
+                       value("height", extrusion.height), profile);
+  }
+  std::string operator()(const Revolution& revolution) const {
+    return "rotate_extrude(convexity = 10) " + profile_text(revolution.profile);
+  }
   std::string operator()(const Polytope& /*polytope*/) const { return facets(); }
   std::string operator()(const Expression& /*expression*/) const { return facets(); }
 
@@ -89,6 +98,43 @@ class Body {
  private:
   [[nodiscard]] std::string value(const char* what, double number) const {
     return parameters_.add(what, context_.number(number));
+  }
+
+  /// `polygon(...);`, or `difference() { ... }` with holes, or a block of these.
+  [[nodiscard]] std::string profile_text(const Profile& profile) const {
+    const std::vector<ProfileRegion> regions = regions_of(profile);
+    std::vector<std::string> texts(regions.size());
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      const auto& [outline, holes] = regions[i];
+      const std::string part = regions.size() > 1 ? fmt::format("part_{}_", i + 1) : "";
+      std::string& text = texts[i];
+      if (!holes.empty()) text += "difference() {\n    ";
+      text += path_text(part + "outline", outline);
+      for (std::size_t k = 0; k < holes.size(); ++k) {
+        text += "\n    ";
+        text += path_text(fmt::format("{}hole_{}", part, k + 1), holes[k]);
+      }
+      if (!holes.empty()) text += "\n  }";
+    }
+    return texts.size() == 1 ? texts.front() : fmt::format("{{\n  {}\n  }}", fmt::join(texts, "\n  "));
+  }
+
+  [[nodiscard]] std::string path_text(const std::string& what, const std::vector<ProfileSegment>& path) const {
+    if (is_circle(path)) {
+      const Eigen::Vector2d centre = path.front().centre;
+      std::string circle = fmt::format("circle(r = {});", value((what + "_radius").c_str(), path.front().radius));
+      if (centre.isZero(0)) return circle;
+      const std::string place = fmt::format("[{}, {}]", context_.number(centre.x()), context_.number(centre.y()));
+      return fmt::format("translate({}) {}", parameters_.add(what + "_centre", place), circle);
+    }
+    std::vector<std::string> corners;
+    for (const ProfileSegment& s : path) {
+      const std::string bulge = s.is_arc() ? ", " + script::NumberFormat(1.0)(s.bulge) : "";
+      corners.push_back(fmt::format("[{}, {}{}]", context_.number(s.start.x()), context_.number(s.start.y()), bulge));
+    }
+    const std::string name = parameters_.add(what, fmt::format("[{}]", fmt::join(corners, ", ")));
+    const bool has_arcs = std::ranges::any_of(path, [](const ProfileSegment& s) { return s.is_arc(); });
+    return has_arcs ? fmt::format("polygon(path({}));", name) : fmt::format("polygon({});", name);
   }
 
   const Primitive& primitive_;
@@ -104,8 +150,8 @@ const std::set<std::string>& reserved_words() {
         "assert assign child children circle color cube cylinder difference dxf_linear_extrude "
         "dxf_rotate_extrude each echo else everything false for function group hull if import import_dxf "
         "import_off import_stl include intersection intersection_for let linear_extrude minkowski mirror "
-        "module multmatrix nothing offset parent_module polygon polyhedron projection render resize rotate "
-        "rotate_extrude scale sphere square surface text translate true undef union use");
+        "module multmatrix nothing offset parent_module path polygon polyhedron projection render resize rotate "
+        "rotate_extrude scale segment sphere square surface text translate true undef union use");
     return std::set<std::string>{std::istream_iterator<std::string>(all), {}};
   }();
   return words;
@@ -119,8 +165,9 @@ Eigen::Vector3d rotation_angles(const Primitive& primitive) {
   const Eigen::Matrix3d matrix = primitive.pose.orientation.toRotationMatrix();
   if (primitive.displacement) return euler_angles(matrix);
   if (std::holds_alternative<Sphere>(primitive.shape)) return Eigen::Vector3d::Zero();
-  const bool is_round = std::holds_alternative<Cylinder>(primitive.shape) ||
-                        std::holds_alternative<Cone>(primitive.shape) || std::holds_alternative<Torus>(primitive.shape);
+  const bool is_round =
+      std::holds_alternative<Cylinder>(primitive.shape) || std::holds_alternative<Cone>(primitive.shape) ||
+      std::holds_alternative<Torus>(primitive.shape) || std::holds_alternative<Revolution>(primitive.shape);
   return is_round ? axis_angles(matrix.col(2)) : euler_angles(matrix);
 }
 
@@ -159,6 +206,21 @@ std::string solid(const Primitive& primitive, const SolidContext& context, Param
     text += fmt::format("rotate({}) ", parameters.add("rotation", list(angles, script::NumberFormat(1.0))));
   }
   return text + shape;
+}
+
+const char* path_functions() {
+  return R"(
+// The corners of a closed path. Where an arc starts, a corner is [x, y, bulge]: the bulge is tan(angle / 4) of the arc,
+// positive if it turns left.
+function path(corners) = [
+  for (i = [0 : len(corners) - 1]) each segment(corners[i], corners[(i + 1) % len(corners)], corners[i][2])];
+function segment(a, b, bulge) = is_undef(bulge) ? [[a.x, a.y]] :
+  let (angle = 4 * atan(bulge), steps = max(2, round($fn * abs(angle) / 360)),
+       centre = [a.x + b.x, a.y + b.y] / 2 + (1 - bulge * bulge) / (4 * bulge) * [a.y - b.y, b.x - a.x],
+       arm = [a.x, a.y] - centre)
+  [for (k = [0 : steps - 1]) let (t = angle * k / steps)
+    centre + [arm.x * cos(t) - arm.y * sin(t), arm.x * sin(t) + arm.y * cos(t)]];
+)";
 }
 
 std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number, const std::string& separator) {

@@ -59,6 +59,9 @@ struct SolidContext {
 /// `translate(bore_position) cylinder(h = bore_height, r = bore_radius, center = true);`
 [[nodiscard]] std::string solid(const Primitive& primitive, const SolidContext& context, Parameters& parameters);
 
+/// The functions that turn a path with arcs into corners; solid() calls path().
+[[nodiscard]] const char* path_functions();
+
 /// `points = ...,<separator>faces = ...`, as polyhedron() expects.
 [[nodiscard]] std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number,
                                       const std::string& separator);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
+#include "core/primitive/profile.hpp"
 #include "io/scripts/script_solids.hpp"
 
 namespace cloud2csg::script {
@@ -127,6 +128,25 @@ std::string exact(double number) {
 
 std::string exact(const Eigen::Vector3d& vector) {
   return fmt::format("({}, {}, {})", exact(vector.x()), exact(vector.y()), exact(vector.z()));
+}
+
+std::string regions_text(std::span<const ProfileRegion> profile) {
+  const auto corner_of = [](const ProfileSegment& s) {
+    return fmt::format("({}, {}{})", exact(s.start.x()), exact(s.start.y()), s.is_arc() ? ", " + exact(s.bulge) : "");
+  };
+  const auto text_of = [&](const std::vector<ProfileSegment>& path) {
+    std::vector<std::string> corners(path.size());
+    std::ranges::transform(path, corners.begin(), corner_of);
+    return fmt::format("[{}]", fmt::join(corners, ", "));
+  };
+  const auto region_text = [&](const ProfileRegion& region) {
+    std::string text = text_of(region.outline);
+    for (const auto& hole : region.holes) text += ",\n     " + text_of(hole);
+    return fmt::format("[{}]", text);
+  };
+  std::vector<std::string> regions(profile.size());
+  std::ranges::transform(profile, regions.begin(), region_text);
+  return fmt::format("[{}]", fmt::join(regions, ",\n    "));
 }
 
 std::string shells_text(const brep::Facets& facets) {

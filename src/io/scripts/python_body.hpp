@@ -50,6 +50,9 @@ struct PythonBody {
 [[nodiscard]] std::string exact(double number);
 [[nodiscard]] std::string exact(const Eigen::Vector3d& vector);
 
+/// Lists for `extrusion(regions)`: each region is [outline, hole, ...], a path is [(x, y) or (x, y, bulge), ...].
+[[nodiscard]] std::string regions_text(std::span<const ProfileRegion> profile);
+
 /// Lists for `polyhedron(shells)`: (points, faces) of each connected piece, inner pieces after outer ones.
 [[nodiscard]] std::string shells_text(const brep::Facets& facets);
 

@@ -11,6 +11,7 @@
 #include "cloud2csg/mesh.hpp"
 #include "cloud2csg/run_context.hpp"
 #include "core/fields/tree_volume.hpp"
+#include "core/primitive/profile.hpp"
 #include "io/step/solid_plan.hpp"
 
 /// Interface of library and OpenCASCADE module. The module knows solids; it asks its host about trees and meshes.
@@ -22,8 +23,14 @@ struct Facets {
   std::vector<std::vector<std::uint32_t>> faces;
 };
 
+/// An Extrusion or, without a height, a Revolution.
+struct SweptProfile {
+  std::vector<ProfileRegion> regions;
+  std::optional<double> height;
+};
+
 struct KernelSolid {
-  std::variant<Box, Sphere, Cylinder, Cone, Torus, Facets> shape;
+  std::variant<Box, Sphere, Cylinder, Cone, Torus, SweptProfile, Facets> shape;
   Pose pose = {};
 };
 

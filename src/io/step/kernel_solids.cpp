@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/primitive/polytope.hpp"
+#include "core/primitive/profile.hpp"
 #include "core/primitive/shape.hpp"
 
 namespace cloud2csg::brep {
@@ -22,34 +23,13 @@ Facets facets_of(const Polytope& polytope) {
   return facets;
 }
 
-KernelSolid block_below(const Pose& pose, const AlignedBox& extent) {
+KernelSolid block_below(const Pose& pose, const AlignedBox& extent, double scale) {
   const double reach = (extent.center() - pose.position).norm() + 0.5 * extent.diagonal().norm();
   // Rounds to few digits. The extra tenth keeps all sides off the box that cuts the model.
   const double unit = std::pow(10.0, std::floor(std::log10(reach)) - 1.0);
   const double half = std::ceil(1.1 * reach / unit) * unit;
-  return {.shape = Box{.size = Eigen::Vector3d::Constant(2 * half)},
+  return {.shape = Box{.size = Eigen::Vector3d::Constant(2 * half / scale)},
           .pose = compose(pose, {.position = {0, 0, -half}})};
-}
-
-void scale_shape(KernelSolid& solid, double factor) {
-  std::visit(Overloaded{[&](Box& box) { box.size *= factor; }, [&](Sphere& sphere) { sphere.radius *= factor; },
-                        [&](Cylinder& cylinder) {
-                          cylinder.radius *= factor;
-                          cylinder.height *= factor;
-                        },
-                        [&](Cone& cone) {
-                          cone.radius_bottom *= factor;
-                          cone.radius_top *= factor;
-                          cone.height *= factor;
-                        },
-                        [&](Torus& torus) {
-                          torus.major_radius *= factor;
-                          torus.minor_radius *= factor;
-                        },
-                        [&](Facets& facets) {
-                          for (Eigen::Vector3d& corner : facets.corners) corner *= factor;
-                        }},
-             solid.shape);
 }
 
 }  // namespace
@@ -64,17 +44,20 @@ KernelSolid kernel_solid(const Primitive& primitive, const AlignedBox& extent, c
       [&](const auto& shape) -> KernelSolid {
         using Type = std::decay_t<decltype(shape)>;
         if constexpr (std::is_same_v<Type, HalfSpace>) {
-          return block_below(primitive.pose, extent);
+          return block_below(primitive.pose, extent, frame.scale);
         } else if constexpr (std::is_same_v<Type, Polytope>) {
           return {.shape = facets_of(shape), .pose = primitive.pose};
+        } else if constexpr (std::is_same_v<Type, Extrusion>) {
+          return {.shape = SweptProfile{regions_of(shape.profile), shape.height}, .pose = primitive.pose};
+        } else if constexpr (std::is_same_v<Type, Revolution>) {
+          return {.shape = SweptProfile{regions_of(shape.profile), {}}, .pose = primitive.pose};
         } else if constexpr (std::is_same_v<Type, Expression>) {
           return {.shape = Facets(), .pose = primitive.pose};
         } else {
           return {.shape = shape, .pose = primitive.pose};
         }
       },
-      primitive.shape);
-  scale_shape(solid, 1 / frame.scale);
+      scaled(primitive.shape, 1 / frame.scale));
   solid.pose.position = to_kernel(solid.pose.position, frame);
   return solid;
 }

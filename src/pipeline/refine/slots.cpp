@@ -49,7 +49,7 @@ bool has_volume(const Shape& shape) {
                           cone.radius_bottom + cone.radius_top > 0;
                  },
                  [](const Torus& torus) { return torus.minor_radius > 0 && torus.minor_radius <= torus.major_radius; },
-                 [](const auto&) { return true; }},
+                 [](const Extrusion& extrusion) { return extrusion.height > 0; }, [](const auto&) { return true; }},
       shape);
 }
 
@@ -89,6 +89,15 @@ Shape shape_from(const Shape& original, Reader& reader) {
                                [&](Polytope polytope) -> Shape {
                                  for (Plane& plane : polytope.planes) plane.offset = reader.next();
                                  return polytope;
+                               },
+                               [&](Extrusion extrusion) -> Shape {
+                                 for (int axis = 0; axis < 2; ++axis) reader.centre(axis);
+                                 extrusion.height = reader.faces(2);
+                                 return extrusion;
+                               },
+                               [&](const Revolution& revolution) -> Shape {
+                                 for (int axis = 0; axis < 3; ++axis) reader.centre(axis);
+                                 return revolution;
                                },
                                [](const Expression& expression) -> Shape { return expression; }},
                     original);
@@ -135,7 +144,12 @@ std::vector<Slot> slots_of(const Primitive& primitive, const LocalFrame& frame) 
                             slots.push_back({RegularityType::faces, {}, plane.offset});
                           }
                         },
-                        [](const Expression&) {}},
+                        // The profile itself stays.
+                        [&](const Extrusion& extrusion) {
+                          add_centres(2);
+                          add(faces_across(2, extrusion.height));
+                        },
+                        [&](const Revolution&) { add_centres(3); }, [](const Expression&) {}},
              primitive.shape);
   return slots;
 }
@@ -159,7 +173,7 @@ bool is_turned_around_axis(const Primitive& primitive) {
   if (primitive.displacement) return false;
   return std::visit(Overloaded{[](const Cylinder&) { return true; }, [](const Cone&) { return true; },
                                [](const Torus&) { return true; }, [](const HalfSpace&) { return true; },
-                               [](const auto&) { return false; }},
+                               [](const Revolution&) { return true; }, [](const auto&) { return false; }},
                     primitive.shape);
 }
 

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "core/geometry/subset.hpp"
+#include "core/primitive/profile.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -209,10 +210,7 @@ class SurfaceList {
       add_cylinder(cone.radius_top);
       return;
     }
-    surfaces.push_back({.type = SurfaceType::cone,
-                        .position = pose_.to_world(to_apex * Vector3d::UnitZ()),
-                        .axis = slope > 0 ? axis_ : Vector3d(-axis_),
-                        .half_angle = std::atan(std::abs(slope))});
+    add_cone(to_apex, std::atan(std::abs(slope)), slope > 0);
   }
   void operator()(const Torus& torus) {
     surfaces.push_back({.type = SurfaceType::torus,
@@ -224,6 +222,26 @@ class SurfaceList {
   void operator()(const HalfSpace& /*half_space*/) { add_plane(Vector3d::UnitZ(), 0); }
   void operator()(const Polytope& polytope) {
     for (const Plane& plane : polytope.planes) add_plane(plane.normal, plane.offset);
+  }
+  void operator()(const Extrusion& extrusion) {
+    add_ends(extrusion.height);
+    for (const ProfileSegment& s : segments_of(extrusion.profile)) {
+      const Eigen::Vector2d normal = s.normal(0.5);
+      if (s.is_arc()) {
+        add_cylinder(s.radius, {s.centre.x(), s.centre.y(), 0}, s.angle < 0);
+      } else {
+        add_plane({normal.x(), normal.y(), 0}, normal.dot(s.start));
+      }
+    }
+  }
+  void operator()(const Revolution& revolution) {
+    for (const ProfileSegment& s : segments_of(revolution.profile)) {
+      if (s.is_arc()) {
+        add_ring(s);
+      } else if (s.start.x() > 0 || s.end.x() > 0) {
+        add_turned_line(s);
+      }
+    }
   }
   void operator()(const Expression& /*expression*/) {}
 
@@ -240,9 +258,48 @@ class SurfaceList {
     add_plane(Vector3d::UnitZ(), 0.5 * height);
     add_plane(-Vector3d::UnitZ(), 0.5 * height);
   }
-  void add_cylinder(double radius) {
-    surfaces.push_back({.type = SurfaceType::cylinder, .position = pose_.position, .axis = axis_, .radius = radius});
+  void add_cylinder(double radius, const Vector3d& place = Vector3d::Zero(), bool concave = false) {
+    surfaces.push_back({.type = SurfaceType::cylinder,
+                        .position = pose_.to_world(place),
+                        .axis = axis_,
+                        .radius = radius,
+                        .concave = concave});
   }
+  /// The cone with this apex on the axis that opens upward or downward.
+  void add_cone(double apex, double half_angle, bool opens_upward, bool concave = false) {
+    surfaces.push_back({.type = SurfaceType::cone,
+                        .position = pose_.to_world(apex * Vector3d::UnitZ()),
+                        .axis = opens_upward ? axis_ : Vector3d(-axis_),
+                        .half_angle = half_angle,
+                        .concave = concave});
+  }
+  /// The surface of an arc about the axis. None if its centre is beyond the axis.
+  void add_ring(const ProfileSegment& arc) {
+    if (arc.centre.x() < -k_on_axis * arc.radius) return;
+    const bool is_sphere = arc.centre.x() <= k_on_axis * arc.radius;
+    surfaces.push_back({.type = is_sphere ? SurfaceType::sphere : SurfaceType::torus,
+                        .position = pose_.to_world(arc.centre.y() * Vector3d::UnitZ()),
+                        .axis = axis_,
+                        .radius = is_sphere ? arc.radius : arc.centre.x(),
+                        .minor_radius = is_sphere ? 0 : arc.radius,
+                        .concave = arc.angle < 0});
+  }
+  /// The surface of a line about the axis.
+  void add_turned_line(const ProfileSegment& line) {
+    const Eigen::Vector2d along = line.end - line.start;
+    const Eigen::Vector2d normal = line.normal(0);
+    if (std::abs(along.y()) <= k_on_axis * along.norm()) {
+      add_plane(normal.y() * Vector3d::UnitZ(), normal.y() * line.start.y());
+    } else if (std::abs(along.x()) <= k_on_axis * along.norm()) {
+      add_cylinder(line.start.x(), Vector3d::Zero(), normal.x() < 0);
+    } else {
+      const double apex = line.start.y() - line.start.x() * along.y() / along.x();
+      add_cone(apex, std::atan(std::abs(along.x() / along.y())), along.x() * along.y() > 0, normal.x() < 0);
+    }
+  }
+
+  /// Rounding of directions and places, in lengths of a segment.
+  static constexpr double k_on_axis = 1e-9;
 
   const Pose& pose_;
   Vector3d axis_;

@@ -28,8 +28,44 @@ def makePolygon(points):
     return [point.p for point in points[:-1]]
 
 
-def Face(wire):
-    return wire
+class Curve:
+    """As the points on it, without the last."""
+
+    def __init__(self, points):
+        self.points = points
+
+    def toShape(self):
+        return self.points
+
+
+def LineSegment(start, end):
+    return Curve([start.p])
+
+
+def Arc(start, middle, end):
+    return Curve(solids.arc_through(start.p, middle.p, end.p))
+
+
+def Wire(edges):
+    return [point for edge in edges for point in edge]
+
+
+class FaceOfWires:
+    def __init__(self, wires):
+        self.wires = wires
+
+    def extrude(self, direction):
+        assert direction.p[:2] == (0, 0) and direction.p[2] > 0
+        return Shape(solids.extrusion(self.wires, direction.p[2]), None)
+
+    def revolve(self, base, axis, angle):
+        assert (base.p, axis.p, angle) == ((0, 0, 0), (0, 0, 1), 360)
+        return Shape(solids.revolution(self.wires), None)
+
+
+def Face(outline):
+    """Of a polygon, or of a list of wires."""
+    return FaceOfWires(outline) if isinstance(outline[0], list) else outline
 
 
 def makeShell(faces):

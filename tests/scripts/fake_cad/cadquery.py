@@ -74,11 +74,37 @@ class Solid:
         return _at(solids.torus(radius1, radius2), pnt, dir)
 
     @staticmethod
+    def extrudeLinear(outerWire, innerWires, vecNormal, taper=0):
+        assert vecNormal.p[:2] == (0, 0) and vecNormal.p[2] > 0
+        return Shape(solids.extrusion([outerWire, *innerWires], vecNormal.p[2]))
+
+    @staticmethod
+    def revolve(outerWire, innerWires, angleDegrees, axisStart, axisEnd):
+        assert angleDegrees == 360 and (axisStart.p, axisEnd.p) == (ORIGIN.p, UP.p)
+        return Shape(solids.revolution([outerWire, *innerWires]))
+
+    @staticmethod
     def makeSolid(shell):
         return Shape(solids.polyhedron(shell))
 
 
+class Edge:
+    """As the points on it, without the last."""
+
+    @staticmethod
+    def makeLine(v1, v2):
+        return [v1.p]
+
+    @staticmethod
+    def makeThreePointArc(v1, v2, v3):
+        return solids.arc_through(v1.p, v2.p, v3.p)
+
+
 class Wire:
+    @staticmethod
+    def assembleEdges(listOfEdges):
+        return [point for edge in listOfEdges for point in edge]
+
     @staticmethod
     def makePolygon(listOfVertices, forConstruction=False, close=False):
         assert close

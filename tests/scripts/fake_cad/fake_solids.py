@@ -130,3 +130,36 @@ def polyhedron(polygons):
 
 def moved(inside, position, rotation):
     return lambda p: inside(rotation.back(subtract(p, position)))
+
+
+def arc_through(a, b, c, steps=64):
+    """Points of the arc from a to c through b, without c, all in one plane of coordinates."""
+    ab, ac = subtract(b, a), subtract(c, a)
+    n = cross(ab, ac)
+    to_centre = scale(cross(subtract(scale(ab, dot(ac, ac)), scale(ac, dot(ab, ab))), n), -0.5 / dot(n, n))
+    centre = add(a, to_centre)
+    u = subtract(a, centre)
+    v = cross(scale(n, 1 / norm(n)), u)
+    last = subtract(c, centre)
+    angle = math.atan2(dot(last, v), dot(last, u)) % (2 * math.pi)
+    turns = (angle * k / steps for k in range(steps))
+    return [add(centre, add(scale(u, math.cos(t)), scale(v, math.sin(t)))) for t in turns]
+
+
+def is_in_paths(paths, x, y):
+    """Whether an odd number of paths, lists of corners, are around a place."""
+    return sum(is_over([(a, b, 0) for a, b in path], x, y) for path in paths) % 2 == 1
+
+
+def extrusion(wires, height):
+    """Upward from the wires' plane."""
+    low = wires[0][0][2]
+    paths = [[(x, y) for x, y, _ in wire] for wire in wires]
+    return lambda p: low <= p[2] <= low + height and is_in_paths(paths, p[0], p[1])
+
+
+def revolution(wires):
+    """About z, of wires in the plane of x and z."""
+    assert all(y == 0 and x >= 0 for wire in wires for x, y, _ in wire)
+    paths = [[(x, z) for x, _, z in wire] for wire in wires]
+    return lambda p: is_in_paths(paths, math.hypot(p[0], p[1]), p[2])

@@ -8,12 +8,17 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
 #include <Eigen/Core>
+#include <GeomConvert.hxx>
+#include <Geom_BSplineCurve.hxx>
 #include <Geom_Circle.hxx>
 #include <Geom_SphericalSurface.hxx>
+#include <Geom_TrimmedCurve.hxx>
 #include <Precision.hxx>
 #include <ShapeFix_Shape.hxx>
 #include <TopLoc_Location.hxx>
@@ -28,6 +33,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <gp_Ax2.hxx>
 #include <gp_Ax3.hxx>
 #include <gp_Pln.hxx>
@@ -40,6 +46,7 @@
 
 #include "cloud2csg/geometry.hpp"
 #include "core/base/disjoint_sets.hpp"
+#include "core/primitive/profile.hpp"
 #include "io/step/kernel.hpp"
 
 namespace cloud2csg::brep {
@@ -274,6 +281,57 @@ TopoDS_Shape placed(const TopoDS_Shape& shape, const Pose& pose) {
   return BRepBuilderAPI_Transform(shape, motion, true).Shape();
 }
 
+/// Places a profile's plane in space.
+using PlaceOf = std::function<gp_Pnt(const Eigen::Vector2d&)>;
+
+/// The arc as a curve that starts at parameter 0. Turned about x = 0, a circle gives a torus. The kernel knows no torus
+/// that cuts itself, so such an arc becomes a spline, which is exact as well.
+Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, bool is_turned) {
+  const gp_Pnt centre = place(arc.centre);
+  const gp_Vec to_start(centre, place(arc.start));
+  const gp_Vec to_quarter(centre, place(arc.centre + (arc.angle > 0 ? 1 : -1) * to_the_left(arc.start - arc.centre)));
+  const gp_Ax2 axes(centre, gp_Dir(to_start.Crossed(to_quarter)), gp_Dir(to_start));
+  constexpr double k_pinhole = 1e-5;
+  Handle(Geom_Curve) circle = new Geom_Circle(axes, arc.radius);
+  const bool is_sphere = std::abs(arc.centre.x()) < Precision::Confusion();
+  if (!is_turned || is_sphere || arc.centre.x() > (1 + k_pinhole) * arc.radius) return circle;
+  Handle(Geom_Curve) spline = GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)));
+  return spline;
+}
+
+TopoDS_Wire wire_of(const std::vector<ProfileSegment>& path, const PlaceOf& place, bool is_turned) {
+  std::vector<TopoDS_Vertex> corners;
+  corners.reserve(path.size());
+  for (const ProfileSegment& s : path) corners.push_back(BRepBuilderAPI_MakeVertex(place(s.start)).Vertex());
+  BRepBuilderAPI_MakeWire wire;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const ProfileSegment& s = path[i];
+    const TopoDS_Vertex& start = corners[i];
+    const TopoDS_Vertex& end = corners[(i + 1) % path.size()];
+    wire.Add(s.is_arc() ? BRepBuilderAPI_MakeEdge(curve_of(s, place, is_turned), start, end).Edge()
+                        : BRepBuilderAPI_MakeEdge(start, end).Edge());
+  }
+  return wire.Wire();
+}
+
+Bodies bodies_of(const SweptProfile& swept, const Pose& pose) {
+  const double half = 0.5 * swept.height.value_or(0);
+  // A revolved face looks along -y, into the turn.
+  const PlaceOf place = [&](const Eigen::Vector2d& p) {
+    return swept.height ? gp_Pnt(p.x(), p.y(), -half) : gp_Pnt(p.x(), 0, p.y());
+  };
+  Bodies bodies;
+  for (const ProfileRegion& region : swept.regions) {
+    BRepBuilderAPI_MakeFace face(wire_of(region.outline, place, !swept.height), true);
+    for (const auto& hole : region.holes) face.Add(wire_of(hole, place, !swept.height));
+    const gp_Ax1 axis(gp_Pnt(0, 0, 0), gp_Dir(0, 0, -1));
+    const TopoDS_Shape solid = swept.height ? BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0, 0, 2 * half)).Shape()
+                                            : BRepPrimAPI_MakeRevol(face.Face(), axis).Shape();
+    bodies.push_back(body_of(placed(solid, pose)));
+  }
+  return bodies;
+}
+
 }  // namespace
 
 Bodies make_bodies(const KernelSolid& solid, SphereForm spheres) {
@@ -288,8 +346,11 @@ Bodies make_bodies(const KernelSolid& solid, SphereForm spheres) {
   }
   return std::visit(
       [&](const auto& shape) -> Bodies {
-        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Facets>) {
+        using Type = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Type, Facets>) {
           return {};
+        } else if constexpr (std::is_same_v<Type, SweptProfile>) {
+          return bodies_of(shape, solid.pose);
         } else {
           return {body_of(placed(centred(shape), solid.pose))};
         }

@@ -1,0 +1,198 @@
+#include "core/primitive/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector2d;
+using std::numbers::pi;
+
+Vector2d turned(const Vector2d& v, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+ProfileSegment make_segment(const PathCorner& from, const Vector2d& to) {
+  ProfileSegment segment{.start = from.point, .end = to, .bulge = from.bulge};
+  if (!segment.is_arc()) return segment;
+  const Vector2d chord = to - from.point;
+  // The sagitta is bulge times half the chord, so the centre is (1 - bulge^2) / (4 bulge) chords to the left of its
+  // middle.
+  segment.centre = 0.5 * (from.point + to) + (1 - from.bulge * from.bulge) / (4 * from.bulge) * to_the_left(chord);
+  segment.radius = chord.norm() * (1 + from.bulge * from.bulge) / (4 * std::abs(from.bulge));
+  segment.angle = 4 * std::atan(from.bulge);
+  return segment;
+}
+
+/// The path in the other direction.
+std::vector<ProfileSegment> reversed(std::vector<ProfileSegment> path) {
+  std::ranges::reverse(path);
+  for (ProfileSegment& segment : path) {
+    std::swap(segment.start, segment.end);
+    segment.bulge = -segment.bulge;
+    segment.angle = -segment.angle;
+  }
+  return path;
+}
+
+double doubled_area(const std::vector<ProfileSegment>& segments) {
+  double sum = 0;
+  for (const ProfileSegment& s : segments) {
+    sum += cross(s.start - segments.front().start, s.end - s.start);  // exact far from the origin, too
+    if (s.is_arc()) sum += s.radius * s.radius * (s.angle - std::sin(s.angle));
+  }
+  return sum;
+}
+
+}  // namespace
+
+Vector2d nearest(const ProfileSegment& s, const Vector2d& point) {
+  if (!s.is_arc()) {
+    const Vector2d along = s.end - s.start;
+    return s.start + std::clamp((point - s.start).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
+  }
+  const Vector2d arm = point - s.centre;
+  if (arm.squaredNorm() > 0 && is_in_sector(s, arm)) return s.centre + s.radius * arm.normalized();
+  return (point - s.start).norm() <= (point - s.end).norm() ? s.start : s.end;
+}
+
+double ProfileSegment::length() const {
+  return is_arc() ? std::abs(angle) * radius : (end - start).norm();
+}
+
+Vector2d ProfileSegment::at(double share) const {
+  if (!is_arc()) return start + share * (end - start);
+  return centre + turned(start - centre, share * angle);
+}
+
+Vector2d ProfileSegment::normal(double share) const {
+  if (!is_arc()) return -to_the_left(end - start).normalized();
+  return turned(start - centre, share * angle) / std::copysign(radius, bulge);
+}
+
+bool ProfileSegment::is_left(const Vector2d& point) const {
+  const Vector2d along = end - start;
+  const double side = cross(along, point - start);
+  if (side != 0) return side > 0;
+  return along.y() != 0 ? along.y() < 0 : along.x() > 0;
+}
+
+double ProfileSegment::first_moment() const {
+  if (!is_arc()) return length() * 0.5 * (start.x() + end.x());
+  return radius * (centre.x() * std::abs(angle) + std::copysign(end.y() - start.y(), angle * (end.y() - start.y())));
+}
+
+std::vector<ProfileSegment> segments_of(const ClosedPath& path) {
+  std::vector<ProfileSegment> segments;
+  segments.reserve(path.size());
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    segments.push_back(make_segment(path[i], path[(i + 1) % path.size()].point));
+  }
+  return segments;
+}
+
+std::vector<ProfileRegion> regions_of(const Profile& profile) {
+  std::vector<std::vector<ProfileSegment>> paths;
+  for (const ClosedPath& path : profile.paths) paths.push_back(segments_of(path));
+  // Any place of a path tells what is around it, since paths do not touch.
+  std::vector<std::vector<std::size_t>> around(paths.size());  // by path: the paths that are around it
+  for (std::size_t outer = 0; outer < paths.size(); ++outer) {
+    const Eigen::AlignedBox2d box = bounds_of(Profile{.paths = {profile.paths[outer]}});
+    for (std::size_t inner = 0; inner < paths.size(); ++inner) {
+      const Vector2d& place = paths[inner].front().start;
+      if (outer != inner && box.contains(place) && is_inside(paths[outer], place)) around[inner].push_back(outer);
+    }
+  }
+  const auto turning = [&](std::size_t p, bool left) {
+    return (doubled_area(paths[p]) > 0) == left ? paths[p] : reversed(paths[p]);
+  };
+  std::vector<ProfileRegion> regions;
+  for (std::size_t outer = 0; outer < paths.size(); ++outer) {
+    if (around[outer].size() % 2 == 1) continue;
+    ProfileRegion& region = regions.emplace_back(ProfileRegion{.outline = turning(outer, true), .holes = {}});
+    for (std::size_t inner = 0; inner < paths.size(); ++inner) {
+      if (around[inner].size() != around[outer].size() + 1) continue;
+      if (std::ranges::find(around[inner], outer) != around[inner].end()) region.holes.push_back(turning(inner, false));
+    }
+  }
+  return regions;
+}
+
+std::vector<ProfileSegment> segments_of(const Profile& profile) {
+  std::vector<ProfileSegment> all;
+  for (const ProfileRegion& region : regions_of(profile)) {
+    all.insert(all.end(), region.outline.begin(), region.outline.end());
+    for (const auto& hole : region.holes) all.insert(all.end(), hole.begin(), hole.end());
+  }
+  return all;
+}
+
+bool is_inside(std::span<const ProfileSegment> segments, const Vector2d& point) {
+  bool inside = false;
+  for (const ProfileSegment& s : segments) {
+    const bool is_left = s.is_left(point);
+    const bool spans = (s.start.y() <= point.y()) != (s.end.y() <= point.y());
+    if (spans && is_left == (s.end.y() > s.start.y())) inside = !inside;
+    // An arc adds or takes the circular segment beside its chord.
+    if (s.is_arc() && is_left == (s.bulge < 0) && (point - s.centre).norm() < s.radius) inside = !inside;
+  }
+  return inside;
+}
+
+bool is_circle(std::span<const ProfileSegment> path) {
+  constexpr double k_equal = 1e-9;  // in radii
+  const ProfileSegment& first = path.front();
+  return std::ranges::all_of(path, [&](const ProfileSegment& s) {
+    return s.is_arc() && std::abs(s.radius - first.radius) <= k_equal * first.radius &&
+           (s.centre - first.centre).norm() <= k_equal * first.radius;
+  });
+}
+
+double area_of(const Profile& profile) {
+  return 0.5 * doubled_area(segments_of(profile));
+}
+
+std::pair<double, double> extent_along(const ProfileSegment& segment, const Vector2d& direction) {
+  auto [low, high] = std::minmax({direction.dot(segment.start), direction.dot(segment.end)});
+  if (segment.is_arc()) {
+    const double middle = direction.dot(segment.centre);
+    const double reach = segment.radius * direction.norm();
+    if (is_in_sector(segment, direction)) high = std::max(high, middle + reach);
+    if (is_in_sector(segment, -direction)) low = std::min(low, middle - reach);
+  }
+  return {low, high};
+}
+
+std::pair<double, double> extent_along(const Profile& profile, const Vector2d& direction) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const ClosedPath& path : profile.paths) {
+    for (const ProfileSegment& segment : segments_of(path)) {
+      const auto [least, most] = extent_along(segment, direction);
+      low = std::min(low, least);
+      high = std::max(high, most);
+    }
+  }
+  return {low, high};
+}
+
+Eigen::AlignedBox2d bounds_of(const Profile& profile) {
+  const auto [low_x, high_x] = extent_along(profile, Vector2d::UnitX());
+  const auto [low_y, high_y] = extent_along(profile, Vector2d::UnitY());
+  return {Vector2d(low_x, low_y), Vector2d(high_x, high_y)};
+}
+
+bool is_in_sector(const ProfileSegment& arc, const Vector2d& direction) {
+  const Vector2d first = (arc.angle > 0 ? arc.start : arc.end) - arc.centre;
+  double angle = std::atan2(cross(first, direction), first.dot(direction));
+  if (angle < 0) angle += 2 * pi;
+  return angle <= std::abs(arc.angle);
+}
+
+}  // namespace cloud2csg

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "cloud2csg/error.hpp"
+#include "core/primitive/profile.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Shares of the profile's size that count as touching. Files keep at least nine digits.
+constexpr double k_touching = 1e-9;
+/// Share of the shorter segment's length that is its corner.
+constexpr double k_corner = 1e-6;
+/// Beyond it, an arc's gap is less than k_touching of its radius.
+constexpr double k_most_bulge = 1e9;
+
+/// Points of both curves' whole lines or circles where they cross or come nearest to each other.
+std::vector<Vector2d> meetings(const ProfileSegment& a, const ProfileSegment& b) {
+  if (!a.is_arc() && b.is_arc()) return meetings(b, a);
+  if (!a.is_arc()) {
+    const Vector2d u = a.end - a.start;
+    const Vector2d v = b.end - b.start;
+    const double sine = cross(u, v);
+    if (sine == 0) return {};
+    return {a.start + cross(b.start - a.start, v) / sine * u};
+  }
+  // The chord that both have in common lies `foot` from the centre of a.
+  Vector2d foot;
+  if (b.is_arc()) {
+    const Vector2d between = b.centre - a.centre;
+    const double distance = between.norm();
+    if (distance == 0) return {};
+    const double along = (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2 * distance);
+    foot = std::clamp(along, -a.radius, a.radius) / distance * between;
+  } else {
+    const Vector2d along = (b.end - b.start).normalized();
+    const Vector2d arm = b.start - a.centre;
+    foot = arm - arm.dot(along) * along;
+    if (foot.norm() > a.radius) foot *= a.radius / foot.norm();
+  }
+  const double half = std::sqrt(std::max(0.0, a.radius * a.radius - foot.squaredNorm()));
+  const Vector2d across = (b.is_arc() ? to_the_left(b.centre - a.centre) : Vector2d(b.end - b.start)).normalized();
+  return {a.centre + foot + half * across, a.centre + foot - half * across};
+}
+
+/// Whether the segments come nearer than this to each other, away from corners that they share as neighbours.
+bool touch(const ProfileSegment& a, const ProfileSegment& b, std::span<const Vector2d> shared, double tolerance) {
+  std::vector<Vector2d> candidates = meetings(a, b);
+  // One of these points is common to both where they coincide for some way.
+  for (const Vector2d& point : {a.start, a.end, a.at(0.5), b.start, b.end, b.at(0.5)}) candidates.push_back(point);
+  // At a sharp corner the segments are near each other for some way.
+  const double corner = std::max(tolerance, k_corner * std::min(a.length(), b.length()));
+  return std::ranges::any_of(candidates, [&](const Vector2d& point) {
+    const Vector2d on_a = nearest(a, point);
+    if ((nearest(b, on_a) - on_a).norm() > tolerance) return false;
+    return std::ranges::none_of(shared, [&](const Vector2d& end) { return (on_a - end).norm() <= corner; });
+  });
+}
+
+struct PlacedSegment {
+  ProfileSegment segment;
+  std::size_t path, index;
+  Eigen::AlignedBox2d box;
+};
+
+/// The corners between two segments if they follow each other in a path of `count`.
+std::vector<Vector2d> shared_corners(const PlacedSegment& a, const PlacedSegment& b, std::size_t count) {
+  std::vector<Vector2d> shared;
+  if (a.path != b.path) return shared;
+  if ((a.index + 1) % count == b.index) shared.push_back(b.segment.start);
+  if ((b.index + 1) % count == a.index) shared.push_back(a.segment.start);
+  return shared;
+}
+
+[[noreturn]] void refuse(std::string where, std::string expected) {
+  throw Error({.where = std::move(where), .expected = std::move(expected)});
+}
+
+/// All segments, after each was checked for itself.
+std::vector<PlacedSegment> checked_segments(const Profile& profile) {
+  std::vector<PlacedSegment> all;
+  for (std::size_t p = 0; p < profile.paths.size(); ++p) {
+    const ClosedPath& path = profile.paths[p];
+    if (path.size() < 2) refuse(fmt::format("profile/{}", p), "a closed path of two corners or more");
+    const std::vector<ProfileSegment> segments = segments_of(path);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const std::string where = fmt::format("profile/{}/{}", p, i);
+      if (!path[i].point.allFinite() || !std::isfinite(path[i].bulge)) refuse(where, "two or three finite numbers");
+      if (segments[i].start == segments[i].end) refuse(where, "a corner that differs from the next one");
+      if (std::abs(path[i].bulge) > k_most_bulge) refuse(where, "an arc that is no full circle");
+      const auto [low_x, high_x] = extent_along(segments[i], Vector2d::UnitX());
+      const auto [low_y, high_y] = extent_along(segments[i], Vector2d::UnitY());
+      const Eigen::AlignedBox2d box(Vector2d(low_x, low_y), Vector2d(high_x, high_y));
+      all.push_back({.segment = segments[i], .path = p, .index = i, .box = box});
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+void validate_profile(const Profile& profile) {
+  if (profile.paths.empty()) refuse("profile", "a closed path or more");
+  const std::vector<PlacedSegment> all = checked_segments(profile);
+  const double tolerance = k_touching * bounds_of(profile).diagonal().norm();
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      const PlacedSegment& a = all[i];
+      const PlacedSegment& b = all[j];
+      if (a.box.exteriorDistance(b.box) > tolerance) continue;
+      if (!touch(a.segment, b.segment, shared_corners(a, b, profile.paths[a.path].size()), tolerance)) continue;
+      refuse(fmt::format("profile/{}/{}", b.path, b.index),
+             fmt::format("a segment that does not cross or touch segment {} of path {}", a.index, a.path));
+    }
+  }
+}
+
+void validate_turned_profile(const Profile& profile) {
+  validate_profile(profile);
+  const double tolerance = k_touching * bounds_of(profile).diagonal().norm();
+  for (std::size_t p = 0; p < profile.paths.size(); ++p) {
+    const std::vector<ProfileSegment> segments = segments_of(profile.paths[p]);
+    const auto is_on_axis = [&](std::size_t i) {
+      const ProfileSegment& s = segments[i % segments.size()];
+      return !s.is_arc() && s.start.x() == 0 && s.end.x() == 0;
+    };
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      const ProfileSegment& s = segments[i];
+      const double low = extent_along(s, Vector2d::UnitX()).first;
+      const std::string where = fmt::format("profile/{}/{}", p, i);
+      if (low < -tolerance) refuse(where, "radii of 0 or more");
+      const bool starts_at_line = s.start.x() == 0 && is_on_axis(i + segments.size() - 1);
+      const bool ends_at_line = s.end.x() == 0 && is_on_axis(i + 1);
+      if (low > tolerance || is_on_axis(i) || starts_at_line || ends_at_line) continue;
+      refuse(where, "a segment off the axis, or one that ends where a line along the axis (radius 0) starts");
+    }
+  }
+}
+
+}  // namespace cloud2csg
