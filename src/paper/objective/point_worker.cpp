@@ -211,6 +211,7 @@ class Worker {
 
   /// Sums the contributions of each group's points.
   void add_up(std::span<const std::uint16_t> chosen) {
+    if (loud_.empty()) return;
     sums_.assign(groups_.size() * loud_.size(), {});
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       std::array<PackedContribution, 2>* const sums = &sums_[groups_.group_of(i) * loud_.size()];
