@@ -54,7 +54,7 @@ std::vector<ProfileEdge> profile_edges(const Profile& profile, bool is_revolved)
                      .normal_x = middle.x(),
                      .normal_y = middle.y(),
                      .is_arc = s.is_arc(),
-                     .has_surface = !is_revolved || s.is_arc() || s.start.x() != 0 || s.end.x() != 0};
+                     .has_surface = !is_revolved || !s.is_on_axis()};
     if (s.is_arc()) {
       edge.turn = std::copysign(1.0, s.bulge);
       const Eigen::Vector2d outward = edge.turn * s.normal(0);

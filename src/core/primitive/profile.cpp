@@ -103,7 +103,7 @@ std::vector<ProfileRegion> regions_of(const Profile& profile) {
   // Any place of a path tells what is around it, since paths do not touch.
   std::vector<std::vector<std::size_t>> around(paths.size());  // by path: the paths that are around it
   for (std::size_t outer = 0; outer < paths.size(); ++outer) {
-    const Eigen::AlignedBox2d box = bounds_of(Profile{.paths = {profile.paths[outer]}});
+    const Eigen::AlignedBox2d box = bounds_of(paths[outer]);
     for (std::size_t inner = 0; inner < paths.size(); ++inner) {
       const Vector2d& place = paths[inner].front().start;
       if (outer != inner && box.contains(place) && is_inside(paths[outer], place)) around[inner].push_back(outer);
@@ -182,10 +182,20 @@ std::pair<double, double> extent_along(const Profile& profile, const Vector2d& d
   return {low, high};
 }
 
+Eigen::AlignedBox2d bounds_of(std::span<const ProfileSegment> segments) {
+  Eigen::AlignedBox2d box;
+  for (const ProfileSegment& segment : segments) {
+    const auto [low_x, high_x] = extent_along(segment, Vector2d::UnitX());
+    const auto [low_y, high_y] = extent_along(segment, Vector2d::UnitY());
+    box.extend(Vector2d(low_x, low_y)).extend(Vector2d(high_x, high_y));
+  }
+  return box;
+}
+
 Eigen::AlignedBox2d bounds_of(const Profile& profile) {
-  const auto [low_x, high_x] = extent_along(profile, Vector2d::UnitX());
-  const auto [low_y, high_y] = extent_along(profile, Vector2d::UnitY());
-  return {Vector2d(low_x, low_y), Vector2d(high_x, high_y)};
+  Eigen::AlignedBox2d box;
+  for (const ClosedPath& path : profile.paths) box.extend(bounds_of(segments_of(path)));
+  return box;
 }
 
 bool is_in_sector(const ProfileSegment& arc, const Vector2d& direction) {

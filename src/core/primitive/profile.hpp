@@ -22,6 +22,8 @@ struct ProfileSegment {
   /// A flatter arc is a line: programs that read our files lose it, too.
   static constexpr double k_least_bulge = 1e-7;
   [[nodiscard]] bool is_arc() const { return std::abs(bulge) > k_least_bulge; }
+  /// Whether it is a line with x = 0, which has no surface when the profile is turned.
+  [[nodiscard]] bool is_on_axis() const { return !is_arc() && start.x() == 0 && end.x() == 0; }
   [[nodiscard]] double length() const;
   /// The point at this share of the length, in [0, 1], and the outward unit normal there.
   [[nodiscard]] Eigen::Vector2d at(double share) const;
@@ -77,6 +79,7 @@ struct ProfileRegion {
 [[nodiscard]] std::pair<double, double> extent_along(const Profile& profile, const Eigen::Vector2d& direction);
 
 /// O(segments)
+[[nodiscard]] Eigen::AlignedBox2d bounds_of(std::span<const ProfileSegment> segments);
 [[nodiscard]] Eigen::AlignedBox2d bounds_of(const Profile& profile);
 
 /// @throws Error naming the path and segments (from 0) that cross or touch, or the corner that is not finite.

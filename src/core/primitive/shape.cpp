@@ -25,11 +25,10 @@ bool has_exact_distance(const Primitive& primitive) {
 }
 
 bool is_convex(const Primitive& primitive) {
-  const auto is = [&]<class Solid>(std::type_identity<Solid>) {
-    return std::holds_alternative<Solid>(primitive.shape);
-  };
-  return is_plain(primitive) && !is(std::type_identity<Torus>()) && !is(std::type_identity<Extrusion>()) &&
-         !is(std::type_identity<Revolution>());
+  return is_plain(primitive) &&
+         std::visit(Overloaded{[](const Torus&) { return false; }, [](const Extrusion&) { return false; },
+                               [](const Revolution&) { return false; }, [](const auto&) { return true; }},
+                    primitive.shape);
 }
 
 std::vector<double> lengths_of(const Shape& shape) {

@@ -95,10 +95,7 @@ std::vector<PlacedSegment> checked_segments(const Profile& profile) {
       if (!path[i].point.allFinite() || !std::isfinite(path[i].bulge)) refuse(where, "two or three finite numbers");
       if (segments[i].start == segments[i].end) refuse(where, "a corner that differs from the next one");
       if (std::abs(path[i].bulge) > k_most_bulge) refuse(where, "an arc that is no full circle");
-      const auto [low_x, high_x] = extent_along(segments[i], Vector2d::UnitX());
-      const auto [low_y, high_y] = extent_along(segments[i], Vector2d::UnitY());
-      const Eigen::AlignedBox2d box(Vector2d(low_x, low_y), Vector2d(high_x, high_y));
-      all.push_back({.segment = segments[i], .path = p, .index = i, .box = box});
+      all.push_back({.segment = segments[i], .path = p, .index = i, .box = bounds_of(std::span(&segments[i], 1))});
     }
   }
   return all;
@@ -127,18 +124,15 @@ void validate_turned_profile(const Profile& profile) {
   const double tolerance = k_touching * bounds_of(profile).diagonal().norm();
   for (std::size_t p = 0; p < profile.paths.size(); ++p) {
     const std::vector<ProfileSegment> segments = segments_of(profile.paths[p]);
-    const auto is_on_axis = [&](std::size_t i) {
-      const ProfileSegment& s = segments[i % segments.size()];
-      return !s.is_arc() && s.start.x() == 0 && s.end.x() == 0;
-    };
-    for (std::size_t i = 0; i < segments.size(); ++i) {
+    const std::size_t count = segments.size();
+    for (std::size_t i = 0; i < count; ++i) {
       const ProfileSegment& s = segments[i];
       const double low = extent_along(s, Vector2d::UnitX()).first;
       const std::string where = fmt::format("profile/{}/{}", p, i);
       if (low < -tolerance) refuse(where, "radii of 0 or more");
-      const bool starts_at_line = s.start.x() == 0 && is_on_axis(i + segments.size() - 1);
-      const bool ends_at_line = s.end.x() == 0 && is_on_axis(i + 1);
-      if (low > tolerance || is_on_axis(i) || starts_at_line || ends_at_line) continue;
+      const bool starts_at_line = s.start.x() == 0 && segments[(i + count - 1) % count].is_on_axis();
+      const bool ends_at_line = s.end.x() == 0 && segments[(i + 1) % count].is_on_axis();
+      if (low > tolerance || s.is_on_axis() || starts_at_line || ends_at_line) continue;
       refuse(where, "a segment off the axis, or one that ends where a line along the axis (radius 0) starts");
     }
   }

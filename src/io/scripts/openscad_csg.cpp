@@ -54,9 +54,7 @@ class FlatBody {
     }
     double radius = 0;
     for (const ProfileRegion& region : swept.regions) {
-      for (const ProfileSegment& s : region.outline) {
-        radius = std::max(radius, extent_along(s, Eigen::Vector2d::UnitX()).second);
-      }
+      radius = std::max(radius, bounds_of(region.outline).max().x());
     }
     return fmt::format("rotate_extrude({}, convexity = 2) {{ {} }}", round(radius), profile);
   }

@@ -238,7 +238,7 @@ class SurfaceList {
     for (const ProfileSegment& s : segments_of(revolution.profile)) {
       if (s.is_arc()) {
         add_ring(s);
-      } else if (s.start.x() > 0 || s.end.x() > 0) {
+      } else if (!s.is_on_axis()) {
         add_turned_line(s);
       }
     }
