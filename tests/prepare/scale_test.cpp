@@ -31,6 +31,30 @@ TEST(EstimateScale, FindsTheNoiseOfModelsWithEdges) {
   }
 }
 
+/// Neighbourhoods are balls: where the noise exceeds the spacing, they cut off what lies far from their centres.
+TEST(EstimateScale, FindsNoiseThatExceedsTheSpacing) {
+  for (const double noise : {0.25, 0.5, 1.0, 2.0, 3.0}) {
+    PointCloud sheet;
+    RandomStream random(7);
+    for (int i = 0; i < 40'000; ++i) {
+      sheet.positions.push_back({random.uniform(0, 200), random.uniform(0, 200), noise * random.normal()});
+    }
+    EXPECT_NEAR(estimate_scale(sheet).noise / noise, 1.0, 0.2) << noise;
+  }
+}
+
+/// Neighbourhoods that are wider than the wall is thick see both of its sides and take the wall for noise.
+TEST(EstimateScale, DoesNotTakeAWallForNoise) {
+  PointCloud tube;
+  RandomStream random(3);
+  for (int i = 0; i < 20'000; ++i) {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const double radius = (i % 2 == 0 ? 0.9 : 1.1) + 0.04 * random.normal();
+    tube.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), random.uniform(-1, 1)});
+  }
+  EXPECT_NEAR(estimate_scale(tube).noise, 0.04, 0.008);
+}
+
 /// A tube whose wall is thinner than the distance of its points: of each neighbourhood, half is on the other side.
 TEST(EstimateScale, SeesNoNoiseInAThinWall) {
   PointCloud tube;

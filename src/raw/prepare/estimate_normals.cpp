@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -163,6 +164,25 @@ NormalsVerdict check_by_winding(const PointCloud& cloud, const Points& places, c
   return given.inward < k_clear_share * given.outward ? NormalsVerdict::inward : NormalsVerdict::outward;
 }
 
+/// Two judgements of a given normal: by the plane of the points around it, and by the normals around it.
+struct CheckedNormal {
+  double roughness = 0.0;  ///< deviation of the points around it from their plane, over their distance
+  bool is_across = false, is_alike = false;
+};
+
+/// The flatter half. The planes of the others may be those of edges, thin walls or mere noise, and tell nothing.
+std::span<const CheckedNormal> flatter_half(std::vector<CheckedNormal>& checks) {
+  const std::size_t half = (checks.size() + 1) / 2;
+  std::nth_element(checks.begin(), checks.begin() + static_cast<std::ptrdiff_t>(half - 1), checks.end(),
+                   [](const CheckedNormal& a, const CheckedNormal& b) { return a.roughness < b.roughness; });
+  return std::span(checks).first(half);
+}
+
+bool are_mostly(std::span<const CheckedNormal> checks, bool CheckedNormal::*judgement) {
+  const auto count = std::count_if(checks.begin(), checks.end(), std::mem_fn(judgement));
+  return static_cast<double>(count) >= k_check_agreement * static_cast<double>(checks.size());
+}
+
 }  // namespace
 
 NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const RunContext& run) {
@@ -173,26 +193,25 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
   const std::size_t width = std::min(plane_neighbours(scale) + 1, cloud.size());
   std::vector<std::uint32_t> indices(width);
   std::vector<double> squares(width);
-  std::size_t across = 0;
-  std::size_t alike = 0;
-  const std::size_t checked = std::min(k_check_sample, cloud.size());
-  std::vector<std::uint32_t> sample(checked);
+  std::vector<std::uint32_t> sample(std::min(k_check_sample, cloud.size()));
+  std::vector<CheckedNormal> checks;
   for (std::uint32_t& i : sample) {
     i = random.below(cloud.size());
     const std::size_t found = tree.find(local.points[i], indices, squares);
     const std::span<const std::uint32_t> near = std::span(indices).first(found).subspan(1);
-    const double tolerance =
-        std::max(k_noise_tolerance * scale.noise, k_bend_tolerance * std::sqrt(squares[found - 1]));
+    const double radius = std::sqrt(squares[found - 1]);
+    const double tolerance = std::max(k_noise_tolerance * scale.noise, k_bend_tolerance * radius);
     const LocalPlane plane = fit_local_plane(local.points, i, near, tolerance);
     const double cosine = std::abs(plane.normal.dot(cloud.normals[i]));
-    across += cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0) ? 1 : 0;
-    alike += agrees_with_neighbours(cloud, local.points, i, near, scale.noise) ? 1 : 0;
+    checks.push_back({.roughness = radius > 0.0 ? plane.deviation / radius : 0.0,
+                      .is_across = cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0),
+                      .is_alike = agrees_with_neighbours(cloud, local.points, i, near, scale.noise)});
   }
   run.throw_if_stopped();
-  const auto count = static_cast<double>(checked);
-  const bool is_across = static_cast<double>(across) >= k_check_agreement * count;
-  const bool is_alike = static_cast<double>(alike) >= k_check_agreement * count;
-  if (!is_across || !is_alike) return NormalsVerdict::unoriented;
+  const std::span<const CheckedNormal> telling = flatter_half(checks);
+  if (!are_mostly(telling, &CheckedNormal::is_across) || !are_mostly(telling, &CheckedNormal::is_alike)) {
+    return NormalsVerdict::unoriented;
+  }
   if (cloud.has_sensor_positions()) {
     return look_away(cloud, sample) ? NormalsVerdict::inward : NormalsVerdict::outward;
   }
