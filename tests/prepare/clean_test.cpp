@@ -73,6 +73,23 @@ TEST(CleanCloud, LeavesOutOrDoubtsUniformOutliers) {
   EXPECT_EQ(clean.report.isolated + clean.report.off_surface, cloud.size() - clean.cloud.size());
 }
 
+/// From far away a rod is a line, and every outlier is on a plane through it.
+TEST(CleanCloud, LeavesOutFewOutliersAroundAThinRod) {
+  PointCloud cloud;
+  RandomStream random(8);
+  for (int i = 0; i < 60'000; ++i) {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const double radius = 0.25 + 0.005 * random.normal();
+    cloud.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), random.uniform(-5, 5)});
+  }
+  for (int i = 0; i < 240; ++i) {
+    cloud.positions.push_back({random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)});
+  }
+  const PointCloud clean = prepare_cloud(cloud).cloud;
+  EXPECT_GE(clean.size(), 59'900U);
+  for (std::size_t i = 0; i < clean.size(); ++i) EXPECT_LT(clean.positions[i].head<2>().norm(), 0.5);
+}
+
 TEST(CleanCloud, ThinsDoubtedPointsFirst) {
   const PointCloud cloud = box_among_outliers({1, 0.8, 0.4}, 0.0015);
   const Scale scale = estimate_scale(cloud);

@@ -253,11 +253,40 @@ TEST(CheckNormals, AreKeptOnThinPlatesInNoise) {
     const double side = i % 2 == 0 ? 1.0 : -1.0;
     const double plate = static_cast<double>(random.below(8));
     const Vector3d noise(random.normal(), random.normal(), random.normal());
-    comb.positions.push_back(Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0.28 * plate + side * 0.07) +
+    comb.positions.push_back(Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0.32 * plate + side * 0.07) +
                              0.025 * noise);
     comb.normals.push_back({0, 0, side});
   }
   EXPECT_EQ(check_normals(comb, estimate_scale(comb)), NormalsVerdict::outward);
+}
+
+/// The flat half of a cloud is judged most strictly, but does not decide alone.
+TEST(CheckNormals, AreFoundOutWhereOnlyTheRoundHalfIsRandom) {
+  PointCloud cloud;
+  RandomStream random(6);
+  for (int i = 0; i < 8000; ++i) {
+    cloud.positions.push_back({random.uniform(-1, 1), random.uniform(-1, 1), -2});
+    cloud.normals.push_back({0, 0, 1});
+    cloud.sensor_positions.push_back({0, 0, 20});
+  }
+  const PointCloud sphere = sphere_cloud(8000, 1.0, 0.0);
+  for (std::size_t i = 0; i < sphere.size(); ++i) {
+    cloud.positions.push_back(sphere.positions[i]);
+    cloud.normals.push_back(Vector3d(random.normal(), random.normal(), random.normal()).normalized());
+    cloud.sensor_positions.push_back(20 * sphere.positions[i]);
+  }
+  EXPECT_EQ(check_normals(cloud, estimate_scale(cloud)), NormalsVerdict::unoriented);
+}
+
+/// The points around an outlier have no plane.
+TEST(CheckNormals, AreKeptBesideOutliersWithRandomOnes) {
+  PointCloud cloud = sphere_cloud(8500, 1.0, 0.01);
+  RandomStream random(7);
+  for (int i = 0; i < 1500; ++i) {
+    cloud.positions.push_back({random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)});
+    cloud.normals.push_back(Vector3d(random.normal(), random.normal(), random.normal()).normalized());
+  }
+  EXPECT_EQ(check_normals(cloud, estimate_scale(cloud)), NormalsVerdict::outward);
 }
 
 /// Consistent with their neighbours, but not with an inside.

@@ -41,6 +41,13 @@ TEST(EstimateScale, FindsNoiseThatExceedsTheSpacing) {
     }
     EXPECT_NEAR(estimate_scale(sheet).noise / noise, 1.0, 0.2) << noise;
   }
+  // The widest neighbourhoods are balls of noise, too.
+  PointCloud sheet;
+  RandomStream random(7);
+  for (int i = 0; i < 40'000; ++i) {
+    sheet.positions.push_back({random.uniform(0, 200), random.uniform(0, 200), 8 * random.normal()});
+  }
+  EXPECT_NEAR(estimate_scale(sheet).noise / 8, 1.0, 0.4);
 }
 
 /// Neighbourhoods that are wider than the wall is thick see both of its sides and take the wall for noise.

@@ -23,9 +23,10 @@ struct Scale {
 
 /// Measures a cloud from a sample of its points. Noise is the deviation from local quadrics whose size adapts to the
 /// noise. It is a low percentile, which ignores edges and details, over the denser half of the sample, which has few
-/// outliers. The noise is right to about a quarter for noise of up to 0.5 % of the diagonal, if a third of the surface
-/// is smooth at five times the noise. At 1 % it may be 2.5 times too large on parts with fine detail. With as many
-/// outliers as points it is up to twice too large. The result does not depend on seed, unit and origin. O(n log n)
+/// outliers. A neighbourhood is a ball and cuts noise off; the missing share is added. The noise is right to about a
+/// quarter for noise of up to 0.5 % of the diagonal, if a third of the surface is smooth at four times the noise. At 1
+/// % it may be 1.5 times too large on parts with fine detail. With as many outliers as points it is up to twice too
+/// large. The result does not depend on seed, unit and origin. O(n log n)
 /// @throws Error for fewer than 10 points, or points all in one place; Cancelled.
 [[nodiscard]] Scale estimate_scale(const PointCloud& cloud, const RunContext& run = {});
 
@@ -99,8 +100,9 @@ enum class NormalsVerdict {
   unoriented  ///< unusable: not across the surface, or with contradictory signs
 };
 
-/// Judges the normals of a cloud from a sample of its points. Sensor positions, where present, decide about the sign.
-/// Precondition: the cloud has normals. O(n log n) @throws Cancelled
+/// Judges the normals of a cloud from a sample of its points, most strictly in the half where the cloud is flattest:
+/// the points around an edge or a thin wall in noise have no plane that could contradict a normal. Sensor positions,
+/// where present, decide about the sign. Precondition: the cloud has normals. O(n log n) @throws Cancelled
 [[nodiscard]] NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const RunContext& run = {});
 
 struct PrepareOptions {

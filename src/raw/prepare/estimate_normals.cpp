@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <functional>
+#include <iterator>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -22,7 +23,9 @@ using Eigen::Vector3d;
 
 constexpr std::size_t k_doubt_links = 12;
 constexpr double k_check_angle_deg = 35.0;
-constexpr double k_check_agreement = 0.8;
+constexpr double k_check_agreement = 0.8;   ///< at places that are flat
+constexpr double k_rough_agreement = 0.65;  ///< at all places: true normals of thin parts in noise keep to 0.73
+constexpr double k_flat_spacings = 0.01;    ///< deviation of a flat place; less is rounding
 constexpr std::size_t k_check_sample = 2048;
 constexpr std::size_t k_check_field = 16'384;  ///< points whose winding numbers separate inside from outside
 constexpr std::uint64_t k_field_stage = 0x6669'656c'64;
@@ -166,21 +169,27 @@ NormalsVerdict check_by_winding(const PointCloud& cloud, const Points& places, c
 
 /// Two judgements of a given normal: by the plane of the points around it, and by the normals around it.
 struct CheckedNormal {
-  double roughness = 0.0;  ///< deviation of the points around it from their plane, over their distance
+  double roughness = 0.0;  ///< deviation of the points around it from their plane
   bool is_across = false, is_alike = false;
 };
 
-/// The flatter half. The planes of the others may be those of edges, thin walls or mere noise, and tell nothing.
-std::span<const CheckedNormal> flatter_half(std::vector<CheckedNormal>& checks) {
-  const std::size_t half = (checks.size() + 1) / 2;
-  std::nth_element(checks.begin(), checks.begin() + static_cast<std::ptrdiff_t>(half - 1), checks.end(),
-                   [](const CheckedNormal& a, const CheckedNormal& b) { return a.roughness < b.roughness; });
-  return std::span(checks).first(half);
+/// The flatter half, or more if they are equally flat. The planes of the others may be those of edges, thin walls or
+/// mere noise, and tell little.
+std::vector<CheckedNormal> flatter_half(const std::vector<CheckedNormal>& checks) {
+  std::vector<double> roughness;
+  for (const CheckedNormal& check : checks) roughness.push_back(check.roughness);
+  const auto middle = roughness.begin() + static_cast<std::ptrdiff_t>((roughness.size() - 1) / 2);
+  std::nth_element(roughness.begin(), middle, roughness.end());
+  std::vector<CheckedNormal> flat;
+  std::ranges::copy_if(checks, std::back_inserter(flat),
+                       [&](const CheckedNormal& c) { return c.roughness <= *middle; });
+  return flat;
 }
 
-bool are_mostly(std::span<const CheckedNormal> checks, bool CheckedNormal::*judgement) {
-  const auto count = std::count_if(checks.begin(), checks.end(), std::mem_fn(judgement));
-  return static_cast<double>(count) >= k_check_agreement * static_cast<double>(checks.size());
+bool agree(const std::vector<CheckedNormal>& checks, double least_share) {
+  const double least = least_share * static_cast<double>(checks.size());
+  return static_cast<double>(std::ranges::count_if(checks, &CheckedNormal::is_across)) >= least &&
+         static_cast<double>(std::ranges::count_if(checks, &CheckedNormal::is_alike)) >= least;
 }
 
 }  // namespace
@@ -194,6 +203,8 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
   std::vector<std::uint32_t> indices(width);
   std::vector<double> squares(width);
   std::vector<std::uint32_t> sample(std::min(k_check_sample, cloud.size()));
+  const double flat = k_flat_spacings * scale.spacing;
+  constexpr double k_no_plane = std::numeric_limits<double>::infinity();
   std::vector<CheckedNormal> checks;
   for (std::uint32_t& i : sample) {
     i = random.below(cloud.size());
@@ -203,13 +214,12 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
     const double tolerance = std::max(k_noise_tolerance * scale.noise, k_bend_tolerance * radius);
     const LocalPlane plane = fit_local_plane(local.points, i, near, tolerance);
     const double cosine = std::abs(plane.normal.dot(cloud.normals[i]));
-    checks.push_back({.roughness = radius > 0.0 ? plane.deviation / radius : 0.0,
+    checks.push_back({.roughness = radius > 0.0 ? std::max(plane.deviation, flat) : k_no_plane,
                       .is_across = cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0),
                       .is_alike = agrees_with_neighbours(cloud, local.points, i, near, scale.noise)});
   }
   run.throw_if_stopped();
-  const std::span<const CheckedNormal> telling = flatter_half(checks);
-  if (!are_mostly(telling, &CheckedNormal::is_across) || !are_mostly(telling, &CheckedNormal::is_alike)) {
+  if (!agree(checks, k_rough_agreement) || !agree(flatter_half(checks), k_check_agreement)) {
     return NormalsVerdict::unoriented;
   }
   if (cloud.has_sensor_positions()) {

@@ -27,6 +27,8 @@ constexpr std::array<std::size_t, 5> k_sizes{24, 48, 96, 192, 384};  ///< neighb
 /// A neighbourhood with fewer deviations in its radius is a ball of noise, and its plane is chance. Half as much is
 /// such a ball, twice as much takes neighbourhoods that reach around edges and across walls.
 constexpr double k_least_radius = 4.0;
+/// Small balls of noise have up to 3.3 deviations in their radius by chance.
+constexpr double k_chance_radius = 3.5;
 /// Ratio of wide to narrow radii of equally many neighbours. Clouds without outliers are below.
 constexpr double k_uneven_density = 1.45;
 /// Quantile of the sample's deviations; edges and details are above.
@@ -70,27 +72,30 @@ Neighbourhoods measure(const Points& points, const NeighbourTree& tree, std::spa
   return result;
 }
 
-/// The sample's deviations. At very uneven density, only the denser half: even many outliers are mostly elsewhere.
-std::vector<double> credible_deviations(const Neighbourhoods& found) {
-  if (quantile(found.radii, 0.8) < k_uneven_density * quantile(found.radii, 0.2)) return found.deviations;
+/// At very uneven density, only the denser half: even many outliers are mostly elsewhere.
+Neighbourhoods credible(const Neighbourhoods& found) {
+  if (quantile(found.radii, 0.8) < k_uneven_density * quantile(found.radii, 0.2)) return found;
   const double limit = quantile(found.radii, 0.5);
-  std::vector<double> deviations;
+  Neighbourhoods dense;
   for (std::size_t s = 0; s < found.radii.size(); ++s) {
-    if (found.radii[s] <= limit) deviations.push_back(found.deviations[s]);
+    if (found.radii[s] > limit) continue;
+    dense.radii.push_back(found.radii[s]);
+    dense.deviations.push_back(found.deviations[s]);
   }
-  return deviations;
+  return dense;
 }
 
 /// Share of the noise that remains in neighbourhoods of a flat surface, by their radius in deviations: a ball cuts off
-/// what lies far from its centre, and the fit follows the rest. Within 5 % of simulated planes for ratios of 3.1 to 13.
+/// what lies far from its centre, and the fit follows the rest. Fitted to simulated planes with noise of 1 to 3
+/// spacings.
 double seen_share(double radius_ratio) {
   constexpr double k_ratio_of_ball = 2.58;  // where nothing but noise is in the ball
-  constexpr double k_least_share = 0.45;    // that of a ratio of 3
+  constexpr double k_least_share = 0.55;    // at a ratio of 3; below it, noise fills the ball
   return std::sqrt(std::max(k_least_share * k_least_share, 1.0 - std::pow(k_ratio_of_ball / radius_ratio, 2.5)));
 }
 
 /// Uses the smallest neighbourhoods that the noise allows. Larger ones have more edges and take longer. If noise fills
-/// all of them, those that are flattest count.
+/// all of them, the flattest count, or the largest if all look like balls of noise.
 void measure_spacing_and_noise(Scale& scale, const Points& points, const NeighbourTree& tree, const RunContext& run) {
   const std::vector<std::uint32_t> sample =
       one_of_every_few(points.size(), k_sample, RandomStream(0, k_sampling_stage));
@@ -99,10 +104,10 @@ void measure_spacing_and_noise(Scale& scale, const Points& points, const Neighbo
     if (size > k_sizes.front() && size > points.size() / 4) break;
     const Neighbourhoods found = measure(points, tree, sample, size, run);
     if (size == k_sizes.front()) scale.spacing = quantile(found.spacings, 0.5);
-    const double deviation = quantile(credible_deviations(found), k_smooth_share);
-    if (!(deviation > 0.0)) break;
-    const double ratio = quantile(found.radii, 0.5) / deviation;
-    if (ratio > flattest) scale.noise = deviation / seen_share(ratio);
+    const Neighbourhoods some = credible(found);
+    const double deviation = quantile(some.deviations, k_smooth_share);
+    const double ratio = deviation > 0.0 ? quantile(some.radii, 0.5) / deviation : k_least_radius;
+    if (ratio > flattest || flattest < k_chance_radius) scale.noise = deviation / seen_share(ratio);
     flattest = std::max(flattest, ratio);
     if (ratio >= k_least_radius) break;
   }

@@ -36,6 +36,8 @@ constexpr std::size_t k_gap_neighbours = 8;
 /// Fewer credible neighbours are no evidence: a wire or a speck has no planes.
 constexpr std::size_t k_least_witnesses = 6;
 
+using Indices = std::vector<std::uint32_t>;
+
 /// The credible neighbours of a point.
 struct Witnesses {
   std::size_t count = 0;
@@ -57,12 +59,13 @@ bool has_plane(const LocalFits& fits, std::size_t point, double noise, Strictnes
   return fits.planes[point].support >= std::clamp(by_chance + k_beyond_chance, k_planar_support, k_most_support);
 }
 
-Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, Strictness strictness) {
+Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, Strictness strictness,
+                        std::span<const PointFate> fates) {
   Witnesses witnesses;
   std::array<double, k_judges> gaps{};
   for (const std::uint32_t neighbour : fits.neighbours.of(point).first(std::min(k_judges, fits.neighbours.width))) {
     const LocalPlane& plane = fits.planes[neighbour];
-    if (!has_plane(fits, neighbour, noise, strictness)) continue;
+    if (fates[neighbour] == PointFate::isolated || !has_plane(fits, neighbour, noise, strictness)) continue;
     gaps[witnesses.count++] = gap_of(fits, neighbour);
     const Vector3d to = fits.points[point] - fits.points[neighbour];
     const double height = std::abs(plane.normal.dot(to) + plane.offset);
@@ -74,9 +77,7 @@ Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, 
   return witnesses;
 }
 
-bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Strictness strictness) {
-  const Witnesses witnesses = ask_witnesses(fits, point, noise, strictness);
-  if (witnesses.count < k_least_witnesses) return has_plane(fits, point, noise, strictness);
+bool are_enough(const Witnesses& witnesses, const LocalFits& fits, std::size_t point, Strictness strictness) {
   const bool is_suspect =
       strictness == Strictness::suspicious && (gap_of(fits, point) > k_suspect_gap * witnesses.usual_gap ||
                                                2 * witnesses.count < std::min(k_judges, fits.neighbours.width));
@@ -84,7 +85,30 @@ bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Stric
   return static_cast<double>(witnesses.agreeing) >= least * static_cast<double>(witnesses.count);
 }
 
-using Indices = std::vector<std::uint32_t>;
+bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Strictness strictness,
+                   std::span<const PointFate> fates) {
+  const Witnesses witnesses = ask_witnesses(fits, point, noise, strictness, fates);
+  if (witnesses.count < k_least_witnesses) return has_plane(fits, point, noise, strictness);
+  return are_enough(witnesses, fits, point, strictness);
+}
+
+/// Judges far points again that had isolated ones among their witnesses: outliers lie on each other's planes by chance.
+/// Repeats until all witnesses stay.
+void isolate_without_witnesses(const LocalFits& fits, const Indices& far, double noise, Strictness strictness,
+                               std::vector<PointFate>& fates) {
+  Indices isolated;
+  do {
+    isolated.clear();
+    for (const std::uint32_t i : far) {
+      const std::span<const std::uint32_t> near = fits.neighbours.of(i);
+      const auto is_isolated = [&](std::uint32_t j) { return fates[j] == PointFate::isolated; };
+      if (is_isolated(i) || std::ranges::none_of(near, is_isolated)) continue;
+      const Witnesses witnesses = ask_witnesses(fits, i, noise, strictness, fates);
+      if (witnesses.count < k_least_witnesses || !are_enough(witnesses, fits, i, strictness)) isolated.push_back(i);
+    }
+    for (const std::uint32_t i : isolated) fates[i] = PointFate::isolated;
+  } while (!isolated.empty());
+}
 
 /// Neighbours a plane among many outliers. With fewer, noise and chance look alike.
 constexpr std::size_t k_suspicious_neighbours = 48;
@@ -200,11 +224,19 @@ std::vector<PointFate> judge_points(const LocalFits& fits, const Scale& scale, S
   const std::size_t count = fits.points.size();
   std::vector<PointFate> fates(count, PointFate::stays);
   if (fits.neighbours.width < k_least_witnesses) return fates;
+  const std::vector<PointFate> initial = fates;  // others write the new ones
+  const auto is_far = [&](std::size_t i) {
+    return fits.neighbours.distances_of(i)[k_least_witnesses - 1] > k_isolated_spacings * scale.spacing;
+  };
   for_each_index_by_chunks(count, k_chunk_points, run, share, [&](std::size_t i) {
-    if (is_on_surface(fits, i, scale.noise, strictness)) return;
-    const bool is_far = fits.neighbours.distances_of(i)[k_least_witnesses - 1] > k_isolated_spacings * scale.spacing;
-    fates[i] = is_far ? PointFate::isolated : PointFate::off_surface;
+    if (is_on_surface(fits, i, scale.noise, strictness, initial)) return;
+    fates[i] = is_far(i) ? PointFate::isolated : PointFate::off_surface;
   });
+  Indices far;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (fates[i] == PointFate::stays && is_far(i)) far.push_back(i);
+  }
+  isolate_without_witnesses(fits, far, scale.noise, strictness, fates);
   return fates;
 }
 
