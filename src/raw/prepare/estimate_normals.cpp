@@ -177,6 +177,7 @@ struct CheckedNormal {
 /// mere noise, and tell little.
 std::vector<CheckedNormal> flatter_half(const std::vector<CheckedNormal>& checks) {
   std::vector<double> roughness;
+  roughness.reserve(checks.size());
   for (const CheckedNormal& check : checks) roughness.push_back(check.roughness);
   const auto middle = roughness.begin() + static_cast<std::ptrdiff_t>((roughness.size() - 1) / 2);
   std::nth_element(roughness.begin(), middle, roughness.end());
