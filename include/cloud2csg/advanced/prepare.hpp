@@ -24,8 +24,8 @@ struct Scale {
 /// Measures a cloud from a sample of its points. Noise is the deviation from local quadrics whose size adapts to the
 /// noise. It is a low percentile, which ignores edges and details, over the denser half of the sample, which has few
 /// outliers. A neighbourhood is a ball and cuts noise off; the missing share is added. The noise is right to about a
-/// quarter for noise of up to 0.5 % of the diagonal, if a third of the surface is smooth at four times the noise. At 1
-/// % it may be 1.5 times too large on parts with fine detail. With as many outliers as points it is up to twice too
+/// quarter for noise of up to 0.5 % of the diagonal, if a third of the surface is smooth at four times the noise. At
+/// 1 % it may be 1.5 times too large on parts with fine detail. With as many outliers as points it is up to twice too
 /// large. The result does not depend on seed, unit and origin. O(n log n)
 /// @throws Error for fewer than 10 points, or points all in one place; Cancelled.
 [[nodiscard]] Scale estimate_scale(const PointCloud& cloud, const RunContext& run = {});

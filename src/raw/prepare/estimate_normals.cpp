@@ -10,6 +10,7 @@
 #include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/winding_number.hpp"
 #include "core/base/parallel.hpp"
+#include "core/base/robust_deviation.hpp"
 #include "core/geometry/subset.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
@@ -179,11 +180,9 @@ std::vector<CheckedNormal> flatter_half(const std::vector<CheckedNormal>& checks
   std::vector<double> roughness;
   roughness.reserve(checks.size());
   for (const CheckedNormal& check : checks) roughness.push_back(check.roughness);
-  const auto middle = roughness.begin() + static_cast<std::ptrdiff_t>((roughness.size() - 1) / 2);
-  std::nth_element(roughness.begin(), middle, roughness.end());
+  const double middle = median_of(roughness);
   std::vector<CheckedNormal> flat;
-  std::ranges::copy_if(checks, std::back_inserter(flat),
-                       [&](const CheckedNormal& c) { return c.roughness <= *middle; });
+  std::ranges::copy_if(checks, std::back_inserter(flat), [&](const CheckedNormal& c) { return c.roughness <= middle; });
   return flat;
 }
 
