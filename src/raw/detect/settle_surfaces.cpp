@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/parallel.hpp"
+#include "raw/detect/propose.hpp"
 
 namespace cloud2csg {
 namespace {
