@@ -4,7 +4,8 @@
     bench/constants.py [src/raw/prepare src/raw/detect ...] [--only NAME] [--output build/constants/table.jsonl]
 
 Works in a copy of the sources under build/constants; a change is one edited line and one compiled file. Each build reconstructs
-the parts of bench/parts from scans and noisy samples (OpenSCAD makes their meshes) and runs two parts of bench_detection.
+some parts of bench/parts from scans, and from noisy samples whose normals it estimates (OpenSCAD makes their meshes), and runs
+two parts of bench_detection.
 Four figures a build: surfaces found by bench_detection as a share of all that it asks for, mean intersection over union, mean
 leaves, CPU seconds. `--seeds N` repeats the unchanged build with other clouds: differences below their spread mean nothing.
 
@@ -33,12 +34,12 @@ DOUBTFUL = 3  # exit status of `extract`; the files are written
 
 
 def constants_in(folders):
-    """(file, line, name, text of the value), in the order of the sources."""
+    """(file, line, name, text of the value), from the copy, which nobody else edits."""
     for folder in folders:
-        for file in sorted((ROOT / folder).glob("*.[ch]pp")):
+        for file in sorted((COPY / folder).glob("*.[ch]pp")):
             for line, text in enumerate(file.read_text().splitlines()):
                 if match := CONSTANT.match(text):
-                    yield file.relative_to(ROOT), line, match[2], match[3]
+                    yield file.relative_to(COPY), line, match[2], match[3]
 
 
 def scaled(text, factor):
@@ -97,7 +98,9 @@ def reconstruct(program, mesh, cloud, seed):
         tree, stats = pathlib.Path(name) / "tree.json", pathlib.Path(name) / "stats.json"
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         try:
-            run([program, "extract", cloud, "-o", tree, "--stats", stats, "--threads", 1, "--seed", seed, "-q"], (0, DOUBTFUL))
+            normals = ["--estimate-normals"] if mesh.stem in SAMPLED else []
+            run([program, "extract", cloud, "-o", tree, "--stats", stats, "--threads", 1, "--seed", seed, "-q", *normals],
+                (0, DOUBTFUL))
         except RuntimeError:
             return 0.0, 0, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
