@@ -7,21 +7,24 @@ Works in a copy of the sources under build/constants; a change is one edited lin
 some parts of bench/parts from scans, and from noisy samples whose normals it estimates (OpenSCAD makes their meshes), and runs
 two parts of bench_detection.
 Four figures a build: surfaces found by bench_detection as a share of all that it asks for, mean intersection over union, mean
-leaves, CPU seconds. `--seeds N` repeats the unchanged build with other clouds: differences below their spread mean nothing.
+leaves, CPU seconds. `--seeds N` repeats the unchanged build with other clouds for the last three: differences below their
+spread mean nothing. The first is always of the same clouds, one a row of the tables.
 
 A share x above one half is changed by its distance from 1, which is halved ("double" of .9 is .95) or doubled (at most 1). A run
-that was stopped goes on where it was when the output file is given again.
+that was stopped goes on where it was, unless the sources changed since.
 """
 
 import argparse
+import hashlib
 import json
 import pathlib
 import re
 import resource
 import shutil
 import statistics
-import subprocess
 import tempfile
+
+from inversecsg import DOUBTFUL, run
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COPY = ROOT / "build" / "constants"
@@ -30,7 +33,6 @@ SCANNED = ("bracket", "elbow", "flange", "nozzle", "tubes", "cup")
 SAMPLED = ("gear", "countersunk")
 DETECTION = ("steps", "outliers")
 POINTS = 20_000
-DOUBTFUL = 3  # exit status of `extract`; the files are written
 
 
 def constants_in(folders):
@@ -53,28 +55,27 @@ def scaled(text, factor):
     return f"{changed:.6g}"
 
 
-def run(command, accepted=(0,)):
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if result.returncode not in accepted:
-        raise RuntimeError((result.stderr.strip().splitlines() or [f"{command[0]} failed"])[-1])
-    return result.stdout
-
-
 def build():
     run(["cmake", "--build", COPY / "build", "--target", "cloud2csg", "bench_detection"])
     return COPY / "build" / "cloud2csg", COPY / "build" / "bench" / "bench_detection"
 
 
 def prepare_copy():
-    """The sources as they are, without unity builds: so a changed constant compiles little."""
+    """The sources as they are, without unity builds: so a changed constant compiles little. Returns a digest of
+    all that figures depend on."""
+    digest = hashlib.sha256()
     for name in run(["git", "-C", ROOT, "ls-files"]).splitlines():
         source, target = ROOT / name, COPY / name
-        if target.exists() and target.read_bytes() == source.read_bytes():
+        content = source.read_bytes()
+        if not name.startswith(("docs/", "tests/")) and not name.endswith(".md"):
+            digest.update(name.encode() + content)
+        if target.exists() and target.read_bytes() == content:
             continue  # its build stays valid
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(source, target)
     run(["cmake", "-S", COPY, "-B", COPY / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=OFF",
          "-DCLOUD2CSG_BUILD_TESTS=OFF", "-DCLOUD2CSG_OPENCASCADE=OFF", "-DCLOUD2CSG_PYTHON=OFF"])
+    return digest.hexdigest()[:12]
 
 
 def make_clouds(program, seed):
@@ -88,22 +89,26 @@ def make_clouds(program, seed):
         if cloud.exists():
             continue
         run(["openscad", "-q", "-o", mesh, ROOT / "bench" / "parts" / f"{name}.scad"])
-        common = ["-n", POINTS, "--seed", seed, "-o", cloud, "-q"]
+        common = ["-n", str(POINTS), "--seed", str(seed), "-o", cloud, "-q"]
         run([program, "scan", mesh, *common] if name in SCANNED else [program, "sample", mesh, "--relative-noise", "0.002", *common])
     return pairs
+
+
+def child_seconds():
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
 def reconstruct(program, mesh, cloud, seed):
     with tempfile.TemporaryDirectory() as name:
         tree, stats = pathlib.Path(name) / "tree.json", pathlib.Path(name) / "stats.json"
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        normals = ["--estimate-normals"] if mesh.stem in SAMPLED else []
+        before = child_seconds()
         try:
-            normals = ["--estimate-normals"] if mesh.stem in SAMPLED else []
-            run([program, "extract", cloud, "-o", tree, "--stats", stats, "--threads", 1, "--seed", seed, "-q", *normals],
-                (0, DOUBTFUL))
+            run([program, "extract", cloud, "-o", tree, "--stats", stats, "--threads", "1", "--seed", str(seed), "-q", *normals],
+                accepted=(0, DOUBTFUL))
         except RuntimeError:
-            return 0.0, 0, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+            return 0.0, 0, child_seconds() - before
+        seconds = child_seconds() - before
         compared = json.loads(run([program, "compare", mesh, tree, "--json", "-q"]))
         return compared["intersection_over_union"], json.loads(stats.read_text())["tree"]["leaves"], seconds
 
@@ -112,7 +117,7 @@ def share_found(bench_detection):
     """Mean of the column "found" of all tables, in per cent."""
     shares = []
     for part in DETECTION:
-        lines = run([bench_detection, "--part", part, "--seeds", 1, "--threads", 1]).splitlines()
+        lines = run([bench_detection, "--part", part, "--seeds", "1", "--threads", "1"]).splitlines()
         rows = [[cell.strip() for cell in line.strip("| ").split("|")] for line in lines if line.startswith("|")]
         place = rows[0].index("found")
         shares += [float(row[place].rstrip(" %")) for row in rows[2:] if len(row) > place and row[place].endswith("%")]
@@ -157,12 +162,13 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, default=COPY / "table.jsonl")
     arguments = parser.parse_args()
     COPY.mkdir(parents=True, exist_ok=True)
-    prepare_copy()
+    digest = prepare_copy()
     done = {}
     if arguments.output.exists():
         done = {entry["key"]: entry["figures"] for entry in map(json.loads, arguments.output.read_text().splitlines())}
 
     def figures_of(key, work):
+        key = f"{digest} {key}"
         if key not in done:
             done[key] = work()
             with arguments.output.open("a") as file:
