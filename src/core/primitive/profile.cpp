@@ -18,18 +18,6 @@ Vector2d turned(const Vector2d& v, double angle) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-ProfileSegment make_segment(const PathCorner& from, const Vector2d& to) {
-  ProfileSegment segment{.start = from.point, .end = to, .bulge = from.bulge};
-  if (!segment.is_arc()) return segment;
-  const Vector2d chord = to - from.point;
-  // The sagitta is bulge times half the chord, so the centre is (1 - bulge^2) / (4 bulge) chords to the left of its
-  // middle.
-  segment.centre = 0.5 * (from.point + to) + (1 - from.bulge * from.bulge) / (4 * from.bulge) * to_the_left(chord);
-  segment.radius = chord.norm() * (1 + from.bulge * from.bulge) / (4 * std::abs(from.bulge));
-  segment.angle = 4 * std::atan(from.bulge);
-  return segment;
-}
-
 /// The path in the other direction.
 std::vector<ProfileSegment> reversed(std::vector<ProfileSegment> path) {
   std::ranges::reverse(path);
@@ -41,16 +29,19 @@ std::vector<ProfileSegment> reversed(std::vector<ProfileSegment> path) {
   return path;
 }
 
-double doubled_area(const std::vector<ProfileSegment>& segments) {
-  double sum = 0;
-  for (const ProfileSegment& s : segments) {
-    sum += cross(s.start - segments.front().start, s.end - s.start);  // exact far from the origin, too
-    if (s.is_arc()) sum += s.radius * s.radius * (s.angle - std::sin(s.angle));
-  }
-  return sum;
-}
-
 }  // namespace
+
+ProfileSegment segment_between(const Vector2d& start, double bulge, const Vector2d& end) {
+  ProfileSegment segment{.start = start, .end = end, .bulge = bulge};
+  if (!segment.is_arc()) return segment;
+  const Vector2d chord = end - start;
+  // The sagitta is bulge times half the chord, so the centre is (1 - bulge^2) / (4 bulge) chords to the left of its
+  // middle.
+  segment.centre = 0.5 * (start + end) + (1 - bulge * bulge) / (4 * bulge) * to_the_left(chord);
+  segment.radius = chord.norm() * (1 + bulge * bulge) / (4 * std::abs(bulge));
+  segment.angle = 4 * std::atan(bulge);
+  return segment;
+}
 
 Vector2d nearest(const ProfileSegment& s, const Vector2d& point) {
   if (!s.is_arc()) {
@@ -92,7 +83,7 @@ std::vector<ProfileSegment> segments_of(const ClosedPath& path) {
   std::vector<ProfileSegment> segments;
   segments.reserve(path.size());
   for (std::size_t i = 0; i < path.size(); ++i) {
-    segments.push_back(make_segment(path[i], path[(i + 1) % path.size()].point));
+    segments.push_back(segment_between(path[i].point, path[i].bulge, path[(i + 1) % path.size()].point));
   }
   return segments;
 }
@@ -152,6 +143,15 @@ bool is_circle(std::span<const ProfileSegment> path) {
     return s.is_arc() && std::abs(s.radius - first.radius) <= k_equal * first.radius &&
            (s.centre - first.centre).norm() <= k_equal * first.radius;
   });
+}
+
+double doubled_area(std::span<const ProfileSegment> segments) {
+  double sum = 0;
+  for (const ProfileSegment& s : segments) {
+    sum += cross(s.start - segments.front().start, s.end - s.start);  // exact far from the origin, too
+    if (s.is_arc()) sum += s.radius * s.radius * (s.angle - std::sin(s.angle));
+  }
+  return sum;
 }
 
 double area_of(const Profile& profile) {

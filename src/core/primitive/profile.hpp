@@ -35,6 +35,9 @@ struct ProfileSegment {
   [[nodiscard]] double first_moment() const;
 };
 
+/// O(1)
+[[nodiscard]] ProfileSegment segment_between(const Eigen::Vector2d& start, double bulge, const Eigen::Vector2d& end);
+
 /// The point of the segment that is nearest to the given one. O(1)
 [[nodiscard]] Eigen::Vector2d nearest(const ProfileSegment& segment, const Eigen::Vector2d& point);
 
@@ -70,6 +73,9 @@ struct ProfileRegion {
 
 /// Whether all segments are arcs of one circle.
 [[nodiscard]] bool is_circle(std::span<const ProfileSegment> path);
+
+/// Twice the area to the left of a closed path. O(segments)
+[[nodiscard]] double doubled_area(std::span<const ProfileSegment> segments);
 
 /// Area of the region. Positive for a valid profile. O(segments)
 [[nodiscard]] double area_of(const Profile& profile);

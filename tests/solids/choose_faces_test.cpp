@@ -1,0 +1,107 @@
+#include "raw/solids/choose_faces.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/random.hpp"
+#include "raw/solids/outline.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector2d;
+
+/// A box of 3 x 3 cells.
+Drawing grid() {
+  std::vector<ProfileSegment> pieces;
+  for (int k = 0; k <= 3; ++k) {
+    pieces.push_back(segment_between(Vector2d(k, 0), 0, Vector2d(k, 3)));
+    pieces.push_back(segment_between(Vector2d(0, k), 0, Vector2d(3, k)));
+  }
+  Drawing drawing{.arrangement = arrange(pieces, 1e-9), .curve_of_edge = {}, .price_of_edge = {}};
+  for (const CurveArrangement::Edge& edge : drawing.arrangement.edges) drawing.curve_of_edge.push_back(edge.piece);
+  drawing.price_of_edge.assign(drawing.arrangement.edges.size(), 0.0);
+  return drawing;
+}
+
+FaceSet faces_at(const Drawing& drawing, std::initializer_list<Vector2d> places) {
+  const FaceLocator locator(drawing.arrangement);
+  FaceSet faces(drawing.arrangement.areas.size(), 0);
+  for (const Vector2d& place : places) faces[locator.face_at(place)] = 1;
+  return faces;
+}
+
+TEST(SegmentsOf, CountsMaximalPartsOfACurve) {
+  const Drawing drawing = grid();
+  EXPECT_EQ(segments_of(drawing, faces_at(drawing, {{0.5, 0.5}})), 4U);
+  EXPECT_EQ(segments_of(drawing, faces_at(drawing, {{0.5, 0.5}, {1.5, 0.5}})), 4U) << "a bar";
+  EXPECT_EQ(segments_of(drawing, faces_at(drawing, {{0.5, 0.5}, {1.5, 0.5}, {0.5, 1.5}})), 6U) << "an angle";
+  EXPECT_EQ(segments_of(drawing, FaceSet(drawing.arrangement.areas.size(), 0)), 0U);
+  std::vector<ProfileSegment> circle{segment_between({-1, 0}, 1, {1, 0}), segment_between({1, 0}, 1, {-1, 0})};
+  Drawing disc{.arrangement = arrange(circle, 1e-9), .curve_of_edge = {0, 0}, .price_of_edge = {0, 0}};
+  EXPECT_EQ(segments_of(disc, {0, 1}), 1U) << "a closed curve";
+}
+
+RC_GTEST_PROP(ChooseFaces, IsAboutAsGoodAsTheBestOfAllSets, ()) {
+  RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
+  Drawing drawing = grid();
+  for (double& price : drawing.price_of_edge) price = random.chance(0.5) ? 0.0 : random.uniform(0, 0.3);
+  std::vector<double> gains(drawing.arrangement.areas.size(), 0.0);
+  for (std::size_t face = 1; face < gains.size(); ++face) gains[face] = random.uniform(-1, 1);
+  FaceSet best(gains.size(), 0);
+  double best_with_corners = 0;
+  for (std::size_t bits = 0; bits < 512; ++bits) {
+    FaceSet faces(gains.size(), 0);
+    for (std::size_t k = 0; k < 9; ++k) faces[k + 1] = (bits >> k) & 1U;
+    if (net_gain(drawing, gains, 0, faces) > net_gain(drawing, gains, 0, best)) best = faces;
+    if (bits > 0 && is_writable(drawing, faces)) {
+      best_with_corners = std::max(best_with_corners, net_gain(drawing, gains, 0.05, faces));
+    }
+  }
+  const FaceSet without_corners = choose_faces(drawing, gains, 0);
+  const double net = net_gain(drawing, gains, 0, without_corners);
+  if (is_writable(drawing, best)) RC_ASSERT(std::abs(net - net_gain(drawing, gains, 0, best)) < 1e-9);
+  const FaceSet chosen = choose_faces(drawing, gains, 0.05);
+  for (const FaceSet& faces : {chosen, without_corners}) {
+    RC_ASSERT(faces[0] == 0);
+    RC_ASSERT(faces == FaceSet(faces.size(), 0) || is_writable(drawing, faces));
+  }
+  RC_ASSERT(net_gain(drawing, gains, 0.05, chosen) >= best_with_corners - 1);
+}
+
+TEST(OutlineOf, JoinsEdgesOfACurve) {
+  const Drawing drawing = grid();
+  const Profile angle = outline_of(drawing, faces_at(drawing, {{0.5, 0.5}, {1.5, 0.5}, {0.5, 1.5}}));
+  ASSERT_EQ(angle.paths.size(), 1U);
+  EXPECT_EQ(angle.paths[0].size(), 6U);
+  EXPECT_NEAR(area_of(angle), 3, 1e-12);
+  FaceSet ring(drawing.arrangement.areas.size(), 1);
+  ring[0] = 0;
+  for (std::size_t face = 1; face < ring.size(); ++face) ring[face] ^= faces_at(drawing, {{1.5, 1.5}})[face];
+  const Profile frame = outline_of(drawing, ring);
+  EXPECT_EQ(frame.paths.size(), 2U);
+  EXPECT_NEAR(area_of(frame), 8, 1e-12);
+}
+
+TEST(OutlineOf, ACircleIsTwoHalves) {
+  std::vector<ProfileSegment> pieces{segment_between({-1, 0}, 1, {1, 0}), segment_between({1, 0}, 1, {-1, 0}),
+                                     segment_between({0, -3}, 0, {0, 3}), segment_between({-3, 0.2}, 0, {3, 0.2})};
+  Drawing drawing{.arrangement = arrange(pieces, 1e-9), .curve_of_edge = {}, .price_of_edge = {}};
+  constexpr std::array<std::uint32_t, 4> k_curves{0, 0, 1, 2};
+  for (const CurveArrangement::Edge& edge : drawing.arrangement.edges)
+    drawing.curve_of_edge.push_back(k_curves[edge.piece]);
+  FaceSet disc(drawing.arrangement.areas.size(), 1);
+  disc[0] = 0;
+  const Profile profile = outline_of(drawing, disc);
+  ASSERT_EQ(profile.paths.size(), 1U);
+  EXPECT_EQ(profile.paths[0].size(), 2U);
+  validate_profile(profile);
+  EXPECT_NEAR(area_of(profile), std::numbers::pi, 1e-9);
+}
+
+}  // namespace
+}  // namespace cloud2csg
