@@ -35,17 +35,19 @@ TEST_F(Raw, ExtractFindsThePrimitivesOfACloud) {
   EXPECT_NE(outcome.err.find("surfaces     7 planes, 0 spheres, 2 cylinders"), std::string::npos) << outcome.err;
   EXPECT_GT(iou(truth, path("t.json")), 0.98);
   const json statistics = json::parse(read_file(path("s.json")));
-  EXPECT_EQ(statistics["tree"]["leaves"], 3);
+  EXPECT_EQ(statistics["tree"]["leaves"], 2) << "a block with a bore, and a boss";
   EXPECT_EQ(statistics["finding"]["planes"], 7);
   EXPECT_GT(statistics["seconds"]["detect"].get<double>(), 0);
   EXPECT_NE(read_file(path("t.scad")).find("difference()"), std::string::npos);
 }
 
-/// Radii of 0.6 and 0.608 are near enough to be made equal; the points tell them apart. What was found out about the
-/// cloud is told with the refined tree as well.
+/// A boss on a block and a blind bore in its side: radii of 0.6 and 0.608 are near enough to be made equal; the points tell
+/// them apart. What was found out about the cloud is told with the refined tree as well.
 TEST_F(Raw, RefineMovesSolidsBackToTheirPoints) {
   std::string text = read_file(block());
+  text.replace(text.find("[4, 3, 1]"), 9, "[4, 3, 2]");
   text.replace(text.find("0.5, \"height\": 3"), 3, "0.608");
+  text.replace(text.find("[-1, 0.4, 0]"), 12, R"([-1, 1.5, 0], "quaternion": [0.7071067811865476, 0.7071067811865476, 0, 0])");
   const std::string truth = file("unlike.json", text);
   ASSERT_EQ(run({"sample", truth, "-n", "30000", "--relative-noise", "0.001", "-o", path("c.ply")}).status, 0);
   const Outcome outcome = run({"extract", path("c.ply"), "--refine", "-o", path("t.json"), "--stats", path("s.json")});
@@ -54,9 +56,9 @@ TEST_F(Raw, RefineMovesSolidsBackToTheirPoints) {
   ASSERT_FALSE(statistics["refine"].is_null());
   EXPECT_TRUE(statistics["refine"]["is_taken"].get<bool>());
   EXPECT_LT(statistics["refine"]["rms_after"], statistics["refine"]["rms_before"]);
-  EXPECT_EQ(statistics["finding"]["planes"], 7);
+  EXPECT_EQ(statistics["finding"]["planes"], 8);
   EXPECT_GT(statistics["seconds"]["detect"].get<double>(), 0);
-  EXPECT_NE(outcome.err.find("surfaces     7 planes"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("surfaces     8 planes"), std::string::npos) << outcome.err;
   std::vector<double> radii;
   const json model = json::parse(read_file(path("t.json")));
   for (const json& primitive : model["primitives"]) {
@@ -84,7 +86,7 @@ TEST_F(Raw, DetectPrintsSurfacesAndWritesSolids) {
   EXPECT_NE(outcome.out.find("concave"), std::string::npos);
   const json model = json::parse(read_file(path("p.json")));
   EXPECT_FALSE(model.contains("tree"));
-  EXPECT_GE(model["primitives"].size(), 3U);
+  EXPECT_GE(model["primitives"].size(), 2U);
   // They are what extract can combine.
   EXPECT_EQ(run({"extract", path("c.ply"), "--primitives", path("p.json"), "-o", path("t.json")}).status, 0);
 }

@@ -164,7 +164,7 @@ void option_table(OptionsOf<SolidOptions>, auto&& field) {
         above_to(0, 1), {.unit = "SHARE"});
   field(
       &O::plane_cost, "plane_cost",
-      "Cost of each plane of a polytope beyond the sixth, in leaves. A box is therefore preferred where it is as good.",
+      "Cost of each plane of a polytope beyond the sixth, in leaves.",
       above(0), k_library);
   field(&O::most_rules, "most_rules",
         "Largest number of rules of the decision list; a safeguard, with a warning where it ends the choice",
@@ -195,16 +195,18 @@ struct SolidChoice {
   std::vector<std::string> warnings = {};  ///< sentences for the user: given values that the points do not support
 };
 
-/// Chooses few solids bounded by the surfaces, and a tree over them. The tree is a decision list of terms: boxes,
-/// cylinders, cones, spheres, tori, polytopes, and intersections of two of them. The first term that contains a place
-/// says whether it is in the solid. Terms are not enumerated: the search repeatedly adds the term that gains most, and
-/// removes or exchanges rules while that lowers disagreement plus leaves. The result does not depend on the number of
-/// threads. When stopped early, the tree is the best so far.
+/// Chooses few solids bounded by the surfaces, and a tree over them. The tree is a decision list of terms: extrusions
+/// and revolutions of profiles (boxes, cylinders, cones, spheres and tori where they are such), polytopes, and
+/// intersections of a profile with a curved surface's inside or outside. The first term that contains a place says
+/// whether it is in the solid. Terms are not enumerated: the search repeatedly adds the term that gains most, and
+/// removes or exchanges rules while that lowers disagreement plus leaves. A profile's segment beyond the fourth counts
+/// as a tenth of a leaf. The result does not depend on the number of threads. When stopped early, the tree is the best
+/// so far.
 /// @throws Error without normals or surfaces, or for an option out of range; Cancelled when stopped before the search.
 [[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                         const SolidOptions& options = {}, const RunContext& run = {});
 
-/// The same with known solids. They are terms of any type, and win against equally good terms. New solids may end at
+/// The same with known solids. They are terms of any type, and cost a twentieth of a leaf. New solids may end at
 /// their faces. Detected surfaces adapt to them. No surfaces are needed where a known solid has points.
 [[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                         std::span<const KnownSolid> known, const SolidOptions& options,

@@ -7,8 +7,8 @@
 
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/error.hpp"
-#include "raw/solids/decision_list.hpp"
 #include "raw/solids/known_parts.hpp"
+#include "raw/solids/list_search.hpp"
 #include "raw/solids/write_solids.hpp"
 
 namespace cloud2csg {

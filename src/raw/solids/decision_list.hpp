@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "cloud2csg/run_context.hpp"
 #include "raw/solids/term_search.hpp"
 
 /// Decision lists: the first rule whose term contains a place decides whether it is in the solid. By default it is out.
@@ -31,19 +30,5 @@ using DecisionList = std::vector<Rule>;
 /// Gain of each place from a new rule in front of rule `position` that contains it.
 [[nodiscard]] std::vector<double> insertion_gains(const DecisionList& list, std::span<const std::uint16_t> deciding,
                                                   std::span<const double> pulls, std::size_t position, bool is_in);
-
-struct ListLimits {
-  std::size_t rules = 0;
-  /// Limit on the sum of places times priced families over all tried rules. Beyond, no list is improved and only simple
-  /// terms are added. A count keeps the result independent of the machine; it is some six seconds on one core. The
-  /// largest tested part takes half of it. At half, such parts would lose rules. At double, a cloud that does not
-  /// consist of our surfaces takes twice the time.
-  double work = 3e9;
-};
-
-/// A decision list of low cost. From several starts, inserts the rules that gain most, singly or in pairs that only
-/// gain together. Then removes or exchanges rules while the cost falls. Deterministic. If stopped, the best so far.
-[[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
-                                       const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -6,6 +6,8 @@
 namespace cloud2csg {
 namespace {
 
+const TermPart k_everything{.kind = PartKind::polytope};
+
 std::vector<std::uint8_t> decisions_of(const DecisionList& list, std::size_t places) {
   const std::vector<std::uint16_t> deciding = deciding_rules(list, places);
   std::vector<std::uint8_t> is_in(places);
@@ -15,15 +17,8 @@ std::vector<std::uint8_t> decisions_of(const DecisionList& list, std::size_t pla
   return is_in;
 }
 
-std::size_t sides_of(const TermPart& part) {
-  return part.kind == PartKind::box ? 3 : part.kind == PartKind::revolved ? 1 : 0;
-}
-
-/// A box that ends nowhere inside the bounds.
-TermPart everything(const TermSpace& space) {
-  TermPart box;
-  for (std::size_t side = 0; side < 3; ++side) box.ranges[side] = {0, space.boxes[0].bins[side].count() - 1};
-  return box;
+bool has_ends(const TermPart& part) {
+  return part.kind != PartKind::polytope;
 }
 
 void set_term(const TermSpace& space, Rule& rule, const Term& term) {
@@ -49,18 +44,16 @@ class DrawnIn {
       : space_(space), list_(std::move(list)), wanted_(decisions_of(list_, space.size())) {}
 
   void draw_in(std::size_t rule, std::size_t part) {
-    for (std::size_t side = 0; side < sides_of(list_[rule].term.parts[part]); ++side) {
-      while (try_shorter(rule, part, side, 1, 0)) {
-      }
-      while (try_shorter(rule, part, side, 0, 1)) {
-      }
+    if (!has_ends(list_[rule].term.parts[part])) return;
+    while (try_shorter(rule, part, 1, 0)) {
+    }
+    while (try_shorter(rule, part, 0, 1)) {
     }
   }
 
-  bool try_shorter(std::size_t rule, std::size_t part, std::size_t side, std::uint32_t at_first,
-                   std::uint32_t at_last) {
+  bool try_shorter(std::size_t rule, std::size_t part, std::uint32_t at_first, std::uint32_t at_last) {
     Term moved = list_[rule].term;
-    BinRange& range = moved.parts[part].ranges[side];
+    BinRange& range = moved.parts[part].range;
     if (range.first == range.last) return false;
     range = {range.first + at_first, range.last - at_last};
     return try_term(rule, moved);
@@ -69,7 +62,7 @@ class DrawnIn {
   bool try_everything(std::size_t rule) {
     if (list_[rule].is_in || list_[rule].term.parts.size() != 2) return false;
     Term wide = list_[rule].term;
-    wide.parts[0] = everything(space_);
+    wide.parts[0] = k_everything;
     return try_term(rule, wide);
   }
 
@@ -98,9 +91,8 @@ class FreeEnds {
       const std::vector<std::uint8_t> is_free = ends.places_that_do_not_depend_on(r);
       std::vector<Overshoots>& of_parts = result.emplace_back(list[r].term.parts.size());
       for (std::size_t p = 0; p < of_parts.size(); ++p) {
-        for (std::size_t side = 0; side < sides_of(list[r].term.parts[p]); ++side) {
-          for (std::size_t end = 0; end < 2; ++end) of_parts[p][side][end] = ends.free(r, p, side, end, is_free);
-        }
+        if (!has_ends(list[r].term.parts[p])) continue;
+        for (std::size_t end = 0; end < 2; ++end) of_parts[p][end] = ends.free(r, p, end, is_free);
       }
     }
     return result;
@@ -121,16 +113,15 @@ class FreeEnds {
     return result;
   }
 
-  bool free(std::size_t rule, std::size_t part, std::size_t side, std::size_t end,
-            const std::vector<std::uint8_t>& is_free) {
+  bool free(std::size_t rule, std::size_t part, std::size_t end, const std::vector<std::uint8_t>& is_free) {
     const TermPart& exact = list_[rule].term.parts[part];
-    const BinRange range = exact.ranges[side];
-    if (end == 0 ? range.first == 0 : range.last + 1 == bins_of(space_, exact, side).count()) return false;
+    const BinRange range = exact.range;
+    if (end == 0 ? range.first == 0 : range.last + 1 == bins_of(space_, exact).count()) return false;
     TermPart moved = exact;
-    lengthen(moved.ranges[side], end);
+    lengthen(moved.range, end);
     if (!reaches_other_places(exact, moved)) return false;
     Term longer = longest_[rule];
-    lengthen(longer.parts[part].ranges[side], end);
+    lengthen(longer.parts[part].range, end);
     const std::vector<std::uint32_t> changing = places_that_change(list_[rule].term, longer);
     for (const std::uint32_t i : changing) {
       if (is_free[i] == 0 || (owners_[i] != 0 && owners_[i] != rule + 1)) return false;
@@ -178,12 +169,12 @@ class FreeEnds {
 
 }  // namespace
 
-const Bins& bins_of(const TermSpace& space, const TermPart& part, std::size_t side) {
-  return part.kind == PartKind::box ? space.boxes[part.family].bins[side] : space.revolved[part.family].bins;
+const Bins& bins_of(const TermSpace& space, const TermPart& part) {
+  return part.kind == PartKind::profile ? space.profiles[part.family].slabs : space.revolved[part.family].bins;
 }
 
-bool keeps_one_part(const TermSpace& space, const Rule& rule) {
-  return !rule.is_in && rule.term.parts.size() == 2 && rule.term.parts[0] == everything(space);
+bool keeps_one_part(const Rule& rule) {
+  return !rule.is_in && rule.term.parts.size() == 2 && rule.term.parts[0] == k_everything;
 }
 
 DecisionList drawn_in(const TermSpace& space, DecisionList list) {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "raw/solids/max_sum.hpp"
+#include "raw/solids/outline.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -61,61 +62,10 @@ double least_price(const TermSpace& space, const TermCosts& costs) {
   return space.known.empty() ? costs.leaf : std::min(costs.known, 1.0) * costs.leaf;
 }
 
-/// The bins with gaining places. Beyond them, a box only loses.
-std::array<BinRange, 3> bins_that_gain(const BoxFamily& boxes, const Gains& gains) {
-  std::array<BinRange, 3> ranges{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<std::uint16_t>& bin = boxes.bin_of_place[axis];
-    BinRange& range = ranges[axis];
-    range = {.first = boxes.bins[axis].count() - 1, .last = 0};
-    for (const std::uint32_t i : gains.positive) {
-      range.first = std::min<std::uint32_t>(range.first, bin[i]);
-      range.last = std::max<std::uint32_t>(range.last, bin[i]);
-    }
-  }
-  return ranges;
-}
-
-SumGrid sums_within(const BoxFamily& boxes, const std::array<BinRange, 3>& ranges, const Gains& gains) {
-  SumGrid grid;
-  for (std::size_t axis = 0; axis < 3; ++axis) grid.bins[axis] = ranges[axis].last - ranges[axis].first + 1;
-  grid.sums.assign(std::size_t{grid.bins[0]} * grid.bins[1] * grid.bins[2], 0.0);
-  for (const std::vector<std::uint32_t>* places : {&gains.positive, &gains.negative}) {
-    for (const std::uint32_t i : *places) {
-      // Values below the first bin wrap around to beyond the last.
-      const std::uint32_t x = boxes.bin_of_place[0][i] - ranges[0].first;
-      const std::uint32_t y = boxes.bin_of_place[1][i] - ranges[1].first;
-      const std::uint32_t z = boxes.bin_of_place[2][i] - ranges[2].first;
-      if (x >= grid.bins[0] || y >= grid.bins[1] || z >= grid.bins[2]) continue;
-      grid.sums[(std::size_t{x} * grid.bins[1] + y) * grid.bins[2] + z] += gains.of_place[i];
-    }
-  }
-  return grid;
-}
-
-PricedTerm best_box(const TermSpace& space, std::uint32_t family, const Gains& gains, const TermCosts& costs,
-                    double least) {
-  const double least_sum = least + costs.leaf;
-  if (gains.positive_sum <= least_sum) return {.term = {}, .net = least};
-  const BoxFamily& boxes = space.boxes[family];
-  const std::array<BinRange, 3> within = bins_that_gain(boxes, gains);
-  BestBox best = max_sum_box(sums_within(boxes, within, gains), least_sum);
-  if (!(best.sum > least_sum)) return {.term = {}, .net = least};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    best.ranges[axis].first += within[axis].first;
-    best.ranges[axis].last += within[axis].first;
-  }
-  const TermPart part{
-      .kind = PartKind::box, .family = family, .ranges = best.ranges, .planes = {}, .is_inverted = false};
-  return {.term = {.parts = {part}}, .net = best.sum - costs.leaf};
-}
-
 TermPart revolved_part(const TermSpace& space, std::uint32_t family, BinRange range) {
   return {.kind = PartKind::revolved,
           .family = family,
-          .ranges = {range},
-          .planes = {},
-          .is_inverted = false,
+          .range = range,
           .is_known = space.revolved[family].known.has_value()};
 }
 
@@ -133,69 +83,108 @@ PricedTerm best_revolved(const TermSpace& space, std::uint32_t family, const Gai
   return {.term = {.parts = {revolved_part(space, family, best.range)}}, .net = best.sum - price};
 }
 
-/// The best intersection of a box with the inside or outside of a curved surface.
-PricedTerm best_with_box(const TermSpace& space, std::uint32_t family, bool is_inverted, const Gains& gains,
-                         const TermCosts& costs, double least) {
+/// A segment of a profile beyond the fourth, in leaves.
+constexpr double k_segment_leaves = 0.1;
+constexpr std::size_t k_free_segments = 4;
+constexpr std::size_t k_tried_intervals = 10;
+
+double leaves_of_segments(std::size_t segments) {
+  return segments > k_free_segments ? k_segment_leaves * static_cast<double>(segments - k_free_segments) : 0.0;
+}
+
+double bare_price(const Drawing& drawing, const FaceSet& faces) {
+  double price = 0;
+  for (std::size_t e = 0; e < drawing.price_of_edge.size(); ++e) {
+    const CurveArrangement::Edge& edge = drawing.arrangement.edges[e];
+    if (faces[edge.left] != faces[edge.right]) price += drawing.price_of_edge[e];
+  }
+  return price;
+}
+
+/// Gains by face, of all places below each edge of the slabs: a row an edge.
+std::vector<double> sums_below(const ProfileFamily& family, std::size_t faces, const Gains& gains) {
+  std::vector<double> sums(faces * (family.slabs.count() + 1), 0.0);
+  for (const std::vector<std::uint32_t>* places : {&gains.positive, &gains.negative}) {
+    for (const std::uint32_t i : *places) {
+      sums[(family.slab_of_place[i] + std::size_t{1}) * faces + family.face_of_place[i]] += gains.of_place[i];
+    }
+  }
+  for (std::size_t k = faces; k < sums.size(); ++k) sums[k] += sums[k - faces];
+  return sums;
+}
+
+struct PromisingInterval {
+  BinRange range;
+  double bound;  ///< no set of faces gains more
+};
+
+std::vector<PromisingInterval> promising_intervals(const ProfileFamily& family, std::size_t faces,
+                                                   std::span<const double> sums, double least) {
+  std::vector<PromisingInterval> intervals;
+  const std::uint32_t slabs = family.slabs.count();
+  const bool is_turned = family.chart.is_turned;
+  for (std::uint32_t first = is_turned ? 0 : 1; first < slabs; ++first) {
+    for (std::uint32_t last = first; last + (is_turned ? 0 : 1) < slabs; ++last) {
+      double bound = 0;
+      for (std::size_t f = 1; f < faces; ++f) {
+        bound += std::max(sums[(last + std::size_t{1}) * faces + f] - sums[first * faces + f], 0.0);
+      }
+      if (bound > least) intervals.push_back({.range = {first, last}, .bound = bound});
+    }
+  }
+  std::ranges::stable_sort(intervals, std::greater<>(), &PromisingInterval::bound);
+  intervals.resize(std::min(intervals.size(), k_tried_intervals));
+  return intervals;
+}
+
+PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains& gains, const TermCosts& costs,
+                        double least) {
+  PricedTerm best{.term = {}, .net = least};
+  if (gains.positive_sum <= least + costs.leaf) return best;
+  const ProfileFamily& family = space.profiles[index];
+  const std::size_t faces = family.chart.drawing.arrangement.areas.size();
+  const std::vector<double> sums = sums_below(family, faces, gains);
+  for (const PromisingInterval& interval : promising_intervals(family, faces, sums, least + costs.leaf)) {
+    if (interval.bound - costs.leaf <= best.net) break;
+    const auto [first, last] = interval.range;
+    const double height = family.chart.is_turned ? 1.0 : family.slabs.edges[last + 1] - family.slabs.edges[first];
+    const double unit = height * family.bare_price * costs.leaf;  // gain that one of the drawing's prices costs
+    std::vector<double> face_gains(faces, 0.0);
+    for (std::size_t f = 1; f < faces; ++f) {
+      face_gains[f] = (sums[(last + std::size_t{1}) * faces + f] - sums[first * faces + f]) / unit;
+    }
+    TermPart part{.kind = PartKind::profile, .family = index, .range = interval.range};
+    part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_leaves * costs.leaf / unit);
+    part.segments = segments_of(family.chart.drawing, part.faces);
+    if (part.segments == 0) continue;
+    part.bare = height * family.bare_price * bare_price(family.chart.drawing, part.faces);
+    double gain = 0;
+    for (std::size_t f = 1; f < faces; ++f) gain += part.faces[f] != 0 ? unit * face_gains[f] : 0.0;
+    PricedTerm found{.term = {.parts = {std::move(part)}}};
+    found.net = gain - cost_of(found.term, costs);
+    if (found.net > best.net && is_writable(family.chart.drawing, found.term.parts[0].faces)) best = std::move(found);
+  }
+  return best;
+}
+
+/// The best intersection of a profile with the inside or outside of a curved surface.
+PricedTerm best_with_profile(const TermSpace& space, std::uint32_t family, bool is_inverted, const Gains& gains,
+                             const TermCosts& costs, double least) {
   const RevolvedFamily& revolved = space.revolved[family];
   const std::uint8_t side = is_inverted ? 0 : 1;
   const double price = price_of(revolved, costs);
   PricedTerm best{.term = {}, .net = least};
   if (sum_on_side(revolved, side, gains.positive, gains) - costs.leaf - price <= least) return best;
-  // No box alone exceeds `least`, so excluding the inside must save more than its price.
   if (is_inverted && -sum_on_side(revolved, 1, gains.negative, gains) <= price) return best;
   TermPart curved = revolved_part(space, family, {.first = 0, .last = revolved.bins.count() - 1});
   curved.is_inverted = is_inverted;
   const Gains within = on_side(revolved, side, gains);
-  for (std::uint32_t boxes = 0; boxes < space.boxes.size(); ++boxes) {
-    const PricedTerm box = best_box(space, boxes, within, costs, best.net + price);
-    if (box.term.parts.empty()) continue;
-    best.net = box.net - price;
-    best.term.parts = {box.term.parts[0], curved};
+  for (std::uint32_t p = 0; p < space.profiles.size(); ++p) {
+    const PricedTerm profile = best_profile(space, p, within, costs, best.net + price);
+    if (profile.term.parts.empty()) continue;
+    best.net = profile.net - price;
+    best.term.parts = {profile.term.parts[0], curved};
     if (!is_inverted) std::swap(best.term.parts[0], best.term.parts[1]);
-  }
-  return best;
-}
-
-/// A row a bin of a curved surface, a column a curved surface: total gain of the bin's places inside both. The
-/// surface's own column has the bin's total.
-std::vector<double> sums_with_others(const TermSpace& space, std::uint32_t family, const Gains& gains) {
-  const RevolvedFamily& revolved = space.revolved[family];
-  const std::size_t width = space.revolved.size();
-  std::vector<double> sums(revolved.bins.count() * width, 0.0);
-  for (std::size_t k = 0; k < revolved.inside.size(); ++k) {
-    const double gain = gains.of_place[revolved.inside[k]];
-    if (gain == 0) continue;
-    const std::uint8_t* const __restrict is_inside = space.is_inside.data() + revolved.inside[k] * width;
-    double* const __restrict row = sums.data() + revolved.bin_of_inside[k] * width;
-    for (std::size_t other = 0; other < width; ++other) row[other] += is_inside[other] != 0 ? gain : 0.0;
-  }
-  return sums;
-}
-
-/// An interval of a curved surface, intersected with the inside or outside of another.
-PricedTerm best_pair(const TermSpace& space, std::uint32_t family, const Gains& gains, const TermCosts& costs,
-                     double least) {
-  PricedTerm best{.term = {}, .net = least};
-  const RevolvedFamily& revolved = space.revolved[family];
-  const double price = price_of(revolved, costs);
-  if (sum_on_side(revolved, 1, gains.positive, gains) - price - least_price(space, costs) <= least) return best;
-  const std::vector<double> sums = sums_with_others(space, family, gains);
-  const std::size_t width = space.revolved.size();
-  std::vector<double> of_bin(revolved.bins.count());
-  for (std::uint32_t other = 0; other < width; ++other) {
-    if (other == family) continue;
-    for (const bool is_inverted : {false, true}) {
-      for (std::size_t bin = 0; bin < of_bin.size(); ++bin) {
-        const double* const row = sums.data() + bin * width;
-        of_bin[bin] = is_inverted ? row[family] - row[other] : row[other];
-      }
-      const BestInterval interval = max_sum_interval(of_bin);
-      const double net = interval.sum - price - price_of(space.revolved[other], costs);
-      if (net <= best.net) continue;
-      TermPart whole = revolved_part(space, other, {.first = 0, .last = space.revolved[other].bins.count() - 1});
-      whole.is_inverted = is_inverted;
-      best = {.term = {.parts = {revolved_part(space, family, interval.range), whole}}, .net = net};
-    }
   }
   return best;
 }
@@ -215,7 +204,7 @@ class PolytopeCuts {
   PricedTerm around(std::size_t seed) {
     alive_ = all_;
     under_alive_ = under_;
-    TermPart part{.kind = PartKind::polytope, .family = 0, .ranges = {}, .planes = {}, .is_inverted = false};
+    TermPart part;
     double sum = sum_;
     while (cut(seed, part, sum)) {
     }
@@ -281,7 +270,7 @@ PricedTerm best_polytope(const TermSpace& space, std::span<const double> gains, 
   PolytopeCuts cuts(space, gains, costs);
   for (std::size_t k = 0; k < k_polytope_seeds; ++k) {
     const auto seed = static_cast<std::size_t>(std::ranges::max_element(open) - open.begin());
-    if (!(open[seed] > 0) || positive_sum(open) - costs.leaf <= best.net) break;
+    if (!(open[seed] > 0) || all_of(open).positive_sum - costs.leaf <= best.net) break;
     PricedTerm found = cuts.around(seed);
     open[seed] = 0;
     if (found.term.parts.empty()) continue;
@@ -298,15 +287,11 @@ double cost_of(const Term& term, const TermCosts& costs) {
   double leaves = 0;
   for (const TermPart& part : term.parts) {
     const std::size_t planes = part.planes.size();
+    leaves += leaves_of_segments(part.segments) + part.bare;
     leaves += (part.is_known ? costs.known : 1.0) +
               (planes > k_free_planes ? costs.plane * static_cast<double>(planes - k_free_planes) : 0.0);
   }
   return leaves * costs.leaf;
-}
-
-PricedTerm best_box(const TermSpace& space, std::uint32_t family, std::span<const double> gains, const TermCosts& costs,
-                    double least) {
-  return best_box(space, family, all_of(gains), costs, least);
 }
 
 PricedTerm best_term(const TermSpace& space, std::span<const double> gains, const TermCosts& costs, double least,
@@ -317,13 +302,17 @@ PricedTerm best_term(const TermSpace& space, std::span<const double> gains, cons
     if (!found.term.parts.empty() && found.net > best.net) best = std::move(found);
   };
   if (all.positive_sum - least_price(space, costs) <= least) return best;
-  for (std::uint32_t r = 0; r < space.revolved.size(); ++r) take(best_revolved(space, r, all, costs, best.net));
-  for (std::uint32_t b = 0; b < space.boxes.size(); ++b) take(best_box(space, b, all, costs, best.net));
+  const auto families = static_cast<std::uint32_t>(space.revolved.size());
+  for (std::uint32_t r = 0; r < families; ++r) {
+    if (kinds == TermKinds::known && !space.revolved[r].known) continue;
+    take(best_revolved(space, r, all, costs, best.net));
+  }
+  if (kinds == TermKinds::known) return best;
+  for (std::uint32_t p = 0; p < space.profiles.size(); ++p) take(best_profile(space, p, all, costs, best.net));
   if (kinds == TermKinds::simple) return best;
-  if (space.has_oblique_planes) take(best_polytope(space, gains, costs, best.net));
-  for (std::uint32_t r = 0; r < space.revolved.size(); ++r) {
-    for (const bool is_inverted : {false, true}) take(best_with_box(space, r, is_inverted, all, costs, best.net));
-    take(best_pair(space, r, all, costs, best.net));
+  take(best_polytope(space, gains, costs, best.net));
+  for (std::uint32_t r = 0; r < families; ++r) {
+    for (const bool is_inverted : {false, true}) take(best_with_profile(space, r, is_inverted, all, costs, best.net));
   }
   return best;
 }

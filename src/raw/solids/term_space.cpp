@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "cloud2csg/advanced/prepare.hpp"
 #include "core/tree/interner.hpp"
 #include "raw/solids/edges.hpp"
 
@@ -12,6 +13,9 @@ namespace {
 constexpr double k_derived_share = 0.006;  // in diagonals: possible error of edges from round surfaces
 constexpr double k_part_margin = 0.02;     // in diagonals: less than the places' margin
 constexpr double k_margin = 1.0;           // in diagonals: unbounded terms cover everything
+/// Leaves that a bare surface as large as the part costs. This decides about faces without places. A third, three and
+/// ten times of it changed the mean IoU of 27 parts by less than 0.001.
+constexpr double k_bare_leaves = 1;
 
 std::vector<PlaneFamily> distinct_planes(std::span<const DetectedSurface> surfaces, double tolerance,
                                          const Eigen::Vector3d& middle) {
@@ -28,21 +32,6 @@ std::vector<PlaneFamily> distinct_planes(std::span<const DetectedSurface> surfac
     planes.push_back({.normal = surface.axis, .offset = surface.axis.dot(surface.position), .is_under = {}});
   }
   return planes;
-}
-
-bool is_of_frame(const PlaneFamily& plane, const BoxFamily& boxes) {
-  return are_parallel(plane.normal, boxes.axes.col(0)) || are_parallel(plane.normal, boxes.axes.col(1)) ||
-         are_parallel(plane.normal, boxes.axes.col(2));
-}
-
-void bin_places(BoxFamily& boxes, const Points& positions) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d direction = boxes.axes.col(static_cast<Eigen::Index>(axis));
-    boxes.bin_of_place[axis].resize(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      boxes.bin_of_place[axis][i] = boxes.bins[axis].bin_of(positions[i].dot(direction));
-    }
-  }
 }
 
 void bin_places(RevolvedFamily& revolved, const Primitive& known, const Points& positions) {
@@ -75,8 +64,17 @@ void bin_places(PlaneFamily& plane, const Points& positions) {
   }
 }
 
+void bin_places(ProfileFamily& profiles, const Points& positions) {
+  const FaceLocator locator(profiles.chart.drawing.arrangement);
+  profiles.face_of_place.resize(positions.size());
+  profiles.slab_of_place.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    profiles.face_of_place[i] = locator.face_at(profiles.chart.place_of(positions[i]));
+    profiles.slab_of_place[i] = profiles.slabs.bin_of(profiles.chart.height_of(positions[i]));
+  }
+}
+
 void bin_places(TermSpace& space, const Points& positions) {
-  for (BoxFamily& boxes : space.boxes) bin_places(boxes, positions);
   for (RevolvedFamily& revolved : space.revolved) {
     revolved.inside.clear();
     revolved.bin_of_inside.clear();
@@ -87,6 +85,7 @@ void bin_places(TermSpace& space, const Points& positions) {
     }
   }
   for (PlaneFamily& plane : space.planes) bin_places(plane, positions);
+  for (ProfileFamily& profiles : space.profiles) bin_places(profiles, positions);
 }
 
 /// A number for each place, equal for places that no family distinguishes.
@@ -102,26 +101,15 @@ std::vector<std::uint32_t> kinds_of_places(const TermSpace& space, std::size_t c
   std::vector<std::uint32_t> key;
   for (std::size_t i = 0; i < count; ++i) {
     key.clear();
-    for (const BoxFamily& boxes : space.boxes) {
-      for (const std::vector<std::uint16_t>& bins : boxes.bin_of_place) key.push_back(bins[i]);
-    }
     for (const std::vector<std::uint32_t>& bins : axial) key.push_back(bins[i]);
     for (const PlaneFamily& plane : space.planes) key.push_back(plane.is_under[i]);
+    for (const ProfileFamily& profiles : space.profiles) {
+      key.push_back(profiles.face_of_place[i]);
+      key.push_back(profiles.slab_of_place[i]);
+    }
     kind_of[i] = kinds.intern(key);
   }
   return kind_of;
-}
-
-std::vector<BoxFamily> box_families(std::span<const DetectedSurface> surfaces, const EdgeRules& rules) {
-  std::vector<BoxFamily> families;
-  for (const Eigen::Matrix3d& axes : orthogonal_frames(surfaces)) {
-    BoxFamily& boxes = families.emplace_back();
-    boxes.axes = axes;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      boxes.bins[axis] = edges_along(axes.col(static_cast<Eigen::Index>(axis)), surfaces, rules);
-    }
-  }
-  return families;
 }
 
 std::vector<RevolvedFamily> known_families(std::size_t count, double diagonal) {
@@ -143,6 +131,21 @@ RevolvedFamily revolved_family(const DetectedSurface& detected, const Points& po
   return family;
 }
 
+std::vector<ProfileFamily> profile_families(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
+                                            double tolerance, double diagonal) {
+  const double spacing = estimate_scale(cloud).spacing;
+  const double area = static_cast<double>(cloud.size()) * spacing * spacing;
+  std::vector<ProfileFamily> families;
+  for (Chart& chart : make_charts(cloud.positions, surfaces, {.tolerance = tolerance, .spacing = spacing})) {
+    ProfileFamily& family = families.emplace_back();
+    family.slabs.edges = {-diagonal, diagonal};
+    family.slabs.edges.insert(family.slabs.edges.begin() + 1, chart.caps.begin(), chart.caps.end());
+    family.bare_price = k_bare_leaves / area;
+    family.chart = std::move(chart);
+  }
+  return families;
+}
+
 /// Bins the places and merges those that nothing distinguishes.
 void join_places(TermSpace& space, const LabelledPlaces& places) {
   bin_places(space, places.positions);
@@ -157,9 +160,32 @@ void join_places(TermSpace& space, const LabelledPlaces& places) {
   }
   for (double& pull : space.pulls) pull = summable(pull);
   bin_places(space, first_of_kind);
-  for (std::size_t i = 0; i < space.size(); ++i) {
-    for (const RevolvedFamily& revolved : space.revolved) space.is_inside.push_back(revolved.is_inside[i]);
+}
+
+/// By place: whether it is in the part, as if that were not inverted.
+std::vector<std::uint8_t> inside_of(const TermSpace& space, const TermPart& part) {
+  const BinRange range = part.range;
+  std::vector<std::uint8_t> inside(space.size(), part.kind == PartKind::polytope ? 1 : 0);
+  if (part.kind == PartKind::revolved) {
+    const RevolvedFamily& revolved = space.revolved[part.family];
+    for (std::size_t k = 0; k < revolved.inside.size(); ++k) {
+      const std::uint16_t bin = revolved.bin_of_inside[k];
+      if (bin >= range.first && bin <= range.last) inside[revolved.inside[k]] = 1;
+    }
+  } else if (part.kind == PartKind::profile) {
+    const ProfileFamily& profiles = space.profiles[part.family];
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      const std::uint16_t slab = profiles.slab_of_place[i];
+      if (slab >= range.first && slab <= range.last) inside[i] = part.faces[profiles.face_of_place[i]];
+    }
   }
+  for (const std::uint32_t side : part.planes) {
+    const std::vector<std::uint8_t>& under = space.planes[side / 2].is_under;
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      inside[i] &= static_cast<std::uint8_t>((under[i] != 0) != (side % 2 != 0));
+    }
+  }
+  return inside;
 }
 
 }  // namespace
@@ -184,17 +210,15 @@ TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurfa
                         .derived_tolerance = std::max(2 * distance_tolerance, k_derived_share * diagonal)};
   std::vector<DetectedSurface> all = known.surfaces;
   all.insert(all.end(), surfaces.begin(), surfaces.end());
-  space.boxes = box_families(all, rules);
+  const std::vector<DetectedSurface> hidden = bend_planes(all);
+  all.insert(all.end(), hidden.begin(), hidden.end());
   space.revolved = known_families(known.solids.size(), diagonal);
   for (const DetectedSurface& detected : surfaces) {
     if (detected.surface.type == SurfaceType::plane) continue;
     space.revolved.push_back(revolved_family(detected, cloud.positions, all, rules, diagonal));
   }
   space.planes = distinct_planes(all, distance_tolerance, box.center());
-  for (const PlaneFamily& plane : space.planes) {
-    space.has_oblique_planes = space.has_oblique_planes || !is_of_frame(plane, space.boxes[0]);
-  }
-  if (!space.has_oblique_planes) space.planes.clear();
+  space.profiles = profile_families(cloud, all, distance_tolerance, diagonal);
   join_places(space, places);
   return space;
 }
@@ -202,29 +226,7 @@ TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurfa
 std::vector<std::uint8_t> members_of(const TermSpace& space, const Term& term) {
   std::vector<std::uint8_t> members(space.size(), 1);
   for (const TermPart& part : term.parts) {
-    std::vector<std::uint8_t> inside(space.size(), part.kind == PartKind::revolved ? 0 : 1);
-    if (part.kind == PartKind::box) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::vector<std::uint16_t>& bins = space.boxes[part.family].bin_of_place[axis];
-        const BinRange range = part.ranges[axis];
-        for (std::size_t i = 0; i < inside.size(); ++i) {
-          inside[i] &= static_cast<std::uint8_t>(bins[i] >= range.first && bins[i] <= range.last);
-        }
-      }
-    } else if (part.kind == PartKind::revolved) {
-      const RevolvedFamily& revolved = space.revolved[part.family];
-      for (std::size_t k = 0; k < revolved.inside.size(); ++k) {
-        const std::uint16_t bin = revolved.bin_of_inside[k];
-        if (bin >= part.ranges[0].first && bin <= part.ranges[0].last) inside[revolved.inside[k]] = 1;
-      }
-    } else {
-      for (const std::uint32_t side : part.planes) {
-        const std::vector<std::uint8_t>& under = space.planes[side / 2].is_under;
-        for (std::size_t i = 0; i < inside.size(); ++i) {
-          inside[i] &= static_cast<std::uint8_t>((under[i] != 0) != (side % 2 != 0));
-        }
-      }
-    }
+    const std::vector<std::uint8_t> inside = inside_of(space, part);
     for (std::size_t i = 0; i < members.size(); ++i)
       members[i] &= static_cast<std::uint8_t>((inside[i] != 0) != part.is_inverted);
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/solids.hpp"
+#include "raw/solids/charts.hpp"
 #include "raw/solids/max_sum.hpp"
 
 namespace cloud2csg {
@@ -18,13 +18,6 @@ struct Bins {
 
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(edges.size() - 1); }
   [[nodiscard]] std::uint16_t bin_of(double value) const;
-};
-
-/// Three orthogonal directions, and possible faces of boxes along each. The first and last edge are beyond the part.
-struct BoxFamily {
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns, right-handed
-  std::array<Bins, 3> bins = {};
-  std::array<std::vector<std::uint16_t>, 3> bin_of_place = {};
 };
 
 /// A curved surface, or a known solid of any shape. A cylinder's or cone's edges cut its axis; others have one bin.
@@ -44,6 +37,15 @@ struct PlaneFamily {
   std::vector<std::uint8_t> is_under = {};  ///< by place: normal . x <= offset
 };
 
+/// Extrusions or revolutions: sets of a drawing's faces. Extrusions end at two of the slabs' edges.
+struct ProfileFamily {
+  Chart chart = {};
+  Bins slabs = {};        ///< one if turned
+  double bare_price = 0;  ///< leaves that a unit of the drawing's prices costs, times the height unless turned
+  std::vector<std::uint32_t> face_of_place = {};
+  std::vector<std::uint16_t> slab_of_place = {};
+};
+
 /// Rounded to a multiple of 2^-40, so that sums are exact in any order. Terms of the same places then gain exactly the
 /// same, and the first of them is taken, not the one that rounding favours.
 [[nodiscard]] inline double summable(double pull) {
@@ -55,13 +57,11 @@ struct PlaneFamily {
 struct TermSpace {
   PrimitiveSet known = {};         ///< solids that terms may use
   std::vector<double> pulls = {};  ///< by place: gain from having it in the solid; summable()
-  std::vector<BoxFamily> boxes = {};
   std::vector<RevolvedFamily> revolved = {};
-  std::vector<std::uint8_t> is_inside = {};  ///< a row a place: which curved surfaces contain it
   std::vector<PlaneFamily> planes = {};
-  bool has_oblique_planes = false;  ///< some that belong to no box family
-  AlignedBox part_bounds = {};      ///< slightly beyond the part: limit of added solids
-  AlignedBox bounds = {};           ///< far beyond the part on all sides
+  std::vector<ProfileFamily> profiles = {};
+  AlignedBox part_bounds = {};  ///< slightly beyond the part: limit of added solids
+  AlignedBox bounds = {};       ///< far beyond the part on all sides
 
   [[nodiscard]] std::size_t size() const { return pulls.size(); }
 };
@@ -77,14 +77,18 @@ struct KnownTerms {
                                         const LabelledPlaces& places, double distance_tolerance,
                                         const KnownTerms& known = {});
 
-enum class PartKind : std::uint8_t { box, revolved, polytope };
+enum class PartKind : std::uint8_t { revolved, polytope, profile };
 
 struct TermPart {
-  PartKind kind = PartKind::box;
-  std::uint32_t family = 0;                ///< index of the box family or curved surface
-  std::array<BinRange, 3> ranges = {};     ///< for a box; the first is the range along a curved surface's axis
-  std::vector<std::uint32_t> planes = {};  ///< for a polytope: 2 * plane, plus 1 for the side above it
-  bool is_inverted = false;                ///< the outside
+  PartKind kind = PartKind::polytope;
+  std::uint32_t family = 0;  ///< index of the curved surface or profile family
+  BinRange range = {};       ///< along a curved surface's axis, or of slabs
+  std::vector<std::uint32_t> planes =
+      {};                    ///< for a polytope: 2 * plane, plus 1 for the side above it; none: everything
+  FaceSet faces = {};        ///< for a profile
+  std::size_t segments = 0;  ///< of the profile
+  double bare = 0;           ///< price in leaves of a profile's surfaces where no points are
+  bool is_inverted = false;  ///< the outside
   bool is_known = false;
   friend bool operator==(const TermPart&, const TermPart&) = default;
 };

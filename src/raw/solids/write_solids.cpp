@@ -13,6 +13,10 @@
 
 #include "cloud2csg/csg_tree.hpp"
 #include "core/geometry/boxes.hpp"
+#include "core/primitive/profile.hpp"
+#include "raw/solids/edges.hpp"
+#include "raw/solids/outline.hpp"
+#include "raw/solids/simplest_solid.hpp"
 #include "raw/solids/term_ends.hpp"
 
 namespace cloud2csg {
@@ -38,40 +42,17 @@ Span extent(const AlignedBox& box, const Eigen::Vector3d& origin, const Eigen::V
   return {middle - half, middle + half};
 }
 
-Primitive box_solid(const BoxFamily& boxes, const std::array<Span, 3>& spans) {
-  Eigen::Vector3d middle;
-  Eigen::Vector3d size;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Span span = spans[static_cast<std::size_t>(axis)];
-    middle[axis] = 0.5 * (span.low + span.high);
-    size[axis] = span.high - span.low;
-  }
-  return {.id = {},
-          .shape = Box{size},
-          .pose = {.position = boxes.axes * middle, .orientation = Eigen::Quaterniond(boxes.axes).normalized()}};
-}
-
-/// Whether flipping the solid reduces its rotation.
-bool is_upside_down(const Eigen::Vector3d& axis) {
-  constexpr double k_level = 1e-9;
-  for (const Eigen::Index k : {2, 1, 0}) {
-    if (std::abs(axis[k]) > k_level) return axis[k] < 0;
-  }
-  return false;
-}
-
 Primitive revolved_solid(const Surface& surface, const Span& span) {
   const Eigen::Vector3d middle = surface.position + 0.5 * (span.low + span.high) * surface.axis;
   const double height = span.high - span.low;
-  const bool is_turned = is_upside_down(surface.axis);
-  const Eigen::Vector3d axis = is_turned ? -surface.axis : surface.axis;
+  const Eigen::Vector3d axis = upright(surface.axis);
   switch (surface.type) {
     case SurfaceType::cylinder:
       return {.id = {}, .shape = Cylinder{surface.radius, height}, .pose = pose_from_axis(middle, axis)};
     case SurfaceType::cone: {
       const double slope = std::tan(surface.half_angle);
       Cone cone{.radius_bottom = std::max(slope * span.low, 0.0), .radius_top = slope * span.high, .height = height};
-      if (is_turned) std::swap(cone.radius_bottom, cone.radius_top);
+      if (axis != surface.axis) std::swap(cone.radius_bottom, cone.radius_top);
       return {.id = {}, .shape = cone, .pose = pose_from_axis(middle, axis)};
     }
     case SurfaceType::torus:
@@ -112,25 +93,41 @@ Primitive polytope_solid(const TermSpace& space, const TermPart& part, const Ali
   return {.id = {}, .shape = std::move(needed), .pose = {.position = middle}};
 }
 
+/// Its local origin is in the middle of the profile.
+Primitive profile_solid(const Chart& chart, const FaceSet& faces, const Span& span) {
+  Profile profile = outline_of(chart.drawing, faces);
+  Eigen::Vector2d middle = bounds_of(profile).center();
+  if (chart.is_turned) middle.x() = 0;
+  for (ClosedPath& path : profile.paths) {
+    for (PathCorner& corner : path) corner.point -= middle;
+  }
+  const Eigen::Vector3d place = chart.is_turned ? Eigen::Vector3d(0, 0, middle.y())
+                                                : Eigen::Vector3d(middle.x(), middle.y(), 0.5 * (span.low + span.high));
+  const Pose pose{.position = chart.frame.position + chart.frame.orientation * place,
+                  .orientation = chart.frame.orientation};
+  if (chart.is_turned) return {.id = {}, .shape = Revolution{std::move(profile)}, .pose = pose};
+  return {.id = {}, .shape = Extrusion{std::move(profile), span.high - span.low}, .pose = pose};
+}
+
 /// Solids that add to the part end with it. Solids that subtract reach beyond all those.
 Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
   const AlignedBox& bounds = adds ? space.part_bounds : space.bounds;
-  const double most = k_most_overshoot * space.bounds.diagonal().norm();
-  const auto span = [&](std::size_t side, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
-    const Span wanted = span_of(bins_of(space, part, side), part.ranges[side], overshoots[side], most);
+  if (part.kind == PartKind::polytope) return polytope_solid(space, part, bounds);
+  const auto span_along = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
+    const double most = k_most_overshoot * space.bounds.diagonal().norm();
+    const Span wanted = span_of(bins_of(space, part), part.range, overshoots, most);
     const Span limit = extent(bounds, origin, axis);
     return Span{std::max(wanted.low, limit.low), std::min(wanted.high, limit.high)};
   };
-  if (part.kind == PartKind::box) {
-    const BoxFamily& boxes = space.boxes[part.family];
-    const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-    return box_solid(boxes, {span(0, origin, boxes.axes.col(0)), span(1, origin, boxes.axes.col(1)),
-                             span(2, origin, boxes.axes.col(2))});
+  if (part.kind == PartKind::profile) {
+    const Chart& chart = space.profiles[part.family].chart;
+    const Pose& frame = chart.frame;
+    return simplest(
+        profile_solid(chart, part.faces, span_along(frame.position, frame.orientation * Eigen::Vector3d::UnitZ())));
   }
-  if (part.kind == PartKind::polytope) return polytope_solid(space, part, bounds);
   const Surface& surface = space.revolved[part.family].surface;
   const bool has_ends = surface.type == SurfaceType::cylinder || surface.type == SurfaceType::cone;
-  return revolved_solid(surface, has_ends ? span(0, surface.position, surface.axis) : Span{0, 1});
+  return revolved_solid(surface, has_ends ? span_along(surface.position, surface.axis) : Span{0, 1});
 }
 
 class SolidWriter {
@@ -191,7 +188,7 @@ struct WrittenTerm {
 WrittenTerm write_term(const TermSpace& space, const Rule& rule, const std::vector<Overshoots>& overshoots,
                        SolidWriter& writer) {
   WrittenTerm term;
-  if (keeps_one_part(space, rule)) {
+  if (keeps_one_part(rule)) {
     const TermPart& kept = rule.term.parts[1];
     const CsgTree leaf = CsgTree::leaf(writer.add(space, kept, overshoots[1], kept.is_inverted));
     return {.tree = kept.is_inverted ? complement(leaf) : leaf};

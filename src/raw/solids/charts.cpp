@@ -1,0 +1,411 @@
+#include "raw/solids/charts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/geometry/subset.hpp"
+#include "raw/solids/edges.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr std::size_t k_most_curve_points = 2000;  // of a curve; more tell no better where it ends
+constexpr double k_reach = 0.06;                   // beyond the points, in diagonals of the drawing
+constexpr double k_least_arc_reach = 0.35;         // the same of an arc, in radians
+constexpr double k_meeting = 1e-9;                 // in diagonals: crossings that near are one
+constexpr double k_border = 0.01;                  // width of the empty border, in diagonals
+constexpr double k_gap = 3;                        // in spacings: an edge farther from all points has none
+constexpr double k_least_share = 0.002;            // of all points, on surfaces along the direction or axis
+
+/// A line normal . p = offset, or a circle.
+struct Curve {
+  bool is_circle = false;
+  Vector2d normal = Vector2d::UnitX();  ///< of a line, or the centre of a circle
+  double offset = 0;                    ///< of a line, or the radius of a circle
+  std::vector<Vector2d> points = {};    ///< some of its points; of a hidden line, two far away
+  std::size_t count = 0;                ///< of all its points; 0 for a line that is hidden
+
+  [[nodiscard]] double distance(const Vector2d& p) const {
+    return is_circle ? std::abs((p - normal).norm() - offset) : std::abs(normal.dot(p) - offset);
+  }
+  /// Length along the curve, from its start: the foot of the origin, or the circle's +x.
+  [[nodiscard]] double along(const Vector2d& p) const {
+    if (!is_circle) return to_the_left(normal).dot(p);
+    const Vector2d arm = p - normal;
+    return offset * std::atan2(arm.y(), arm.x());
+  }
+};
+
+bool is_same(const Curve& a, const Curve& b, double tolerance) {
+  if (a.is_circle != b.is_circle) return false;
+  if (a.is_circle) return (a.normal - b.normal).norm() < tolerance && std::abs(a.offset - b.offset) < tolerance;
+  // A line is what it is near the other's points.
+  return std::abs(a.normal.dot(b.normal)) > 0.999 &&
+         std::ranges::all_of(b.points, [&](const Vector2d& p) { return a.distance(p) < 2 * tolerance; });
+}
+
+/// Equal curves become one, with the values of the one with the most points.
+std::vector<Curve> merged(std::vector<Curve> curves, double tolerance) {
+  std::ranges::stable_sort(curves, std::greater<>(), &Curve::count);
+  std::vector<Curve> result;
+  for (Curve& curve : curves) {
+    const auto known =
+        std::ranges::find_if(result, [&](const Curve& other) { return is_same(other, curve, tolerance); });
+    if (known == result.end()) {
+      result.push_back(std::move(curve));
+    } else {
+      known->points.insert(known->points.end(), curve.points.begin(), curve.points.end());
+      known->count += curve.count;
+    }
+  }
+  return result;
+}
+
+/// The place on a curve that is nearest to a circle beside or inside it.
+std::optional<Vector2d> nearest_place(const Curve& curve, const Curve& circle) {
+  if (!curve.is_circle) return circle.normal + (curve.offset - curve.normal.dot(circle.normal)) * curve.normal;
+  const Vector2d arm = circle.normal - curve.normal;
+  if (arm.norm() <= 1e-9 * curve.offset) return std::nullopt;
+  return curve.normal + curve.offset * arm.normalized();
+}
+
+class ChartMaker {
+ public:
+  ChartMaker(const Points& positions, std::span<const DetectedSurface> surfaces, const ChartOptions& options)
+      : positions_(positions),
+        surfaces_(surfaces),
+        options_(options),
+        middle_(bounds_of(positions).center()),
+        diagonal_(bounds_of(positions).diagonal().norm()) {}
+
+  std::vector<Chart> make() const {
+    std::vector<Chart> charts = best_of(directions(), false, options_.most_directions);
+    std::vector<Chart> turned = best_of(axes(), true, options_.most_axes);
+    std::move(turned.begin(), turned.end(), std::back_inserter(charts));
+    return charts;
+  }
+
+ private:
+  [[nodiscard]] Pose frame_at(const Vector3d& origin, const Vector3d& direction) const {
+    const Vector3d z = upright(direction.normalized());
+    return pose_from_axis(origin + (middle_ - origin).dot(z) * z, z);
+  }
+
+  [[nodiscard]] std::vector<Pose> directions() const {
+    std::vector<Pose> frames;
+    const auto add = [&](const Vector3d& direction) {
+      const auto is_known = [&](const Pose& frame) {
+        return are_parallel(frame.orientation * Vector3d::UnitZ(), direction);
+      };
+      if (std::ranges::none_of(frames, is_known)) frames.push_back(frame_at(middle_, direction));
+    };
+    for (const DetectedSurface& s : surfaces_) {
+      if (s.surface.type != SurfaceType::sphere) add(s.surface.axis);
+    }
+    // The direction of a prism without caps.
+    constexpr std::size_t k_large = 8;
+    std::vector<const DetectedSurface*> planes;
+    for (const DetectedSurface& s : surfaces_) {
+      if (s.surface.type == SurfaceType::plane) planes.push_back(&s);
+    }
+    std::ranges::stable_sort(planes, std::greater<>(), [](const DetectedSurface* s) { return s->points.size(); });
+    planes.resize(std::min(planes.size(), k_large));
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vector3d across = planes[i]->surface.axis.cross(planes[j]->surface.axis);
+        if (across.norm() > 0.2) add(across.normalized());
+      }
+    }
+    return frames;
+  }
+
+  [[nodiscard]] std::vector<Pose> axes() const {
+    std::vector<Pose> frames;
+    for (const DetectedSurface& s : surfaces_) {
+      if (s.surface.type == SurfaceType::plane || s.surface.type == SurfaceType::sphere) continue;
+      const Pose frame = frame_at(s.surface.position, s.surface.axis);
+      const auto is_known = [&](const Pose& other) {
+        return are_parallel(other.orientation * Vector3d::UnitZ(), s.surface.axis) &&
+               other.to_local(frame.position).head<2>().norm() < options_.tolerance;
+      };
+      if (std::ranges::none_of(frames, is_known)) frames.push_back(frame);
+    }
+    return frames;
+  }
+
+  /// What a surface shows in a drawing.
+  struct Trace {
+    std::optional<Curve> curve = {};
+    std::optional<double> cap = {};
+  };
+
+  [[nodiscard]] std::vector<Vector2d> points_of(const Chart& chart, const DetectedSurface& s) const {
+    std::vector<Vector2d> points;
+    for (const std::uint32_t i : some_of(s.points, k_most_curve_points))
+      points.push_back(chart.place_of(positions_[i]));
+    return points;
+  }
+
+  /// Beyond all points on both sides.
+  [[nodiscard]] std::vector<Vector2d> far_points(const Curve& line) const {
+    const Vector2d foot = line.offset * line.normal;
+    const Vector2d arm = diagonal_ * to_the_left(line.normal);
+    return {foot + arm, foot - arm};
+  }
+
+  /// Where a surface's points are in a chart.
+  struct Extent {
+    Vector3d middle;
+    double along, across;  ///< infinite without points
+  };
+
+  [[nodiscard]] Extent extent_of(const Chart& chart, const DetectedSurface& s) const {
+    constexpr double k_endless = std::numeric_limits<double>::infinity();
+    if (s.points.empty()) return {chart.frame.to_local(s.surface.position), k_endless, k_endless};
+    AlignedBox box;
+    for (const std::uint32_t i : some_of(s.points, k_most_curve_points))
+      box.extend(chart.frame.to_local(positions_[i]));
+    return {box.center(), box.sizes().z(), box.sizes().head<2>().norm()};
+  }
+
+  /// Whether a tilt with that sine moves nothing within the extent by more than the tolerance. Small surfaces leave
+  /// their direction uncertain.
+  [[nodiscard]] bool is_untilted(double sine, double extent) const {
+    return sine < k_level || (sine < k_most_tilt && sine * extent <= options_.tolerance);
+  }
+
+  [[nodiscard]] Trace trace_across(const Chart& chart, const DetectedSurface& s) const {
+    const Vector3d axis = chart.frame.orientation.conjugate() * s.surface.axis;
+    const Vector3d place = chart.frame.to_local(s.surface.position);
+    const Extent extent = extent_of(chart, s);
+    const double turned = axis.head<2>().norm();
+    if (s.surface.type == SurfaceType::plane && is_untilted(turned, extent.across)) {
+      return {.cap = place.z() - axis.head<2>().dot((extent.middle - place).head<2>()) / axis.z()};
+    }
+    if (s.surface.type == SurfaceType::plane && is_untilted(std::abs(axis.z()), extent.along)) {
+      const double offset = axis.dot(place) - axis.z() * extent.middle.z();
+      return {.curve = Curve{.normal = axis.head<2>() / turned, .offset = offset / turned}};
+    }
+    if (s.surface.type == SurfaceType::cylinder && is_untilted(turned, extent.along)) {
+      return {.curve = Curve{
+                  .is_circle = true, .normal = axis_at(extent.middle.z(), place, axis), .offset = s.surface.radius}};
+    }
+    return {};
+  }
+
+  /// Where an axis has that height.
+  [[nodiscard]] static Vector2d axis_at(double height, const Vector3d& place, const Vector3d& axis) {
+    return (place + (height - place.z()) / axis.z() * axis).head<2>();
+  }
+
+  [[nodiscard]] Trace trace_around(const Chart& chart, const DetectedSurface& s) const {
+    const Vector3d axis = chart.frame.orientation.conjugate() * s.surface.axis;
+    const Vector3d place = chart.frame.to_local(s.surface.position);
+    const Vector2d centre(0, place.z());
+    if (s.surface.type == SurfaceType::sphere) {
+      if (place.head<2>().norm() >= options_.tolerance) return {};
+      return {.curve = Curve{.is_circle = true, .normal = centre, .offset = s.surface.radius}};
+    }
+    const Extent extent = extent_of(chart, s);
+    const double turned = axis.head<2>().norm();
+    if (s.surface.type == SurfaceType::plane) {
+      if (!is_untilted(turned, extent.across)) return {};
+      const double height = place.z() - axis.head<2>().dot((extent.middle - place).head<2>()) / axis.z();
+      return {.curve = Curve{.normal = Vector2d::UnitY(), .offset = height}};
+    }
+    const double height = s.surface.type == SurfaceType::cylinder ? extent.middle.z() : place.z();
+    if (!is_untilted(turned, extent.along) || axis_at(height, place, axis).norm() >= options_.tolerance) return {};
+    if (s.surface.type == SurfaceType::cylinder) {
+      return {.curve = Curve{.normal = Vector2d::UnitX(), .offset = s.surface.radius}};
+    }
+    if (s.surface.type == SurfaceType::torus) {
+      return {.curve = Curve{.is_circle = true,
+                             .normal = Vector2d(s.surface.radius, place.z()),
+                             .offset = s.surface.minor_radius}};
+    }
+    const double up = axis.z() > 0 ? 1 : -1;
+    const Vector2d normal(std::cos(s.surface.half_angle), -up * std::sin(s.surface.half_angle));
+    return {.curve = Curve{.normal = normal, .offset = normal.dot(centre)}};
+  }
+
+  /// The charts whose curves have the most points; those with hardly any are left out.
+  [[nodiscard]] std::vector<Chart> best_of(const std::vector<Pose>& frames, bool is_turned, std::size_t most) const {
+    struct Candidate {
+      Chart chart;
+      std::vector<Curve> curves;
+      std::size_t count;
+    };
+    std::vector<Candidate> candidates;
+    for (const Pose& frame : frames) {
+      Candidate candidate{.chart = {.is_turned = is_turned, .frame = frame}, .curves = {}, .count = 0};
+      for (const DetectedSurface& s : surfaces_) {
+        Trace trace = is_turned ? trace_around(candidate.chart, s) : trace_across(candidate.chart, s);
+        if (trace.cap) candidate.chart.caps.push_back(*trace.cap);
+        if (!trace.curve) continue;
+        trace.curve->points = s.points.empty() ? far_points(*trace.curve) : points_of(candidate.chart, s);
+        trace.curve->count = s.points.size();
+        if (!is_turned || s.surface.type != SurfaceType::plane) candidate.count += s.points.size();
+        candidate.curves.push_back(std::move(*trace.curve));
+      }
+      if (static_cast<double>(candidate.count) < k_least_share * static_cast<double>(positions_.size())) continue;
+      if (candidate.count > 0) candidates.push_back(std::move(candidate));
+    }
+    std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::count);
+    candidates.resize(std::min(candidates.size(), most));
+    std::vector<Chart> charts;
+    charts.reserve(candidates.size());
+    for (Candidate& candidate : candidates) {
+      charts.push_back(drawn(std::move(candidate.chart), merged(std::move(candidate.curves), options_.tolerance)));
+    }
+    return charts;
+  }
+
+  [[nodiscard]] Chart drawn(Chart chart, std::vector<Curve> curves) const {
+    Eigen::AlignedBox2d box;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      box.extend(chart.place_of(positions_[i]));
+      low = std::min(low, chart.height_of(positions_[i]));
+      high = std::max(high, chart.height_of(positions_[i]));
+    }
+    const double diagonal = box.diagonal().norm();
+    box = {box.min() - Vector2d::Constant(k_border * diagonal), box.max() + Vector2d::Constant(k_border * diagonal)};
+    if (chart.is_turned) box.min().x() = 0;
+    if (!chart.is_turned) chart.caps = caps_between(std::move(chart.caps), low, high);
+    close_gaps(curves, k_reach * diagonal);
+    std::vector<ProfileSegment> pieces;
+    std::vector<std::uint32_t> curve_of_piece;
+    for (std::uint32_t c = 0; c < curves.size(); ++c) {
+      for (const ProfileSegment& piece : pieces_of(curves[c], k_reach * diagonal)) {
+        pieces.push_back(piece);
+        curve_of_piece.push_back(c);
+      }
+    }
+    const std::array corners{box.min(), Vector2d(box.max().x(), box.min().y()), box.max(),
+                             Vector2d(box.min().x(), box.max().y())};
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      pieces.push_back(segment_between(corners[k], 0, corners[(k + 1) % 4]));
+      curve_of_piece.push_back(static_cast<std::uint32_t>(curves.size()) + k);
+    }
+    chart.drawing.is_turned = chart.is_turned;
+    chart.drawing.arrangement = arrange(pieces, k_meeting * diagonal);
+    for (const CurveArrangement::Edge& edge : chart.drawing.arrangement.edges) {
+      const std::uint32_t curve = curve_of_piece[edge.piece];
+      chart.drawing.curve_of_edge.push_back(curve);
+      const bool is_border = curve >= curves.size();
+      const double around = chart.is_turned ? 2 * std::numbers::pi * edge.segment.at(0.5).x() : 1.0;
+      chart.drawing.price_of_edge.push_back(is_border ? 0.0 : around * bare_length(edge.segment, curves[curve]));
+    }
+    return chart;
+  }
+
+  /// Circles that nearly touch other curves grow until they do, so that faces close.
+  void close_gaps(std::vector<Curve>& curves, double reach) const {
+    std::vector<std::vector<ProfileSegment>> pieces;
+    pieces.reserve(curves.size());
+    for (const Curve& curve : curves) pieces.push_back(pieces_of(curve, reach));
+    const auto is_on = [&](std::size_t c, const Vector2d& place) {
+      return std::ranges::any_of(pieces[c], [&](const ProfileSegment& piece) {
+        return (nearest(piece, place) - place).norm() <= options_.tolerance;
+      });
+    };
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+      if (!curves[c].is_circle) continue;
+      double most = 0;
+      for (std::size_t k = 0; k < curves.size(); ++k) {
+        const std::optional<Vector2d> place = k == c ? std::nullopt : nearest_place(curves[k], curves[c]);
+        if (!place) continue;
+        const double gap = (*place - curves[c].normal).norm() - curves[c].offset;
+        if (gap > most && gap <= options_.tolerance && is_on(c, *place) && is_on(k, *place)) most = gap;
+      }
+      curves[c].offset += most;
+    }
+  }
+
+  /// The caps inside, and the ends of the cloud where no cap is.
+  [[nodiscard]] std::vector<double> caps_between(std::vector<double> caps, double low, double high) const {
+    caps.push_back(low);
+    caps.push_back(high);
+    std::ranges::sort(caps);
+    std::vector<double> distinct;
+    for (const double cap : caps) {
+      if (distinct.empty() || cap - distinct.back() > options_.tolerance) distinct.push_back(cap);
+    }
+    return distinct;
+  }
+
+  /// The part of the curve with points, and a little more.
+  [[nodiscard]] static std::vector<ProfileSegment> pieces_of(const Curve& curve, double reach) {
+    std::vector<double> along;
+    for (const Vector2d& p : curve.points) along.push_back(curve.along(p));
+    std::ranges::sort(along);
+    if (along.empty()) return {};
+    if (!curve.is_circle) {
+      const Vector2d direction = to_the_left(curve.normal);
+      const Vector2d foot = curve.offset * curve.normal;
+      return {
+          segment_between(foot + (along.front() - reach) * direction, 0, foot + (along.back() + reach) * direction)};
+    }
+    const double around = 2 * std::numbers::pi * curve.offset;
+    double gap = along.front() + around - along.back();
+    double start = along.front();
+    for (std::size_t k = 1; k < along.size(); ++k) {
+      if (along[k] - along[k - 1] <= gap) continue;
+      gap = along[k] - along[k - 1];
+      start = along[k];
+    }
+    const double more = std::max(reach, k_least_arc_reach * curve.offset);
+    double length = around - gap + 2 * more;
+    start -= more;
+    if (length > 0.95 * around) length = around;
+    const auto at = [&](double share) {
+      const double angle = (start + share * length) / curve.offset;
+      return Vector2d(curve.normal + curve.offset * Vector2d(std::cos(angle), std::sin(angle)));
+    };
+    const double bulge = std::tan(length / curve.offset / 8);  // of a half
+    return {segment_between(at(0), bulge, at(0.5)), segment_between(at(0.5), bulge, at(1))};
+  }
+
+  /// The length of an edge without points near.
+  [[nodiscard]] double bare_length(const ProfileSegment& edge, const Curve& curve) const {
+    if (curve.count == 0) return edge.length();
+    constexpr std::array k_probes{0.1, 0.3, 0.5, 0.7, 0.9};
+    std::size_t bare = 0;
+    for (const double share : k_probes) {
+      const Vector2d probe = edge.at(share);
+      const double near = k_gap * options_.spacing;
+      bare += std::ranges::none_of(curve.points, [&](const Vector2d& p) { return (p - probe).norm() < near; }) ? 1 : 0;
+    }
+    return edge.length() * static_cast<double>(bare) / k_probes.size();
+  }
+
+  static constexpr double k_level = 0.0175;    // the sine of a degree
+  static constexpr double k_most_tilt = 0.26;  // the sine of 15 degrees
+
+  const Points& positions_;
+  std::span<const DetectedSurface> surfaces_;
+  const ChartOptions& options_;
+  Vector3d middle_;
+  double diagonal_;
+};
+
+}  // namespace
+
+Vector2d Chart::place_of(const Vector3d& point) const {
+  const Vector3d local = frame.to_local(point);
+  return is_turned ? Vector2d(local.head<2>().norm(), local.z()) : Vector2d(local.head<2>());
+}
+
+std::vector<Chart> make_charts(const Points& positions, std::span<const DetectedSurface> surfaces,
+                               const ChartOptions& options) {
+  return ChartMaker(positions, surfaces, options).make();
+}
+
+}  // namespace cloud2csg
