@@ -12,6 +12,9 @@
 #include "cloud2csg/error.hpp"
 #include "core/base/text.hpp"
 #include "core/primitive/shape.hpp"
+#include "io/openscad/flat_shapes.hpp"
+#include "io/openscad/join_shapes.hpp"
+#include "io/openscad/path_functions.hpp"
 #include "io/openscad/solids.hpp"
 
 namespace cloud2csg::scad {
@@ -31,6 +34,20 @@ std::vector<double> key_of(const Primitive& primitive) {
   add(primitive.pose.position);
   add(primitive.pose.orientation.coeffs());
   add(lengths_of(primitive.shape));
+  const auto add_profile = [&](const Profile& profile) {
+    for (const ClosedPath& path : profile.paths) {
+      numbers.push_back(static_cast<double>(path.size()));
+      for (const PathCorner& corner : path) {
+        add(corner.point);
+        numbers.push_back(corner.bulge);
+      }
+    }
+  };
+  if (const auto* extrusion = std::get_if<Extrusion>(&primitive.shape)) {
+    numbers.push_back(extrusion->height);
+    add_profile(extrusion->profile);
+  }
+  if (const auto* revolution = std::get_if<Revolution>(&primitive.shape)) add_profile(revolution->profile);
   if (const auto* polytope = std::get_if<Polytope>(&primitive.shape)) {
     for (const Plane& plane : polytope->planes) {
       add(plane.normal);
@@ -63,24 +80,6 @@ struct Block {
   bool is_solid = false;  ///< whether the operands so far make a solid
 };
 
-/// A circle or square in the profile of a torus.
-struct FlatShape {
-  bool is_circle;
-  Vector3d position;
-  Eigen::Vector2d size;  ///< for a circle, twice its radius
-};
-
-/// Whether a square cuts only a pinhole next to the axis from a circle. Without it, the torus may be no valid solid.
-bool leaves_pinhole(const FlatShape& square, const FlatShape& circle) {
-  constexpr double k_widest = 0.1;  // in circle radii, roughly; the missing volume grows with its power 5/2
-  constexpr double k_rounding = 1e-6;
-  const double radius = circle.size.x();
-  const Vector3d from = (square.position - circle.position) / radius;
-  const Vector3d to = from + Vector3d(square.size.x(), square.size.y(), 0) / radius;
-  return !square.is_circle && from.x() <= k_widest - 1 + k_rounding && from.y() <= k_rounding - 1 &&
-         std::min(to.x(), to.y()) >= 1 - k_rounding;
-}
-
 /// Executes a program while reading it. Each statement appends its solid, if any, to the postfix tree. Loops and
 /// modules are reread at each iteration and call.
 class Program {
@@ -94,6 +93,10 @@ class Program {
     while (reader_.peek().kind != Token::Kind::end) {
       const Token first = reader_.next();
       const bool is_collected = first.raw == "module" || reader_.at("=");
+      if (path_functions_ && first.offset == path_functions_->first) {
+        reader_.go_to(path_functions_->second);
+        continue;
+      }
       reader_.go_to(first.offset);
       if (is_collected) {
         reader_.skip_statement();
@@ -113,6 +116,8 @@ class Program {
       const Token first = reader_.next();
       if (first.raw == "module") {
         collect_module();
+      } else if (first.raw == "function" && take_path_functions(first)) {
+        continue;
       } else if (first.kind == Token::Kind::name && reader_.take("=")) {
         // In OpenSCAD the last definition holds everywhere.
         if (!globals_.emplace(first.raw, reader_.value()).second) {
@@ -124,6 +129,25 @@ class Program {
         reader_.skip_statement();
       }
     }
+  }
+
+  /// Takes the functions that our own files define, if they begin with this word and are the same, word by word.
+  bool take_path_functions(const Token& first) {
+    const Variables none;
+    Reader expected(k_path_functions, none, none);
+    reader_.go_to(first.offset);
+    while (expected.peek().kind != Token::Kind::end && reader_.at(expected.peek().raw)) {
+      expected.next();
+      reader_.next();
+    }
+    const bool is_same = expected.peek().kind == Token::Kind::end;
+    if (is_same) {
+      path_functions_ = {first.offset, reader_.peek().offset};
+    } else {
+      reader_.go_to(first.offset);
+      reader_.next();
+    }
+    return is_same;
   }
 
   void collect_module() {
@@ -193,9 +217,11 @@ class Program {
       return repeat(name.raw == "for" ? Operation::union_of : Operation::intersection, frame);
     }
     const bool is_union = is_one_of(name.raw, {"union", "group", "render", "color"});
-    const bool is_known = is_union || is_one_of(name.raw, {"difference", "intersection", "rotate_extrude", "circle",
-                                                           "square", "cube", "sphere", "cylinder", "polyhedron",
-                                                           "translate", "rotate", "scale", "mirror", "multmatrix"});
+    const bool is_swept = is_one_of(name.raw, {"linear_extrude", "rotate_extrude"});
+    const bool is_known =
+        is_union || is_swept ||
+        is_one_of(name.raw, {"difference", "intersection", "circle", "square", "polygon", "cube", "sphere", "cylinder",
+                             "polyhedron", "translate", "rotate", "scale", "mirror", "multmatrix"});
     if (!is_known || !reader_.at("(")) {
       throw Refusal(name.offset, fmt::format("expected a solid, a map or an operation, found '{}'",
                                              visible_text(name.raw, k_longest_quote)));
@@ -204,7 +230,7 @@ class Program {
     if (name.raw == "difference") return add_children(Operation::difference, frame);
     if (name.raw == "intersection") return add_children(Operation::intersection, frame);
     if (is_union) return add_children(Operation::union_of, frame);
-    if (name.raw == "rotate_extrude") return add_torus(arguments, frame);
+    if (is_swept) return add_swept(arguments, frame);
     if (const auto map = map_of(arguments)) return add_children(Operation::union_of, frame * *map);
     reader_.expect(";");
     const std::optional<LeafSolid> leaf = leaf_solid(arguments);
@@ -253,45 +279,60 @@ class Program {
     return block.is_solid;
   }
 
-  /// Adds a leaf to a temporary tree, which add_torus() removes.
+  /// Adds a leaf to a temporary tree, which add_swept() removes.
   bool add_flat(const Arguments& call, const Affine3d& frame) {
-    const bool is_circle = call.call.raw == "circle";
-    const bool is_moved_only = frame.linear().isIdentity(1e-9) && frame.translation().z() == 0.0;
-    if (!is_flat_ || !is_moved_only || call.flag("center", 1)) refuse_profile(call.call);
-    const Vector3d size =
-        is_circle ? Vector3d(Vector3d::Constant(round_radius(call))) : vector_or_number(call.need("size", 0), 0);
+    if (sweep_.empty()) {
+      throw Refusal(call.call.offset,
+                    fmt::format("expected '{}' within linear_extrude or rotate_extrude", call.call.raw));
+    }
+    const Value* const points = call.find("points", 0);
+    if (points != nullptr && points->is_path && !path_functions_) {
+      throw Refusal(points->offset, "expected a list of points, or path() as in files of cloud2csg");
+    }
+    const FlatShape shape{.profile = *flat_profile(call, sweep_ == "rotate_extrude"), .offset = call.call.offset};
+    // Finding where paths cross takes time of the second power.
+    constexpr std::size_t k_pairs_per_call = 5000;
+    for (const ClosedPath& path : shape.profile.paths) count_calls(path.size() * path.size() / k_pairs_per_call);
     postfix_.push_back(CsgNode::leaf(static_cast<PrimitiveIndex>(flat_.size())));
-    flat_.push_back({.is_circle = is_circle, .position = frame.translation(), .size = size.head<2>()});
+    flat_.push_back(placed_in_plane(shape, frame));
     return true;
   }
 
-  [[noreturn]] static void refuse_profile(const Token& call) {
-    throw Refusal(call.offset, "expected a torus: a moved circle with a full turn");
-  }
-
-  /// A torus from a circle beside the axis, perhaps cut by a square that leaves a pinhole.
-  bool add_torus(const Arguments& call, const Affine3d& frame) {
-    if (std::exchange(is_flat_, true) || call.number("angle", 0, 360) != 360) refuse_profile(call.call);
+  /// Reads the flat shapes in linear_extrude or rotate_extrude. Both keep what shapes have in common, so the tree over
+  /// the shapes is one over their solids.
+  bool add_swept(const Arguments& call, const Affine3d& frame) {
+    const Token& name = call.call;
+    if (!std::exchange(sweep_, name.raw).empty()) refuse_solid(name.raw, name.offset);
+    const Sweep sweep = sweep_of(call);
     const auto begin = static_cast<std::ptrdiff_t>(postfix_.size());
-    flat_.clear();
     (void)add_children(Operation::union_of, Affine3d::Identity());
-    is_flat_ = false;
-    const std::vector<CsgNode> profile(postfix_.begin() + begin, postfix_.end());
+    sweep_ = {};
+    const FlatTree shapes{.shapes = std::exchange(flat_, {}), .nodes = {postfix_.begin() + begin, postfix_.end()}};
     postfix_.erase(postfix_.begin() + begin, postfix_.end());
-    const bool is_cut = profile.size() == 3 && profile.back() == CsgNode::inner(Operation::intersection, 3);
-    if (!(profile.size() == 1 || is_cut) || !flat_[0].is_circle) refuse_profile(call.call);
-    if (is_cut && !leaves_pinhole(flat_[1], flat_[0])) refuse_profile(call.call);
-    const Vector3d centre = flat_[0].position;
-    const double radius = flat_[0].size.x();
-    call.require(centre.x() >= radius, "a circle entirely to the right of the axis");
-    const Eigen::Translation3d up(0, 0, centre.y());
-    add_leaf(Torus{.major_radius = centre.x(), .minor_radius = radius}, "torus", frame * up, call.call.offset);
-    return true;
+    if (const std::optional<LeafSolid> torus = sweep.height ? std::nullopt : torus_of(shapes)) {
+      add_leaf(torus->shape, "torus", frame * torus->frame, name.offset);
+      return true;
+    }
+    const FlatTree few = joined(shapes);
+    for (const CsgNode& node : few.nodes) {
+      if (!node.is_leaf()) {
+        postfix_.push_back(node);
+        continue;
+      }
+      const FlatShape& shape = few.shapes[node.primitive()];
+      const Shape solid = swept(shape, sweep);
+      add_leaf(solid, type_name(solid), frame * sweep.frame, shape.offset);
+    }
+    return !few.nodes.empty();
+  }
+
+  [[noreturn]] static void refuse_solid(std::string_view name, std::size_t offset) {
+    throw Refusal(offset, fmt::format("expected a circle, square or polygon, found '{}'", name));
   }
 
   /// Reuses the primitive of an equal solid.
   void add_leaf(const Shape& shape, std::string_view name, const Affine3d& frame, std::size_t offset) {
-    if (is_flat_) throw Refusal(offset, fmt::format("expected a circle, found '{}'", name));
+    if (!sweep_.empty()) refuse_solid(name, offset);
     Primitive primitive = place_solid(shape, frame, offset);
     primitive.id = name;
     try {
@@ -312,7 +353,9 @@ class Program {
   PrimitiveSet primitives_ = {};
   std::map<std::vector<double>, PrimitiveIndex> index_of_ = {};
   std::vector<CsgNode> postfix_ = {};
-  bool is_flat_ = false;  ///< inside the profile of a torus
+  /// Begin and end of the functions that our files define.
+  std::optional<std::pair<std::size_t, std::size_t>> path_functions_ = {};
+  std::string_view sweep_ = {};  ///< the call that sweeps the shapes being read
   std::vector<FlatShape> flat_ = {};
   std::size_t calls_ = 0;
 };

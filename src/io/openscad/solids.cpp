@@ -8,9 +8,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/primitive/shape.hpp"
+#include "io/openscad/profile_maps.hpp"
 
 namespace cloud2csg::scad {
 namespace {
@@ -116,7 +118,6 @@ std::vector<Face> frustum(double radius_bottom, double radius_top, double height
 }
 
 LeafSolid cylinder(const Arguments& call) {
-  constexpr double k_most_corners = 8;  // so few facets mean a polygon, not a circle
   const double height = call.number("h", 0, 1);
   const double radius = call.number("r", Arguments::k_by_name, 1);
   const double bottom = call.number("r1", 1, radius);
@@ -124,12 +125,11 @@ LeafSolid cylinder(const Arguments& call) {
   call.require(height > 0 && std::min(bottom, top) >= 0 && std::max(bottom, top) > 0,
                "a cylinder whose height and radii are above 0; one radius may be 0");
   const Eigen::Translation3d shift(0, 0, call.flag("center", 3) ? 0.0 : 0.5 * height);
-  const double facets = std::floor(call.number("$fn", Arguments::k_by_name, 0));
   LeafSolid solid{.shape = Cone{.radius_bottom = bottom, .radius_top = top, .height = height},
                   .frame = Affine3d(shift)};
   if (bottom == top) solid.shape = Cylinder{.radius = bottom, .height = height};
-  if (facets >= 3 && facets <= k_most_corners) {
-    solid.shape = convex_polytope(frustum(bottom, top, height, static_cast<int>(facets)), call);
+  if (const std::optional<int> facets = facets_of(call)) {
+    solid.shape = convex_polytope(frustum(bottom, top, height, *facets), call);
   }
   return solid;
 }
@@ -182,7 +182,7 @@ Affine3d matrix(const Arguments& call) {
 }
 
 /// A box or polytope under any linear map.
-Polytope mapped(const Shape& shape, const Matrix3d& linear) {
+Polytope mapped_planes(const Shape& shape, const Matrix3d& linear) {
   Polytope polytope;
   if (const auto* const box = std::get_if<Box>(&shape)) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -201,12 +201,22 @@ Polytope mapped(const Shape& shape, const Matrix3d& linear) {
   return polytope;
 }
 
+Profile stretched(Profile profile, double along_x, double along_y) {
+  return mapped(std::move(profile), Eigen::Vector2d(along_x, along_y).asDiagonal(), Eigen::Vector2d::Zero());
+}
+
 }  // namespace
 
 double round_radius(const Arguments& call) {
   const double radius = call.number("r", 0, 1);
   call.require(radius > 0, "a radius above 0");
   return radius;
+}
+
+std::optional<int> facets_of(const Arguments& call) {
+  constexpr double k_most = 8;
+  const double facets = std::floor(call.number("$fn", Arguments::k_by_name, 0));
+  return facets >= 3 && facets <= k_most ? std::optional(static_cast<int>(facets)) : std::nullopt;
 }
 
 std::optional<Affine3d> map_of(const Arguments& call) {
@@ -239,7 +249,7 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
   const bool is_straight = cosines.cwiseAbs().maxCoeff() <= k_tolerance;
   Primitive placed{.id = {}, .shape = shape, .pose = {.position = frame.translation()}};
   if (std::holds_alternative<Polytope>(shape) || (std::holds_alternative<Box>(shape) && !is_straight)) {
-    placed.shape = mapped(shape, frame.linear());
+    placed.shape = mapped_planes(shape, frame.linear());
     return placed;
   }
   const double across = scale.x();
@@ -255,6 +265,15 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
                    return cone.radius_bottom *= across, cone.radius_top *= across, cone.height *= along, is_round;
                  },
                  [&](Torus& torus) { return torus.major_radius *= across, torus.minor_radius *= across, is_even; },
+                 [&](Extrusion& extrusion) {
+                   extrusion.height *= along;
+                   extrusion.profile = stretched(std::move(extrusion.profile), across, scale.y());
+                   return is_straight && (is_round || !has_arcs(extrusion.profile));
+                 },
+                 [&](Revolution& revolution) {
+                   revolution.profile = stretched(std::move(revolution.profile), across, along);
+                   return is_round && (is_even || !has_arcs(revolution.profile));
+                 },
                  [](auto&) { return false; }};
   if (!std::visit(scaled, placed.shape)) {
     throw Refusal(
@@ -262,8 +281,8 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
         fmt::format("expected a scaling that keeps round solids round and upright, found {:.6g}, {:.6g}, {:.6g}",
                     across, scale.y(), along));
   }
-  // All these solids are symmetric in x. The SVD gives the nearest rotation, since the text rounds digits.
-  if (axes.determinant() < 0) axes.col(0) *= -1;
+  // Extrusions are symmetric in z, all others in x. The SVD gives the nearest rotation, since the text rounds digits.
+  if (axes.determinant() < 0) axes.col(std::holds_alternative<Extrusion>(shape) ? 2 : 0) *= -1;
   const Eigen::JacobiSVD<Matrix3d> parts(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
   placed.pose.orientation = Eigen::Quaterniond(Matrix3d(parts.matrixU() * parts.matrixV().transpose())).normalized();
   return placed;

@@ -24,9 +24,13 @@ struct LeafSolid {
 
 [[nodiscard]] double round_radius(const Arguments& call);
 
+/// $fn from 3 to 8: so few facets mean a polygon, not a circle. Absent for all others.
+[[nodiscard]] std::optional<int> facets_of(const Arguments& call);
+
 /// Applies an affine map to any solid but half-spaces and expressions, if the result is one of our solids. Boxes
 /// and polytopes always allow it, if need be as polytopes. Cylinders and cones must stay round and upright; spheres and
-/// tori must keep proportions. Ignores differences below 1e-4: OpenSCAD writes six digits. `offset`: place in the text.
+/// tori must keep proportions, as arcs of profiles must. Ignores differences below 1e-4: OpenSCAD writes six digits.
+/// `offset`: place in the text.
 [[nodiscard]] Primitive place_solid(const Shape& shape, const Eigen::Affine3d& frame, std::size_t offset);
 
 }  // namespace cloud2csg::scad

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/text.hpp"
 
@@ -22,6 +23,22 @@ bool begins_name(char c) {
 }
 bool is_one_of(char c, std::string_view all) {
   return all.find(c) != std::string_view::npos;
+}
+
+bool is_argument_of(std::string_view call, std::string_view name) {
+  constexpr std::array<std::string_view, 17> k_of_any{"size",   "center",    "r",   "r1",  "r2", "h",
+                                                      "points", "faces",     "v",   "a",   "m",  "c",
+                                                      "angle",  "convexity", "$fn", "$fa", "$fs"};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> k_of_one{{{"linear_extrude", "height"},
+                                                                                   {"linear_extrude", "scale"},
+                                                                                   {"linear_extrude", "twist"},
+                                                                                   {"linear_extrude", "slices"},
+                                                                                   {"linear_extrude", "segments"},
+                                                                                   {"rotate_extrude", "start"},
+                                                                                   {"polygon", "paths"},
+                                                                                   {"circle", "d"}}};
+  return std::ranges::find(k_of_any, name) != k_of_any.end() ||
+         std::ranges::find(k_of_one, std::pair(call, name)) != k_of_one.end();
 }
 
 Value number_at(std::size_t offset, double number) {
@@ -310,21 +327,32 @@ std::vector<Value> Reader::turns() {
   return std::move(found.items);
 }
 
+/// The corners for path() of our files, or any value.
+Value Reader::argument(const Token& call) {
+  const Token first = token_;
+  const bool is_path = call.raw == "polygon" && take("path");
+  if (!is_path) return value();
+  expect("(");
+  Value corners = value();
+  expect(")");
+  corners.offset = first.offset;
+  corners.is_path = true;
+  return corners;
+}
+
 Arguments Reader::arguments(const Token& call) {
-  constexpr std::array<std::string_view, 17> k_names{"size",   "center",    "r",   "r1",  "r2", "h",
-                                                     "points", "faces",     "v",   "a",   "m",  "c",
-                                                     "angle",  "convexity", "$fn", "$fa", "$fs"};
   Arguments arguments{.call = call};
   expect("(");
   while (!take(")")) {
     const Token first = next();
     const bool is_named = first.kind == Token::Kind::name && take("=");
     if (!is_named) go_to(first.offset);
-    if (is_named && std::ranges::find(k_names, first.raw) == k_names.end()) {
+    if (is_named && !is_argument_of(call.raw, first.raw)) {
       throw Refusal(first.offset,
                     fmt::format("expected a known argument, found '{}'", visible_text(first.raw, k_longest_quote)));
     }
-    arguments.values.emplace_back(is_named ? first.raw : "", value());
+    // OpenSCAD writes this for arguments that are not given.
+    if (!is_named || !take("undef")) arguments.values.emplace_back(is_named ? first.raw : "", argument(call));
     if (!at(")")) expect(",");
   }
   if (const auto facets = globals_.find("$fn"); facets != globals_.end()) arguments.values.emplace_back(*facets);

@@ -34,6 +34,7 @@ struct Value {
   double number = 0;
   bool is_flag = false;
   bool is_list = false;
+  bool is_path = false;  ///< corners as path() of our files takes them, given to polygon()
   std::vector<Value> items = {};
 };
 
@@ -95,6 +96,7 @@ class Reader {
   Value chain(std::string_view signs, Value (Reader::*operand)());
   Value product() { return chain("*/", &Reader::factor); }
   Value factor();
+  Value argument(const Token& call);
   Value list();
   [[nodiscard]] Value variable(const Token& name) const;
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cloud2csg/export.hpp"
+#include "io/openscad/path_functions.hpp"
 #include "io/scripts/openscad_blocks.hpp"
 #include "io/scripts/openscad_loops.hpp"
 #include "io/scripts/openscad_solids.hpp"
@@ -130,8 +131,9 @@ std::string to_openscad(const Model& model, const OpenScadOptions& options) {
   text += fmt::format("$fn = {};  // facets of a full circle\n", options.facets);
   if (!program.parameters.empty()) text += "\n// Lengths are in the model's units, angles in degrees.\n";
   const bool has_arcs = program.modules.find("polygon(path(") != std::string::npos;
-  return text + program.parameters + "\n" + program.tree + program.modules +
-         (has_arcs ? openscad::path_functions() : "") + program.meshes;
+  text += program.parameters + "\n" + program.tree + program.modules;
+  if (has_arcs) text += scad::k_path_functions;
+  return text + program.meshes;
 }
 
 }  // namespace cloud2csg

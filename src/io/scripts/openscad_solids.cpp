@@ -208,21 +208,6 @@ std::string solid(const Primitive& primitive, const SolidContext& context, Param
   return text + shape;
 }
 
-const char* path_functions() {
-  return R"(
-// The corners of a closed path. Where an arc starts, a corner is [x, y, bulge]: the bulge is tan(angle / 4) of the arc,
-// positive if it turns left.
-function path(corners) = [
-  for (i = [0 : len(corners) - 1]) each segment(corners[i], corners[(i + 1) % len(corners)], corners[i][2])];
-function segment(a, b, bulge) = is_undef(bulge) ? [[a.x, a.y]] :
-  let (angle = 4 * atan(bulge), steps = max(2, round($fn * abs(angle) / 360)),
-       centre = [a.x + b.x, a.y + b.y] / 2 + (1 - bulge * bulge) / (4 * bulge) * [a.y - b.y, b.x - a.x],
-       arm = [a.x, a.y] - centre)
-  [for (k = [0 : steps - 1]) let (t = angle * k / steps)
-    centre + [arm.x * cos(t) - arm.y * sin(t), arm.x * sin(t) + arm.y * cos(t)]];
-)";
-}
-
 std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number, const std::string& separator) {
   std::vector<std::string> points;
   points.reserve(facets.corners.size());

@@ -56,11 +56,9 @@ struct SolidContext {
 [[nodiscard]] bool needs_mesh(const Primitive& primitive);
 
 /// The placed statement for a primitive, by values that it adds to `parameters`:
-/// `translate(bore_position) cylinder(h = bore_height, r = bore_radius, center = true);`
+/// `translate(bore_position) cylinder(h = bore_height, r = bore_radius, center = true);`. It may call path() of
+/// scad::k_path_functions.
 [[nodiscard]] std::string solid(const Primitive& primitive, const SolidContext& context, Parameters& parameters);
-
-/// The functions that turn a path with arcs into corners; solid() calls path().
-[[nodiscard]] const char* path_functions();
 
 /// `points = ...,<separator>faces = ...`, as polyhedron() expects.
 [[nodiscard]] std::string facet_lists(const brep::Facets& facets, const script::NumberFormat& number,
