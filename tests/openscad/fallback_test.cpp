@@ -106,10 +106,10 @@ TEST_F(OpenScadFallback, TellsWhyThereIsNoModel) {
   EXPECT_NE(syntax.find("part.scad: line 1, column 8: expected a closing bracket"), std::string::npos) << syntax;
   EXPECT_NE(syntax.find("; OpenSCAD says: Parser error"), std::string::npos) << syntax;
   EXPECT_NE(refusal("assert(false);").find("OpenSCAD says: Assertion 'false' failed"), std::string::npos);
-  EXPECT_EQ(refusal("linear_extrude(height = 2) square(1);"),
+  EXPECT_EQ(refusal("linear_extrude(height = 2, twist = 90) square(1);"),
             path() +
-                ": line 1, column 1: expected a solid, a map or an operation, found 'linear_extrude'; extract a tree "
-                "from a mesh of it (openscad -o part.stl)");
+                ": line 1, column 36: expected an extrusion without a twist; extract a tree from a mesh of it "
+                "(openscad -o part.stl)");
   EXPECT_EQ(refusal("function f(x) = x; hull() sphere(f(1));"),
             path() +
                 ": flattened by OpenSCAD: expected a solid, a map or an operation, found 'hull'; extract a tree from "
