@@ -242,6 +242,18 @@ TEST(OpenScadSweep, SolidsAreMappedAsOthers) {
   EXPECT_TRUE(is_in(9.1, 1.8, 0.9));
   EXPECT_NE(refusal_of_sweep("scale([1, 2, 1]) linear_extrude(1) circle(1);").find("keeps round solids round"),
             std::string::npos);
+  const Model sheared = parse_openscad("translate([1, 0, 0]) scale([2, 1, 1]) rotate(45) linear_extrude(1) square(1);");
+  EXPECT_EQ(sheared.primitives.size(), 1U);
+  for (const auto& [place, expected] : std::vector<std::pair<Vector3d, bool>>{{{1, 1.4, 0.5}, true},
+                                                                              {{2.3, 0.7, 0.5}, true},
+                                                                              {{2.3, 0.7, 1.1}, false},
+                                                                              {{2.3, 1.1, 0.5}, false},
+                                                                              {{-0.3, 0.7, 0.5}, true}}) {
+    EXPECT_EQ(implicit_value(*sheared.tree, sheared.primitives, test::single(place))[0] < 0, expected)
+        << place.transpose();
+  }
+  EXPECT_NE(refusal_of_sweep("scale([2, 1, 1]) rotate([0, 45, 0]) linear_extrude(1) square(1);").find("upright"),
+            std::string::npos);
   const Primitive knob = parse_openscad("scale([2, 2, 3]) rotate_extrude() square([1, 2]);").primitives.at(0);
   EXPECT_TRUE(bounds(knob).isApprox(AlignedBox(Vector3d(-2, -2, 0), Vector3d(2, 2, 6)), 1e-12));
   const Primitive nut = parse_openscad("linear_extrude(1) circle(1, $fn = 6);").primitives.at(0);

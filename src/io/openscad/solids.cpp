@@ -181,6 +181,12 @@ Affine3d matrix(const Arguments& call) {
   return map;
 }
 
+/// Since the text rounds digits, the axes may be slightly off.
+Eigen::Quaterniond nearest_rotation(const Matrix3d& axes) {
+  const Eigen::JacobiSVD<Matrix3d> parts(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return Eigen::Quaterniond(Matrix3d(parts.matrixU() * parts.matrixV().transpose())).normalized();
+}
+
 /// A box or polytope under any linear map.
 Polytope mapped_planes(const Shape& shape, const Matrix3d& linear) {
   Polytope polytope;
@@ -203,6 +209,22 @@ Polytope mapped_planes(const Shape& shape, const Matrix3d& linear) {
 
 Profile stretched(Profile profile, double along_x, double along_y) {
   return mapped(std::move(profile), Eigen::Vector2d(along_x, along_y).asDiagonal(), Eigen::Vector2d::Zero());
+}
+
+/// An extrusion under a map that shears its plane; absent if it is no extrusion of lines, or would lean.
+std::optional<Primitive> sheared(const Shape& shape, const Affine3d& frame) {
+  const auto* const extrusion = std::get_if<Extrusion>(&shape);
+  if (extrusion == nullptr || has_arcs(extrusion->profile)) return std::nullopt;
+  const auto plane = frame.linear().leftCols<2>();
+  const Vector3d up = frame.linear().col(2).normalized();
+  if ((up.transpose() * plane).norm() > k_tolerance * plane.norm()) return std::nullopt;
+  Matrix3d axes;
+  axes << plane.col(0).normalized(), up.cross(plane.col(0)).normalized(), up;
+  const Eigen::Matrix2d in_plane = axes.leftCols<2>().transpose() * plane;
+  return Primitive{.id = {},
+                   .shape = Extrusion{.profile = mapped(extrusion->profile, in_plane, Eigen::Vector2d::Zero()),
+                                      .height = extrusion->height * frame.linear().col(2).norm()},
+                   .pose = {.position = frame.translation(), .orientation = nearest_rotation(axes)}};
 }
 
 }  // namespace
@@ -252,6 +274,9 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
     placed.shape = mapped_planes(shape, frame.linear());
     return placed;
   }
+  if (!is_straight) {
+    if (const std::optional<Primitive> solid = sheared(shape, frame)) return *solid;
+  }
   const double across = scale.x();
   const double along = scale.z();
   const auto is_same = [](double a, double b) { return std::abs(a - b) <= k_tolerance * std::max(a, b); };
@@ -281,10 +306,9 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
         fmt::format("expected a scaling that keeps round solids round and upright, found {:.6g}, {:.6g}, {:.6g}",
                     across, scale.y(), along));
   }
-  // Extrusions are symmetric in z, all others in x. The SVD gives the nearest rotation, since the text rounds digits.
+  // Extrusions are symmetric in z, all others in x.
   if (axes.determinant() < 0) axes.col(std::holds_alternative<Extrusion>(shape) ? 2 : 0) *= -1;
-  const Eigen::JacobiSVD<Matrix3d> parts(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  placed.pose.orientation = Eigen::Quaterniond(Matrix3d(parts.matrixU() * parts.matrixV().transpose())).normalized();
+  placed.pose.orientation = nearest_rotation(axes);
   return placed;
 }
 
