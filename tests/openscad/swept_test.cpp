@@ -339,6 +339,10 @@ TEST(OpenScadSweep, ManyShapesTakeLittleTime) {
       "circle(1); }");
   EXPECT_EQ(plate.primitives.size(), 1U);
   EXPECT_EQ(profile_of(plate.primitives[0]).paths.size(), 901U);
+  const Model touching = parse_openscad(
+      "linear_extrude(1) difference() { square(200); for (i = [1 : 30], j = [1 : 30]) translate([6 * i, 6 * j]) "
+      "circle(1); translate([100, 0]) circle(2); }");
+  EXPECT_EQ(touching.primitives.size(), 2U) << "one pair that crosses keeps no others apart";
   const Model crowd = parse_openscad("linear_extrude(1) for (i = [1 : 5000]) translate([i, 0]) circle(5);");
   EXPECT_GT(crowd.primitives.size(), 4000U);
 }

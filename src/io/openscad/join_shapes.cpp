@@ -25,37 +25,60 @@ std::size_t count_of_segments(const Profile& profile) {
   return count;
 }
 
-/// Whether all paths of `inner` start inside `outer`, or none.
-bool start_inside(const Profile& inner, const Profile& outer, bool is_inside_expected) {
-  std::vector<ProfileSegment> around;
-  for (const ClosedPath& path : outer.paths) {
-    const std::vector<ProfileSegment> segments = segments_of(path);
-    around.insert(around.end(), segments.begin(), segments.end());
-  }
-  return std::ranges::all_of(
-      inner.paths, [&](const ClosedPath& path) { return is_inside(around, path.front().point) == is_inside_expected; });
+/// A shape whose paths have boxes, because most paths are far from most others.
+struct BoxedShape {
+  Profile profile;
+  std::vector<Eigen::AlignedBox2d> boxes = {};
+};
+
+BoxedShape boxed(const Profile& profile) {
+  BoxedShape shape{.profile = profile};
+  for (const ClosedPath& path : profile.paths) shape.boxes.push_back(bounds_of(segments_of(path)));
+  return shape;
 }
+
+/// Whether the point is inside an odd number of paths.
+bool contains(const BoxedShape& shape, const Eigen::Vector2d& point) {
+  bool is_in = false;
+  for (std::size_t i = 0; i < shape.boxes.size(); ++i) {
+    if (shape.boxes[i].contains(point) && is_inside(segments_of(shape.profile.paths[i]), point)) is_in = !is_in;
+  }
+  return is_in;
+}
+
+/// Whether all paths of `inner` start inside `outer`, or all outside.
+bool start_inside(const BoxedShape& inner, const BoxedShape& outer, bool is_expected) {
+  return std::ranges::all_of(
+      inner.profile.paths, [&](const ClosedPath& path) { return contains(outer, path.front().point) == is_expected; });
+}
+
+/// Whether paths touch while shapes are joined: taken to be apart, to be tested later all at once; or tested each time.
+enum class Touching { later, at_once };
 
 /// Builds the postfix tree anew, and joins shapes on the way.
 class Joiner {
  public:
-  explicit Joiner(FlatTree tree) : tree_(std::move(tree)) {
-    std::size_t segments = 0;
-    for (const FlatShape& shape : tree_.shapes) segments += count_of_segments(shape.profile);
-    constexpr std::size_t k_pairs_per_segment = 20'000;
-    pairs_left_ = k_pairs_per_segment * segments;
+  Joiner(const FlatTree& tree, Touching touching) : tree_(tree), touching_(touching) {
+    constexpr std::size_t k_pairs_per_segment = 5000;
+    for (const FlatShape& shape : tree.shapes) {
+      shapes_.push_back(boxed(shape.profile));
+      pairs_left_ += k_pairs_per_segment * count_of_segments(shape.profile);
+    }
   }
 
   FlatTree join() {
-    for (const CsgNode& node : std::exchange(tree_.nodes, {})) {
+    FlatTree fewer{.shapes = tree_.shapes};
+    for (const CsgNode& node : tree_.nodes) {
       if (node.is_leaf()) {
-        parts_.push_back({.begin = tree_.nodes.size()});
-        tree_.nodes.push_back(node);
+        parts_.push_back({.begin = nodes_.size()});
+        nodes_.push_back(node);
       } else {
         combine(node.operation());
       }
     }
-    return std::move(tree_);
+    for (std::size_t i = 0; i < shapes_.size(); ++i) fewer.shapes[i].profile = std::move(shapes_[i].profile);
+    fewer.nodes = std::move(nodes_);
+    return fewer;
   }
 
  private:
@@ -74,33 +97,37 @@ class Joiner {
     const bool is_joinable =
         operation != Operation::intersection && right.is_shape && (left.is_shape || left.chain == operation);
     if (is_joinable && joins(shape_at(left), shape_at(right), operation)) {
-      Profile& whole = shape_at(left).profile;
-      const Profile& added = shape_at(right).profile;
-      whole.paths.insert(whole.paths.end(), added.paths.begin(), added.paths.end());
-      tree_.nodes.pop_back();
+      BoxedShape& whole = shape_at(left);
+      const BoxedShape& added = shape_at(right);
+      whole.profile.paths.insert(whole.profile.paths.end(), added.profile.paths.begin(), added.profile.paths.end());
+      whole.boxes.insert(whole.boxes.end(), added.boxes.begin(), added.boxes.end());
+      nodes_.pop_back();
       return;
     }
     left.chain = left.is_shape || left.chain == operation ? std::optional(operation) : std::nullopt;
     left.is_shape = false;
-    tree_.nodes.push_back(CsgNode::inner(operation, static_cast<std::uint32_t>(tree_.nodes.size() - left.begin + 1)));
+    nodes_.push_back(CsgNode::inner(operation, static_cast<std::uint32_t>(nodes_.size() - left.begin + 1)));
   }
 
-  FlatShape& shape_at(const Part& part) { return tree_.shapes[tree_.nodes[part.begin].primitive()]; }
+  BoxedShape& shape_at(const Part& part) { return shapes_[nodes_[part.begin].primitive()]; }
 
-  /// Whether the paths of both together are the result. They must not touch, so that one place of a path tells on which
+  /// Whether the paths of both together are the result. Where paths do not touch, one place of a path tells on which
   /// side of the other shape's paths it is.
-  bool joins(const FlatShape& whole, const FlatShape& added, Operation operation) {
-    constexpr std::size_t k_most_segments = 10'000;
-    if (count_of_segments(whole.profile) + count_of_segments(added.profile) > k_most_segments) return false;
+  bool joins(const BoxedShape& whole, const BoxedShape& added, Operation operation) {
+    constexpr std::size_t k_most_paths = 5000;
+    if (whole.boxes.size() + added.boxes.size() > k_most_paths) return false;
     const bool is_cut = operation == Operation::difference;
-    if (!start_inside(added.profile, whole.profile, is_cut) || !start_inside(whole.profile, added.profile, false)) {
-      return false;
-    }
-    const Eigen::AlignedBox2d box = bounds_of(added.profile);
-    const double tolerance = 1e-6 * box.merged(bounds_of(whole.profile)).diagonal().norm();
+    return start_inside(added, whole, is_cut) && start_inside(whole, added, false) &&
+           (touching_ == Touching::later || are_apart(whole, added));
+  }
+
+  bool are_apart(const BoxedShape& whole, const BoxedShape& added) {
+    Eigen::AlignedBox2d box;
+    for (const Eigen::AlignedBox2d& of_path : added.boxes) box.extend(of_path);
+    const double tolerance = 1e-6 * box.diagonal().norm();
     Profile near = added.profile;
-    for (const ClosedPath& path : whole.profile.paths) {
-      if (bounds_of(segments_of(path)).exteriorDistance(box) <= tolerance) near.paths.push_back(path);
+    for (std::size_t i = 0; i < whole.boxes.size(); ++i) {
+      if (whole.boxes[i].exteriorDistance(box) <= tolerance) near.paths.push_back(whole.profile.paths[i]);
     }
     const std::size_t segments = count_of_segments(near);
     if (segments * segments > pairs_left_) return false;
@@ -108,22 +135,31 @@ class Joiner {
     return has_clear_paths(near);
   }
 
-  FlatTree tree_;
+  const FlatTree& tree_;
+  Touching touching_;
+  std::vector<BoxedShape> shapes_ = {};
+  std::vector<CsgNode> nodes_ = {};
   std::vector<Part> parts_ = {};
   std::size_t pairs_left_ = 0;  ///< of segments that may still be tested; limits the time for any text
 };
 
+bool has_clear_shapes(const FlatTree& tree) {
+  return std::ranges::all_of(tree.nodes, [&tree](const CsgNode& node) {
+    if (!node.is_leaf()) return true;
+    const Profile& profile = tree.shapes[node.primitive()].profile;
+    return profile.paths.size() == 1 || has_clear_paths(profile);
+  });
+}
+
 }  // namespace
 
-FlatTree joined(FlatTree tree) {
+FlatTree joined(const FlatTree& tree) {
   if (tree.nodes.size() < 2) return tree;
-  FlatTree fewer = Joiner(tree).join();
-  // Paths that are just apart among their neighbours may touch by the measure of a larger profile.
-  const bool is_clear = std::ranges::all_of(fewer.nodes, [&](const CsgNode& node) {
-    return !node.is_leaf() || fewer.shapes[node.primitive()].profile.paths.size() == 1 ||
-           has_clear_paths(fewer.shapes[node.primitive()].profile);
-  });
-  return is_clear ? fewer : tree;
+  for (const Touching touching : {Touching::later, Touching::at_once}) {
+    FlatTree fewer = Joiner(tree, touching).join();
+    if (has_clear_shapes(fewer)) return fewer;
+  }
+  return tree;
 }
 
 }  // namespace cloud2csg::scad

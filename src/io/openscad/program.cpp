@@ -72,6 +72,14 @@ void number_names(PrimitiveSet& primitives) {
   }
 }
 
+/// How many calls take as long as to find that the paths of the profile do not cross.
+std::size_t calls_worth(const Profile& profile) {
+  constexpr std::size_t k_pairs_per_call = 2000;
+  std::size_t segments = 0;
+  for (const ClosedPath& path : profile.paths) segments += path.size();
+  return segments * segments / k_pairs_per_call;
+}
+
 /// A union, intersection or difference while its operands are read.
 struct Block {
   Operation operation;
@@ -290,9 +298,6 @@ class Program {
       throw Refusal(points->offset, "expected a list of points, or path() as in files of cloud2csg");
     }
     const FlatShape shape{.profile = *flat_profile(call, sweep_ == "rotate_extrude"), .offset = call.call.offset};
-    // Finding where paths cross takes time of the second power.
-    constexpr std::size_t k_pairs_per_call = 5000;
-    for (const ClosedPath& path : shape.profile.paths) count_calls(path.size() * path.size() / k_pairs_per_call);
     postfix_.push_back(CsgNode::leaf(static_cast<PrimitiveIndex>(flat_.size())));
     flat_.push_back(placed_in_plane(shape, frame));
     return true;
@@ -320,6 +325,7 @@ class Program {
         continue;
       }
       const FlatShape& shape = few.shapes[node.primitive()];
+      count_calls(calls_worth(shape.profile));
       const Shape solid = swept(shape, sweep);
       add_leaf(solid, type_name(solid), frame * sweep.frame, shape.offset);
     }
