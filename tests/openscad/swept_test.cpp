@@ -36,7 +36,7 @@ const Profile& profile_of(const Primitive& primitive) {
 }
 
 void expect_same_path(const std::vector<ProfileSegment>& expected, const std::vector<ProfileSegment>& found) {
-  constexpr double k_digits = 1e-8;  // files have ten
+  constexpr double k_digits = 1e-9;  // files have ten
   if (is_circle(expected)) {
     ASSERT_TRUE(is_circle(found));
     EXPECT_LT((expected[0].centre - found[0].centre).norm(), k_digits);
@@ -219,6 +219,14 @@ TEST(OpenScadSweep, OperationsThatAreNoProfileStayOperations) {
   expect_region(
       "difference() { translate([3, 0]) circle(1); " + square + " translate([7, 0]) circle(1); }",
       [](double, double) { return false; }, 3);
+  expect_region("union() { translate([3, 0]) circle(1); " + square + " }", in_square, 2);
+  // What covers the hole of a ring, and what lies in the overlap of two shapes.
+  expect_region(
+      "difference() { difference() { " + square + " translate([3, 0]) circle(0.5); } translate([3, 0]) circle(1); }",
+      [&](double x, double y) { return in_square(x, y) && !in_disc(x, y, 3, 1); }, 2);
+  expect_region(
+      "difference() { union() { " + square + " translate([5, 0]) circle(1); } translate([4.5, 0]) circle(0.3); }",
+      [&](double x, double y) { return (in_square(x, y) || in_disc(x, y, 5, 1)) && !in_disc(x, y, 4.5, 0.3); }, 3);
   // A disc in the hole of a ring, and what is taken from both.
   expect_region(
       "difference() { union() { difference() { " + square +
