@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <gp_Trsf.hxx>
 #include <map>
 #include <mutex>
@@ -70,21 +71,40 @@ std::vector<Eigen::Vector3d> points_on_face(const TopoDS_Face& face) {
 // Gives even the smallest circle 18 facets.
 constexpr double k_widest_turn = 0.35;
 
-/// Corners by position: the kernel gives both faces of an edge equal coordinates.
+/// Corners by position. The kernel gives both faces of an edge the same coordinates up to rounding.
 class Corners {
  public:
   explicit Corners(TriangleMesh& mesh) : mesh_(mesh) {}
 
   std::uint32_t at(const gp_Pnt& point) {
+    // Near the border of a cell, an equal corner may be in the next one.
+    constexpr double k_aside = 0.25;
+    for (const double x : {-k_aside, k_aside}) {
+      for (const double y : {-k_aside, k_aside}) {
+        for (const double z : {-k_aside, k_aside}) {
+          const auto known = index_of_.find(cell_of(point, {x, y, z}));
+          if (known != index_of_.end()) return known->second;
+        }
+      }
+    }
     const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
-    const auto [known, is_new] = index_of_.try_emplace({point.X(), point.Y(), point.Z()}, next);
-    if (is_new) mesh_.vertices.push_back({point.X(), point.Y(), point.Z()});
-    return known->second;
+    index_of_.emplace(cell_of(point, {0, 0, 0}), next);
+    mesh_.vertices.push_back({point.X(), point.Y(), point.Z()});
+    return next;
   }
 
  private:
+  static std::array<std::int64_t, 3> cell_of(const gp_Pnt& point, const gp_XYZ& shift) {
+    constexpr double k_width = 1e-10;  // below the kernel's precision of 1e-7, above rounding
+    std::array<std::int64_t, 3> cell{};
+    for (int k = 0; k < 3; ++k) {
+      cell[static_cast<std::size_t>(k)] = std::llround(point.Coord(k + 1) / k_width + shift.Coord(k + 1));
+    }
+    return cell;
+  }
+
   TriangleMesh& mesh_;
-  std::map<std::array<double, 3>, std::uint32_t> index_of_ = {};
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> index_of_ = {};
 };
 
 void add_face(const TopoDS_Face& face, Corners& corners, TriangleMesh& mesh) {

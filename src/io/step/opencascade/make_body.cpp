@@ -299,7 +299,17 @@ Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, boo
   return spline;
 }
 
+/// Whether two arcs make a circle.
+bool is_whole_circle(const std::vector<ProfileSegment>& path) {
+  if (path.size() != 2 || !path[0].is_arc() || !path[1].is_arc()) return false;
+  return (path[0].centre - path[1].centre).norm() <= 1e-9 * path[0].radius;
+}
+
 TopoDS_Wire wire_of(const std::vector<ProfileSegment>& path, const PlaceOf& place, bool is_turned) {
+  // Halves of a cylinder would have to be joined again, which may never end (see with_joined_faces()).
+  if (is_whole_circle(path)) {
+    return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(curve_of(path[0], place, is_turned)).Edge()).Wire();
+  }
   std::vector<TopoDS_Vertex> corners;
   corners.reserve(path.size());
   for (const ProfileSegment& s : path) corners.push_back(BRepBuilderAPI_MakeVertex(place(s.start)).Vertex());
