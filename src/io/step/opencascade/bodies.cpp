@@ -87,8 +87,9 @@ Healed healed(const TopoDS_Shape& shape) {
 
 namespace {
 
-/// The edges between spherical faces with different poles.
-TopTools_MapOfShape edges_of_split_spheres(const TopoDS_Shape& shape) {
+/// The edges between curved faces. Their faces stay apart, because ShapeUpgrade_UnifySameDomain up to 7.9 may never end
+/// on them (OCCT issues 544 and 0032949), and spheres may have different poles.
+TopTools_MapOfShape edges_between_curved_faces(const TopoDS_Shape& shape) {
   TopTools_IndexedDataMapOfShapeListOfShape faces_of_edges;
   TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of_edges);
   TopTools_MapOfShape edges;
@@ -97,17 +98,14 @@ TopTools_MapOfShape edges_of_split_spheres(const TopoDS_Shape& shape) {
     if (faces.Extent() != 2) continue;
     const BRepAdaptor_Surface first(TopoDS::Face(faces.First()), false);
     const BRepAdaptor_Surface second(TopoDS::Face(faces.Last()), false);
-    if (first.GetType() != GeomAbs_Sphere || second.GetType() != GeomAbs_Sphere) continue;
-    const gp_Dir pole = first.Sphere().Position().Direction();
-    if (!pole.IsEqual(second.Sphere().Position().Direction(), Precision::Angular()))
-      edges.Add(faces_of_edges.FindKey(i));
+    if (first.GetType() != GeomAbs_Plane && second.GetType() != GeomAbs_Plane) edges.Add(faces_of_edges.FindKey(i));
   }
   return edges;
 }
 
 TopoDS_Shape joined(const TopoDS_Shape& shape) {
   ShapeUpgrade_UnifySameDomain unify(shape, true, true, false);
-  unify.KeepShapes(edges_of_split_spheres(shape));
+  unify.KeepShapes(edges_between_curved_faces(shape));
   unify.Build();
   return unify.Shape();
 }
