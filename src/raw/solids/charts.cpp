@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/geometry/subset.hpp"
+#include "raw/solids/curves.hpp"
 #include "raw/solids/edges.hpp"
 
 namespace cloud2csg {
@@ -17,63 +18,10 @@ using Eigen::Vector3d;
 
 constexpr std::size_t k_most_curve_points = 2000;  // of a curve; more tell no better where it ends
 constexpr double k_reach = 0.06;                   // beyond the points, in diagonals of the drawing
-constexpr double k_least_arc_reach = 0.35;         // the same of an arc, in radians
 constexpr double k_meeting = 1e-9;                 // in diagonals: crossings that near are one
 constexpr double k_border = 0.01;                  // width of the empty border, in diagonals
 constexpr double k_gap = 3;                        // in spacings: an edge farther from all points has none
 constexpr double k_least_share = 0.002;            // of all points, on surfaces along the direction or axis
-
-/// A line normal . p = offset, or a circle.
-struct Curve {
-  bool is_circle = false;
-  Vector2d normal = Vector2d::UnitX();  ///< of a line, or the centre of a circle
-  double offset = 0;                    ///< of a line, or the radius of a circle
-  std::vector<Vector2d> points = {};    ///< some of its points; of a hidden line, two far away
-  std::size_t count = 0;                ///< of all its points; 0 for a line that is hidden
-
-  [[nodiscard]] double distance(const Vector2d& p) const {
-    return is_circle ? std::abs((p - normal).norm() - offset) : std::abs(normal.dot(p) - offset);
-  }
-  /// Length along the curve, from its start: the foot of the origin, or the circle's +x.
-  [[nodiscard]] double along(const Vector2d& p) const {
-    if (!is_circle) return to_the_left(normal).dot(p);
-    const Vector2d arm = p - normal;
-    return offset * std::atan2(arm.y(), arm.x());
-  }
-};
-
-bool is_same(const Curve& a, const Curve& b, double tolerance) {
-  if (a.is_circle != b.is_circle) return false;
-  if (a.is_circle) return (a.normal - b.normal).norm() < tolerance && std::abs(a.offset - b.offset) < tolerance;
-  // A line is what it is near the other's points.
-  return std::abs(a.normal.dot(b.normal)) > 0.999 &&
-         std::ranges::all_of(b.points, [&](const Vector2d& p) { return a.distance(p) < 2 * tolerance; });
-}
-
-/// Equal curves become one, with the values of the one with the most points.
-std::vector<Curve> merged(std::vector<Curve> curves, double tolerance) {
-  std::ranges::stable_sort(curves, std::greater<>(), &Curve::count);
-  std::vector<Curve> result;
-  for (Curve& curve : curves) {
-    const auto known =
-        std::ranges::find_if(result, [&](const Curve& other) { return is_same(other, curve, tolerance); });
-    if (known == result.end()) {
-      result.push_back(std::move(curve));
-    } else {
-      known->points.insert(known->points.end(), curve.points.begin(), curve.points.end());
-      known->count += curve.count;
-    }
-  }
-  return result;
-}
-
-/// The place on a curve that is nearest to a circle beside or inside it.
-std::optional<Vector2d> nearest_place(const Curve& curve, const Curve& circle) {
-  if (!curve.is_circle) return circle.normal + (curve.offset - curve.normal.dot(circle.normal)) * curve.normal;
-  const Vector2d arm = circle.normal - curve.normal;
-  if (arm.norm() <= 1e-9 * curve.offset) return std::nullopt;
-  return curve.normal + curve.offset * arm.normalized();
-}
 
 class ChartMaker {
  public:
@@ -279,7 +227,7 @@ class ChartMaker {
     box = {box.min() - Vector2d::Constant(k_border * diagonal), box.max() + Vector2d::Constant(k_border * diagonal)};
     if (chart.is_turned) box.min().x() = 0;
     if (!chart.is_turned) chart.caps = caps_between(std::move(chart.caps), low, high);
-    close_gaps(curves, k_reach * diagonal);
+    curves = with_closed_gaps(std::move(curves), k_reach * diagonal, options_.tolerance);
     std::vector<ProfileSegment> pieces;
     std::vector<std::uint32_t> curve_of_piece;
     for (std::uint32_t c = 0; c < curves.size(); ++c) {
@@ -301,32 +249,10 @@ class ChartMaker {
       chart.drawing.curve_of_edge.push_back(curve);
       const bool is_border = curve >= curves.size();
       const double around = chart.is_turned ? 2 * std::numbers::pi * edge.segment.at(0.5).x() : 1.0;
-      chart.drawing.price_of_edge.push_back(is_border ? 0.0 : around * bare_length(edge.segment, curves[curve]));
+      chart.drawing.price_of_edge.push_back(
+          is_border ? 0.0 : around * bare_length(edge.segment, curves[curve], k_gap * options_.spacing));
     }
     return chart;
-  }
-
-  /// Circles that nearly touch other curves grow until they do, so that faces close.
-  void close_gaps(std::vector<Curve>& curves, double reach) const {
-    std::vector<std::vector<ProfileSegment>> pieces;
-    pieces.reserve(curves.size());
-    for (const Curve& curve : curves) pieces.push_back(pieces_of(curve, reach));
-    const auto is_on = [&](std::size_t c, const Vector2d& place) {
-      return std::ranges::any_of(pieces[c], [&](const ProfileSegment& piece) {
-        return (nearest(piece, place) - place).norm() <= options_.tolerance;
-      });
-    };
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-      if (!curves[c].is_circle) continue;
-      double most = 0;
-      for (std::size_t k = 0; k < curves.size(); ++k) {
-        const std::optional<Vector2d> place = k == c ? std::nullopt : nearest_place(curves[k], curves[c]);
-        if (!place) continue;
-        const double gap = (*place - curves[c].normal).norm() - curves[c].offset;
-        if (gap > most && gap <= options_.tolerance && is_on(c, *place) && is_on(k, *place)) most = gap;
-      }
-      curves[c].offset += most;
-    }
   }
 
   /// The caps inside, and the ends of the cloud where no cap is.
@@ -339,51 +265,6 @@ class ChartMaker {
       if (distinct.empty() || cap - distinct.back() > options_.tolerance) distinct.push_back(cap);
     }
     return distinct;
-  }
-
-  /// The part of the curve with points, and a little more.
-  [[nodiscard]] static std::vector<ProfileSegment> pieces_of(const Curve& curve, double reach) {
-    std::vector<double> along;
-    for (const Vector2d& p : curve.points) along.push_back(curve.along(p));
-    std::ranges::sort(along);
-    if (along.empty()) return {};
-    if (!curve.is_circle) {
-      const Vector2d direction = to_the_left(curve.normal);
-      const Vector2d foot = curve.offset * curve.normal;
-      return {
-          segment_between(foot + (along.front() - reach) * direction, 0, foot + (along.back() + reach) * direction)};
-    }
-    const double around = 2 * std::numbers::pi * curve.offset;
-    double gap = along.front() + around - along.back();
-    double start = along.front();
-    for (std::size_t k = 1; k < along.size(); ++k) {
-      if (along[k] - along[k - 1] <= gap) continue;
-      gap = along[k] - along[k - 1];
-      start = along[k];
-    }
-    const double more = std::max(reach, k_least_arc_reach * curve.offset);
-    double length = around - gap + 2 * more;
-    start -= more;
-    if (length > 0.95 * around) length = around;
-    const auto at = [&](double share) {
-      const double angle = (start + share * length) / curve.offset;
-      return Vector2d(curve.normal + curve.offset * Vector2d(std::cos(angle), std::sin(angle)));
-    };
-    const double bulge = std::tan(length / curve.offset / 8);  // of a half
-    return {segment_between(at(0), bulge, at(0.5)), segment_between(at(0.5), bulge, at(1))};
-  }
-
-  /// The length of an edge without points near.
-  [[nodiscard]] double bare_length(const ProfileSegment& edge, const Curve& curve) const {
-    if (curve.count == 0) return edge.length();
-    constexpr std::array k_probes{0.1, 0.3, 0.5, 0.7, 0.9};
-    std::size_t bare = 0;
-    for (const double share : k_probes) {
-      const Vector2d probe = edge.at(share);
-      const double near = k_gap * options_.spacing;
-      bare += std::ranges::none_of(curve.points, [&](const Vector2d& p) { return (p - probe).norm() < near; }) ? 1 : 0;
-    }
-    return edge.length() * static_cast<double>(bare) / k_probes.size();
   }
 
   static constexpr double k_level = 0.0175;    // the sine of a degree
