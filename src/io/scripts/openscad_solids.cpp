@@ -100,23 +100,27 @@ class Body {
     return parameters_.add(what, context_.number(number));
   }
 
+  /// A block that stands `indent` spaces in, without those of its first line.
+  [[nodiscard]] static std::string block(const std::string& head, const std::vector<std::string>& parts, int indent) {
+    const std::string margin = fmt::format("\n{:{}}", "", indent);
+    return fmt::format("{}{{{}  {}{}}}", head, margin, fmt::join(parts, margin + "  "), margin);
+  }
+
   /// `polygon(...);`, or `difference() { ... }` with holes, or a block of these.
   [[nodiscard]] std::string profile_text(const Profile& profile) const {
     const std::vector<ProfileRegion> regions = regions_of(profile);
-    std::vector<std::string> texts(regions.size());
+    const bool is_single = regions.size() == 1;
+    std::vector<std::string> parts;
     for (std::size_t i = 0; i < regions.size(); ++i) {
       const auto& [outline, holes] = regions[i];
-      const std::string part = regions.size() > 1 ? fmt::format("part_{}_", i + 1) : "";
-      std::string& text = texts[i];
-      if (!holes.empty()) text += "difference() {\n    ";
-      text += path_text(part + "outline", outline);
+      const std::string part = is_single ? "" : fmt::format("part_{}_", i + 1);
+      std::vector<std::string> paths{path_text(part + "outline", outline)};
       for (std::size_t k = 0; k < holes.size(); ++k) {
-        text += "\n    ";
-        text += path_text(fmt::format("{}hole_{}", part, k + 1), holes[k]);
+        paths.push_back(path_text(fmt::format("{}hole_{}", part, k + 1), holes[k]));
       }
-      if (!holes.empty()) text += "\n  }";
+      parts.push_back(holes.empty() ? paths.front() : block("difference() ", paths, is_single ? 2 : 4));
     }
-    return texts.size() == 1 ? texts.front() : fmt::format("{{\n  {}\n  }}", fmt::join(texts, "\n  "));
+    return is_single ? parts.front() : block("", parts, 2);
   }
 
   [[nodiscard]] std::string path_text(const std::string& what, const std::vector<ProfileSegment>& path) const {
