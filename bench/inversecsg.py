@@ -32,6 +32,24 @@ def run(command, seconds=None, accepted=(0,)):
     return result.stdout
 
 
+def make_mesh(script, folder):
+    """OpenSCAD's mesh of a script, its corners and triangles sorted: their order differs from run to run, and samples with it."""
+    mesh = folder / f"{script.stem}.off"
+    run(["openscad", "-o", mesh, script], RENDER_SECONDS)
+    head, *lines = (line.split() for line in mesh.read_text().split("\n") if line.strip())
+    count = int((head[1:] or lines.pop(0))[0])
+    corners, faces = lines[:count], [[int(k) for k in line[1:]] for line in lines[count:]]
+    order = sorted(range(count), key=lambda k: [float(x) for x in corners[k]])
+    place = {corner: k for k, corner in enumerate(order)}
+    turned = []
+    for face in ([place[k] for k in face] for face in faces):
+        first = face.index(min(face))
+        turned.append([len(face), *face[first:], *face[:first]])
+    rows = [corners[k] for k in order] + sorted(turned)
+    mesh.write_text(f"OFF\n{count} {len(turned)} 0\n" + "\n".join(" ".join(map(str, row)) for row in rows) + "\n")
+    return mesh
+
+
 def make_cloud(program, mesh, variant, points, seed, folder):
     """What `extract` is given: the mesh itself, or a cloud made of it."""
     cloud = folder / f"{variant}.ply"
@@ -59,8 +77,7 @@ def measure(program, openscad, mesh, variant, arguments):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         if mesh.suffix == ".scad":
-            script, mesh = mesh, folder / f"{mesh.stem}.off"
-            run(["openscad", "-o", mesh, script], RENDER_SECONDS)
+            mesh = make_mesh(mesh, folder)
         cloud = make_cloud(program, mesh, variant, arguments.points, arguments.seed, folder)
         scad, tree, stats = folder / "tree.scad", folder / "tree.json", folder / "stats.json"
         begin = time.monotonic()
