@@ -24,7 +24,7 @@ import shutil
 import statistics
 import tempfile
 
-from inversecsg import DOUBTFUL, run
+from inversecsg import DOUBTFUL, make_mesh, run
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COPY = ROOT / "build" / "constants"
@@ -88,7 +88,7 @@ def make_clouds(program, seed):
         pairs.append((mesh, cloud))
         if cloud.exists():
             continue
-        run(["openscad", "-q", "-o", mesh, ROOT / "bench" / "parts" / f"{name}.scad"])
+        make_mesh(ROOT / "bench" / "parts" / f"{name}.scad", folder)
         common = ["-n", str(POINTS), "--seed", str(seed), "-o", cloud, "-q"]
         run([program, "scan", mesh, *common] if name in SCANNED else [program, "sample", mesh, "--relative-noise", "0.002", *common])
     return pairs

@@ -87,6 +87,12 @@ class ChartMaker {
     return frames;
   }
 
+  /// A plane across the direction.
+  struct Cap {
+    double height = 0;
+    std::size_t count = 0;  ///< of its points
+  };
+
   /// What a surface shows in a drawing.
   struct Trace {
     std::optional<Curve> curve = {};
@@ -186,15 +192,16 @@ class ChartMaker {
   [[nodiscard]] std::vector<Chart> best_of(const std::vector<Pose>& frames, bool is_turned, std::size_t most) const {
     struct Candidate {
       Chart chart;
-      std::vector<Curve> curves;
-      std::size_t count;
+      std::vector<Curve> curves = {};
+      std::vector<Cap> caps = {};
+      std::size_t count = 0;
     };
     std::vector<Candidate> candidates;
     for (const Pose& frame : frames) {
-      Candidate candidate{.chart = {.is_turned = is_turned, .frame = frame}, .curves = {}, .count = 0};
+      Candidate candidate{.chart = {.is_turned = is_turned, .frame = frame}};
       for (const DetectedSurface& s : surfaces_) {
         Trace trace = is_turned ? trace_around(candidate.chart, s) : trace_across(candidate.chart, s);
-        if (trace.cap) candidate.chart.caps.push_back(*trace.cap);
+        if (trace.cap) candidate.caps.push_back({.height = *trace.cap, .count = s.points.size()});
         if (!trace.curve) continue;
         trace.curve->points = s.points.empty() ? far_points(*trace.curve) : points_of(candidate.chart, s);
         trace.curve->count = s.points.size();
@@ -209,24 +216,19 @@ class ChartMaker {
     std::vector<Chart> charts;
     charts.reserve(candidates.size());
     for (Candidate& candidate : candidates) {
-      charts.push_back(drawn(std::move(candidate.chart), merged(std::move(candidate.curves), options_.tolerance)));
+      Chart chart = drawn(std::move(candidate.chart), merged(std::move(candidate.curves), options_.tolerance));
+      if (!is_turned) chart.caps = ends_in(chart, std::move(candidate.caps));
+      charts.push_back(std::move(chart));
     }
     return charts;
   }
 
   [[nodiscard]] Chart drawn(Chart chart, std::vector<Curve> curves) const {
     Eigen::AlignedBox2d box;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (std::size_t i = 0; i < positions_.size(); ++i) {
-      box.extend(chart.place_of(positions_[i]));
-      low = std::min(low, chart.height_of(positions_[i]));
-      high = std::max(high, chart.height_of(positions_[i]));
-    }
+    for (std::size_t i = 0; i < positions_.size(); ++i) box.extend(chart.place_of(positions_[i]));
     const double diagonal = box.diagonal().norm();
     box = {box.min() - Vector2d::Constant(k_border * diagonal), box.max() + Vector2d::Constant(k_border * diagonal)};
     if (chart.is_turned) box.min().x() = 0;
-    if (!chart.is_turned) chart.caps = caps_between(std::move(chart.caps), low, high);
     curves = with_closed_gaps(std::move(curves), k_reach * diagonal, options_.tolerance);
     std::vector<ProfileSegment> pieces;
     std::vector<std::uint32_t> curve_of_piece;
@@ -255,15 +257,26 @@ class ChartMaker {
     return chart;
   }
 
-  /// The caps inside, and the ends of the cloud where no cap is.
-  [[nodiscard]] std::vector<double> caps_between(std::vector<double> caps, double low, double high) const {
-    caps.push_back(low);
-    caps.push_back(high);
-    std::ranges::sort(caps);
-    std::vector<double> distinct;
-    for (const double cap : caps) {
-      if (distinct.empty() || cap - distinct.back() > options_.tolerance) distinct.push_back(cap);
+  /// Distinct caps, of two near each other the one with more points, and the ends of the cloud where no cap is.
+  [[nodiscard]] std::vector<double> ends_in(const Chart& chart, std::vector<Cap> caps) const {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      low = std::min(low, chart.height_of(positions_[i]));
+      high = std::max(high, chart.height_of(positions_[i]));
     }
+    std::erase_if(caps, [&](const Cap& cap) {
+      return cap.height < low - options_.tolerance || cap.height > high + options_.tolerance;
+    });
+    std::ranges::stable_sort(caps, std::greater<>(), &Cap::count);
+    caps.push_back({.height = low});
+    caps.push_back({.height = high});
+    std::vector<double> distinct;
+    for (const Cap& cap : caps) {
+      const auto is_near = [&](double known) { return std::abs(known - cap.height) <= options_.tolerance; };
+      if (std::ranges::none_of(distinct, is_near)) distinct.push_back(cap.height);
+    }
+    std::ranges::sort(distinct);
     return distinct;
   }
 
