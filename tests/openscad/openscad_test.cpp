@@ -85,7 +85,8 @@ TEST(OpenScad, ReadsAConvexPolyhedronInEitherDirection) {
     EXPECT_TRUE(contains(model, {0.2, 0.2, 0.2}));
     EXPECT_FALSE(contains(model, {0.4, 0.4, 0.4}));
   }
-  EXPECT_NE(refusal(points + "[[0,1,2], [0,3,1], [0,2,3]]);").find("line 1, column 1: planes"), std::string::npos);
+  EXPECT_NE(refusal(points + "[[0,1,2], [0,3,1], [0,2,3]]);").find("line 1, column 1: planes: expected"),
+            std::string::npos);
   EXPECT_NE(refusal(points + "[[0,1,2], [0,3,1], [0,2,3], [1,3,4]]);").find("numbers of points"), std::string::npos);
 }
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -237,6 +238,36 @@ TEST(OpenScadSweep, OperationsThatAreNoProfileStayOperations) {
       1);
 }
 
+TEST(OpenScadSweep, SpecialCasesAreAsOpenScadDrawsThem) {
+  const auto only = [](const std::string& text) {
+    const Model model = parse_openscad(text);
+    EXPECT_EQ(model.primitives.size(), 1U) << text;
+    return model.primitives.at(0);
+  };
+  const auto corners_of = [&](const std::string& text) { return profile_of(only(text)).paths.at(0).size(); };
+  EXPECT_EQ(corners_of("linear_extrude(5, $fn = 6) circle(3);"), 6U) << "children inherit $fn";
+  EXPECT_EQ(corners_of("linear_extrude(5) translate([1, 0], $fn = 6) { circle(3); }"), 6U);
+  EXPECT_EQ(corners_of("module disc() { circle(3); } linear_extrude(5, $fn = 5) disc();"), 5U);
+  EXPECT_EQ(corners_of("linear_extrude(5, $fn = 6) circle(3, $fn = 64);"), 2U);
+  EXPECT_EQ(corners_of("$fn = 6; linear_extrude(5, $fn = 64) circle(3);"), 2U);
+  EXPECT_EQ(parse_openscad("linear_extrude(1) { union($fn = 6) { circle(1); } translate([9, 0]) circle(1); }")
+                .primitives.at(0)
+                .shape.index(),
+            Shape(Extrusion{}).index());
+  EXPECT_EQ(corners_of("linear_extrude(1) circle(1, $fn = 1);"), 3U);
+  EXPECT_EQ(corners_of("linear_extrude(1) polygon([[0, 0], [1, 0], [1, 1]], []);"), 3U);
+  EXPECT_EQ(corners_of("linear_extrude(1) polygon([[0, 0], [1, 0], [1, 1]], [[0, 1, 2], []]);"), 3U);
+  EXPECT_EQ(corners_of("path = [[0, 0], [1, 0], [1, 1]]; linear_extrude(1) polygon(path);"), 3U);
+  EXPECT_EQ(std::get<Extrusion>(only("linear_extrude() square(3);").shape).height, 100);
+  EXPECT_EQ(std::get<Extrusion>(only("linear_extrude(center = true, height = 4) square(3);").shape).height, 4);
+  EXPECT_EQ(only("rotate_extrude(angle = -400) square(3);").shape.index(), Shape(Revolution{}).index());
+  const auto torus = std::get<Torus>(only("rotate_extrude() { difference() { union() {} translate([20, 0]) circle(5); "
+                                          "} translate([10, 0]) circle(3); }")
+                                         .shape);
+  EXPECT_EQ(torus.major_radius, 10) << "the shape of an operation that came to nothing is none";
+  EXPECT_EQ(torus.minor_radius, 3);
+}
+
 TEST(OpenScadSweep, SolidsAreMappedAsOthers) {
   const Model model = parse_openscad(
       "mirror([0, 0, 1]) scale([2, 1, 3]) linear_extrude(1) polygon([[0, 0], [1, 0], [0, 1]]);"
@@ -279,19 +310,21 @@ TEST(OpenScadSweep, SaysWhatIsNoSweptSolid) {
       {"linear_extrude(height = 2, twist = 90) square(1);", "line 1, column 36: expected an extrusion without a twist"},
       {"linear_extrude(2, scale = [1, 0.5]) square(1);", "column 27: expected an extrusion with a scale of 1"},
       {"linear_extrude(2, v = [1, 0, 1]) square(1);", "by its height alone"},
-      {"linear_extrude() square(1);", "expected an argument 'height'"},
+      {"linear_extrude(center = true, 5) square(1);", "column 31: expected a height as the first argument"},
+      {"linear_extrude(5) square([1, 2, 3]);", "a square with two sizes"},
       {"linear_extrude(-1) square(1);", "a height above 0"},
       {"rotate_extrude(angle = 90) square(1);", "line 1, column 1: expected a full turn"},
       {"rotate_extrude()\n  circle(1);",
        "line 2, column 3: expected a shape entirely to the right of the axis (x >= 0)"},
-      {"rotate_extrude() translate([1, 0]) polygon([[0, 0], [1, 1], [-1, 1]]);", "off the axis"},
+      {"rotate_extrude() translate([1, 0]) polygon([[0, 0], [1, 1], [-1, 1]]);",
+       "column 36: profile/0/0: expected a profile that does not touch the axis in a single point"},
       {"linear_extrude(1) cube(1);", "column 19: expected a circle, square or polygon, found 'cube'"},
       {"linear_extrude(1) linear_extrude(1) square(1);", "found 'linear_extrude'"},
       {"square(1);", "line 1, column 1: expected 'square' within linear_extrude or rotate_extrude"},
       {"linear_extrude(1) polygon([[0, 0], [1, 1], [1, 0], [0, 1]]);", "does not cross or touch"},
       {"linear_extrude(1) polygon([[0, 0], [1, 1]]);", "three different corners"},
       {"linear_extrude(1) polygon([]);", "three different corners"},
-      {"linear_extrude(1) polygon([[0, 0], [1, 0], [1, 1]], []);", "a polygon of"},
+      {"linear_extrude(1) polygon([[0, 0], [1, 0], [1, 1]], [[]]);", "a polygon of"},
       {"linear_extrude(1) polygon([[0, 0], [1, 0], [1, 1, 1]]);", "a point of two numbers"},
       {"linear_extrude(1) polygon([[0, 0], [1, 0], [1, 1]], [[0, 1, 3]]);", "numbers of points"},
       {"linear_extrude(1) scale([1, 2]) circle(1);", "keeps circles round"},
@@ -351,6 +384,12 @@ TEST(OpenScadSweep, ManyShapesTakeLittleTime) {
       "linear_extrude(1) difference() { square(200); for (i = [1 : 30], j = [1 : 30]) translate([6 * i, 6 * j]) "
       "circle(1); translate([100, 0]) circle(2); }");
   EXPECT_EQ(touching.primitives.size(), 2U) << "one pair that crosses keeps no others apart";
+  std::string comb = "[0, -1]";
+  for (int i = 1; i < 1000; ++i) comb += fmt::format(", [{}, {}]", i, i % 2);
+  comb += ", [999, -1]";
+  const Model combs =
+      parse_openscad("linear_extrude(1) for (i = [1 : 100]) translate([0, 3 * i]) polygon([" + comb + "]);");
+  EXPECT_EQ(profile_of(combs.primitives[0]).paths.size(), 9U) << "more would have over 10 000 segments";
   const Model crowd = parse_openscad("linear_extrude(1) for (i = [1 : 5000]) translate([i, 0]) circle(5);");
   EXPECT_GT(crowd.primitives.size(), 4000U);
 }

@@ -29,6 +29,18 @@ std::vector<ProfileSegment> reversed(std::vector<ProfileSegment> path) {
   return path;
 }
 
+/// Points of a circle and a line or another circle whose common chord has this foot as seen from the circle's centre.
+/// Where they nearly touch there is one.
+std::vector<Vector2d> ends_of_chord(const ProfileSegment& circle, double foot, const Vector2d& direction,
+                                    double tolerance) {
+  const double off = circle.radius - std::abs(foot);
+  if (off < -tolerance) return {};
+  const Vector2d middle = circle.centre + std::clamp(foot, -circle.radius, circle.radius) * direction;
+  if (off <= tolerance) return {middle};
+  const Vector2d half = std::sqrt(circle.radius * circle.radius - foot * foot) * to_the_left(direction);
+  return {middle + half, middle - half};
+}
+
 }  // namespace
 
 ProfileSegment segment_between(const Vector2d& start, double bulge, const Vector2d& end) {
@@ -51,6 +63,30 @@ Vector2d nearest(const ProfileSegment& s, const Vector2d& point) {
   const Vector2d arm = point - s.centre;
   if (arm.squaredNorm() > 0 && is_in_sector(s, arm)) return s.centre + s.radius * arm.normalized();
   return (point - s.start).norm() <= (point - s.end).norm() ? s.start : s.end;
+}
+
+std::vector<Vector2d> crossings(const ProfileSegment& a, const ProfileSegment& b, double tolerance) {
+  if (!a.is_arc() && b.is_arc()) return crossings(b, a, tolerance);
+  if (!a.is_arc()) {
+    const Vector2d u = a.end - a.start;
+    const Vector2d v = b.end - b.start;
+    const double sine = cross(u, v);
+    if (sine == 0) return {};
+    return {a.start + cross(b.start - a.start, v) / sine * u};
+  }
+  if (!b.is_arc()) {
+    const Vector2d normal = to_the_left(b.end - b.start).normalized();
+    return ends_of_chord(a, normal.dot(b.start - a.centre), normal, tolerance);
+  }
+  const Vector2d between = b.centre - a.centre;
+  const double distance = between.norm();
+  if (distance <= tolerance) return {};
+  const double foot = (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2 * distance);
+  // Near a touch the foot moves much for a small change of the radii. The gap says whether they touch.
+  const double gap =
+      std::min(std::abs(distance - a.radius - b.radius), std::abs(distance - std::abs(a.radius - b.radius)));
+  if (gap <= tolerance) return {a.centre + std::copysign(a.radius, foot) * between / distance};
+  return ends_of_chord(a, foot, between / distance, 0);
 }
 
 double ProfileSegment::length() const {
@@ -140,7 +176,8 @@ bool is_circle(std::span<const ProfileSegment> path) {
   constexpr double k_equal = 1e-9;  // in radii
   const ProfileSegment& first = path.front();
   return std::ranges::all_of(path, [&](const ProfileSegment& s) {
-    return s.is_arc() && std::abs(s.radius - first.radius) <= k_equal * first.radius &&
+    return s.is_arc() && (s.bulge > 0) == (first.bulge > 0) &&
+           std::abs(s.radius - first.radius) <= k_equal * first.radius &&
            (s.centre - first.centre).norm() <= k_equal * first.radius;
   });
 }

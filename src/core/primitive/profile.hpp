@@ -41,6 +41,11 @@ struct ProfileSegment {
 /// The point of the segment that is nearest to the given one. O(1)
 [[nodiscard]] Eigen::Vector2d nearest(const ProfileSegment& segment, const Eigen::Vector2d& point);
 
+/// Points where the whole lines or circles of both cross or nearly touch: one where they come within the tolerance of a
+/// touch, none for equal or parallel ones. O(1)
+[[nodiscard]] std::vector<Eigen::Vector2d> crossings(const ProfileSegment& a, const ProfileSegment& b,
+                                                     double tolerance);
+
 /// Whether the direction from the arc's centre is one of the arc's. O(1)
 [[nodiscard]] bool is_in_sector(const ProfileSegment& arc, const Eigen::Vector2d& direction);
 
@@ -71,7 +76,7 @@ struct ProfileRegion {
 /// Whether the point is in the region inside an odd number of the segments' paths. O(segments)
 [[nodiscard]] bool is_inside(std::span<const ProfileSegment> segments, const Eigen::Vector2d& point);
 
-/// Whether all segments are arcs of one circle.
+/// Whether all segments are arcs of one circle, in one direction.
 [[nodiscard]] bool is_circle(std::span<const ProfileSegment> path);
 
 /// Twice the area to the left of a closed path. O(segments)

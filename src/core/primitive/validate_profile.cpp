@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -21,38 +22,9 @@ constexpr double k_corner = 1e-6;
 /// Beyond it, an arc's gap is less than k_touching of its radius.
 constexpr double k_most_bulge = 1e9;
 
-/// Points of both curves' whole lines or circles where they cross or come nearest to each other.
-std::vector<Vector2d> meetings(const ProfileSegment& a, const ProfileSegment& b) {
-  if (!a.is_arc() && b.is_arc()) return meetings(b, a);
-  if (!a.is_arc()) {
-    const Vector2d u = a.end - a.start;
-    const Vector2d v = b.end - b.start;
-    const double sine = cross(u, v);
-    if (sine == 0) return {};
-    return {a.start + cross(b.start - a.start, v) / sine * u};
-  }
-  // The chord that both have in common lies `foot` from the centre of a.
-  Vector2d foot;
-  if (b.is_arc()) {
-    const Vector2d between = b.centre - a.centre;
-    const double distance = between.norm();
-    if (distance == 0) return {};
-    const double along = (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2 * distance);
-    foot = std::clamp(along, -a.radius, a.radius) / distance * between;
-  } else {
-    const Vector2d along = (b.end - b.start).normalized();
-    const Vector2d arm = b.start - a.centre;
-    foot = arm - arm.dot(along) * along;
-    if (foot.norm() > a.radius) foot *= a.radius / foot.norm();
-  }
-  const double half = std::sqrt(std::max(0.0, a.radius * a.radius - foot.squaredNorm()));
-  const Vector2d across = (b.is_arc() ? to_the_left(b.centre - a.centre) : Vector2d(b.end - b.start)).normalized();
-  return {a.centre + foot + half * across, a.centre + foot - half * across};
-}
-
 /// Whether the segments come nearer than this to each other, away from corners that they share as neighbours.
 bool touch(const ProfileSegment& a, const ProfileSegment& b, std::span<const Vector2d> shared, double tolerance) {
-  std::vector<Vector2d> candidates = meetings(a, b);
+  std::vector<Vector2d> candidates = crossings(a, b, tolerance);
   // One of these points is common to both where they coincide for some way.
   for (const Vector2d& point : {a.start, a.end, a.at(0.5), b.start, b.end, b.at(0.5)}) candidates.push_back(point);
   // At a sharp corner the segments are near each other for some way.
@@ -107,10 +79,16 @@ void validate_profile(const Profile& profile) {
   if (profile.paths.empty()) refuse("profile", "a closed path or more");
   const std::vector<PlacedSegment> all = checked_segments(profile);
   const double tolerance = k_touching * bounds_of(profile).diagonal().norm();
+  // Only segments whose boxes overlap along x can touch.
+  std::vector<std::size_t> by_low(all.size());
+  std::iota(by_low.begin(), by_low.end(), std::size_t{0});
+  std::ranges::stable_sort(by_low, {}, [&](std::size_t k) { return all[k].box.min().x(); });
   for (std::size_t j = 0; j < all.size(); ++j) {
-    for (std::size_t i = 0; i < j; ++i) {
-      const PlacedSegment& a = all[i];
-      const PlacedSegment& b = all[j];
+    for (std::size_t i = j + 1; i < all.size(); ++i) {
+      const auto [first, second] = std::minmax(by_low[i], by_low[j]);
+      const PlacedSegment& a = all[first];
+      const PlacedSegment& b = all[second];
+      if (all[by_low[i]].box.min().x() > all[by_low[j]].box.max().x() + tolerance) break;
       if (a.box.exteriorDistance(b.box) > tolerance) continue;
       if (!touch(a.segment, b.segment, shared_corners(a, b, profile.paths[a.path].size()), tolerance)) continue;
       refuse(fmt::format("profile/{}/{}", b.path, b.index),
@@ -133,7 +111,7 @@ void validate_turned_profile(const Profile& profile) {
       const bool starts_at_line = s.start.x() == 0 && segments[(i + count - 1) % count].is_on_axis();
       const bool ends_at_line = s.end.x() == 0 && segments[(i + 1) % count].is_on_axis();
       if (low > tolerance || s.is_on_axis() || starts_at_line || ends_at_line) continue;
-      refuse(where, "a segment off the axis, or one that ends where a line along the axis (radius 0) starts");
+      refuse(where, "a profile that does not touch the axis in a single point");
     }
   }
 }

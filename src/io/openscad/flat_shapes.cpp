@@ -34,6 +34,7 @@ Profile circle(const Arguments& call, bool is_turned) {
 
 Profile square(const Arguments& call) {
   const Value* const given = call.find("size", 0);
+  call.require(given == nullptr || given->items.size() <= 2, "a square with two sizes");
   const Vector2d size = given == nullptr ? Vector2d::Ones() : Vector2d(vector_or_number(*given, 0).head<2>());
   call.require(size.minCoeff() > 0, "a square with two sizes above 0");
   const Vector2d low = call.flag("center", 1) ? Vector2d(-0.5 * size) : Vector2d::Zero();
@@ -72,7 +73,8 @@ ClosedPath chosen_corners(const ClosedPath& corners, const Value& numbers) {
 Profile polygon(const Arguments& call) {
   constexpr std::size_t k_most_corners = 10'000;  // finding crossings takes time of the second power
   const Value& points = call.need("points", 0);
-  const Value* const paths = call.find("paths", 1);
+  const Value* paths = call.find("paths", 1);
+  if (paths != nullptr && paths->is_list && paths->items.empty()) paths = nullptr;
   if (!points.is_list) throw Refusal(points.offset, "expected a list of points");
   ClosedPath corners;
   for (const Value& point : points.items) corners.push_back(corner_of(point, points.is_path));
@@ -84,6 +86,7 @@ Profile polygon(const Arguments& call) {
     const bool is_single = !paths->items.empty() && !paths->items.front().is_list;
     if (is_single) profile.paths.push_back(chosen_corners(corners, *paths));
     for (std::size_t i = 0; i < paths->items.size() && !is_single; ++i) {
+      if (paths->items[i].is_list && paths->items[i].items.empty()) continue;
       profile.paths.push_back(chosen_corners(corners, paths->items[i]));
     }
   }
@@ -111,7 +114,13 @@ double height_of(const Arguments& call) {
   if (const Value* const direction = call.find("v", Arguments::k_by_name); direction != nullptr) {
     throw Refusal(direction->offset, "expected an extrusion by its height alone");
   }
-  const double height = number_of(call.need("height", 0));
+  constexpr double k_height = 100;  // OpenSCAD's, too
+  const Value* const given = call.find("height", 0);
+  const bool is_first = !call.values.empty() && given == &call.values.front().second;
+  if (given != nullptr && call.find("height", Arguments::k_by_name) == nullptr && !is_first) {
+    throw Refusal(given->offset, "expected a height as the first argument or by its name");
+  }
+  const double height = given == nullptr ? k_height : number_of(*given);
   call.require(height > 0, "a height above 0");
   return height;
 }
@@ -138,7 +147,8 @@ Sweep sweep_of(const Arguments& call) {
     const double middle = call.flag("center", Arguments::k_by_name) ? 0.0 : 0.5 * height;
     return {.height = height, .frame = Affine3d(Eigen::Translation3d(0, 0, middle))};
   }
-  call.require(call.number("angle", 0, 360) == 360, "a full turn, by an angle of 360");
+  const double angle = call.number("angle", Arguments::k_by_name, 360);
+  call.require(angle >= 360 || angle <= -360, "a full turn, by an angle of 360");
   return {.height = std::nullopt};
 }
 
@@ -172,10 +182,11 @@ FlatShape placed_in_plane(const FlatShape& shape, const Affine3d& frame) {
 std::optional<LeafSolid> torus_of(const FlatTree& tree) {
   const bool is_cut = tree.nodes.size() == 3 && tree.nodes.back() == CsgNode::inner(Operation::intersection, 3);
   if (tree.nodes.size() != 1 && !is_cut) return std::nullopt;
-  const Profile& profile = tree.shapes[0].profile;
+  // Shapes that no node uses are left of operations that came to nothing.
+  const Profile& profile = tree.shapes[tree.nodes[0].primitive()].profile;
   const std::vector<ProfileSegment> path = segments_of(profile.paths[0]);
   if (profile.paths.size() != 1 || !is_circle(path)) return std::nullopt;
-  if (is_cut && !leaves_pinhole(tree.shapes[1].profile, path[0])) return std::nullopt;
+  if (is_cut && !leaves_pinhole(tree.shapes[tree.nodes[1].primitive()].profile, path[0])) return std::nullopt;
   const Vector2d centre = path[0].centre;
   constexpr double k_rounding = 1e-12;
   if (centre.x() < path[0].radius * (1 - k_rounding)) return std::nullopt;

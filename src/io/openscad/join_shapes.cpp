@@ -29,10 +29,11 @@ std::size_t count_of_segments(const Profile& profile) {
 struct BoxedShape {
   Profile profile;
   std::vector<Eigen::AlignedBox2d> boxes = {};
+  std::size_t segments = 0;
 };
 
 BoxedShape boxed(const Profile& profile) {
-  BoxedShape shape{.profile = profile};
+  BoxedShape shape{.profile = profile, .boxes = {}, .segments = count_of_segments(profile)};
   for (const ClosedPath& path : profile.paths) shape.boxes.push_back(bounds_of(segments_of(path)));
   return shape;
 }
@@ -62,7 +63,7 @@ class Joiner {
     constexpr std::size_t k_pairs_per_segment = 5000;
     for (const FlatShape& shape : tree.shapes) {
       shapes_.push_back(boxed(shape.profile));
-      pairs_left_ += k_pairs_per_segment * count_of_segments(shape.profile);
+      pairs_left_ += k_pairs_per_segment * shapes_.back().segments;
     }
   }
 
@@ -101,6 +102,7 @@ class Joiner {
       const BoxedShape& added = shape_at(right);
       whole.profile.paths.insert(whole.profile.paths.end(), added.profile.paths.begin(), added.profile.paths.end());
       whole.boxes.insert(whole.boxes.end(), added.boxes.begin(), added.boxes.end());
+      whole.segments += added.segments;
       nodes_.pop_back();
       return;
     }
@@ -114,8 +116,9 @@ class Joiner {
   /// Whether the paths of both together are the result. Where paths do not touch, one place of a path tells on which
   /// side of the other shape's paths it is.
   bool joins(const BoxedShape& whole, const BoxedShape& added, Operation operation) {
-    constexpr std::size_t k_most_paths = 5000;
-    if (whole.boxes.size() + added.boxes.size() > k_most_paths) return false;
+    // More would take seconds to test for crossings, as in a polygon.
+    constexpr std::size_t k_most_segments = 10'000;
+    if (whole.segments + added.segments > k_most_segments) return false;
     const bool is_cut = operation == Operation::difference;
     return start_inside(added, whole, is_cut) && start_inside(whole, added, false) &&
            (touching_ == Touching::later || are_apart(whole, added));

@@ -11,10 +11,10 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/text.hpp"
-#include "core/primitive/shape.hpp"
 #include "io/openscad/flat_shapes.hpp"
 #include "io/openscad/join_shapes.hpp"
 #include "io/openscad/path_functions.hpp"
+#include "io/openscad/solid_key.hpp"
 #include "io/openscad/solids.hpp"
 
 namespace cloud2csg::scad {
@@ -25,36 +25,6 @@ using Eigen::Vector3d;
 
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, name) != names.end();
-}
-
-/// All numbers of a solid's shape and pose: equal for equal solids.
-std::vector<double> key_of(const Primitive& primitive) {
-  std::vector<double> numbers{static_cast<double>(primitive.shape.index())};
-  const auto add = [&numbers](const auto& vector) { numbers.insert(numbers.end(), vector.begin(), vector.end()); };
-  add(primitive.pose.position);
-  add(primitive.pose.orientation.coeffs());
-  add(lengths_of(primitive.shape));
-  const auto add_profile = [&](const Profile& profile) {
-    for (const ClosedPath& path : profile.paths) {
-      numbers.push_back(static_cast<double>(path.size()));
-      for (const PathCorner& corner : path) {
-        add(corner.point);
-        numbers.push_back(corner.bulge);
-      }
-    }
-  };
-  if (const auto* extrusion = std::get_if<Extrusion>(&primitive.shape)) {
-    numbers.push_back(extrusion->height);
-    add_profile(extrusion->profile);
-  }
-  if (const auto* revolution = std::get_if<Revolution>(&primitive.shape)) add_profile(revolution->profile);
-  if (const auto* polytope = std::get_if<Polytope>(&primitive.shape)) {
-    for (const Plane& plane : polytope->planes) {
-      add(plane.normal);
-      numbers.push_back(plane.offset);
-    }
-  }
-  return numbers;
 }
 
 /// Numbers repeated names, except at their first use.
@@ -80,6 +50,33 @@ std::size_t calls_worth(const Profile& profile) {
   return segments * segments / k_pairs_per_call;
 }
 
+/// While this lives, a call's own $fn holds for its children.
+class Inherited {
+ public:
+  Inherited(const Arguments& call, Variables& locals) : locals_(locals) {
+    const auto own = std::ranges::find(call.values, "$fn", [](const auto& argument) { return argument.first; });
+    if (own == call.values.end()) return;
+    if (const auto outer = locals.find("$fn"); outer != locals.end()) outer_ = outer->second;
+    locals.insert_or_assign("$fn", own->second);
+    is_set_ = true;
+  }
+  ~Inherited() {
+    if (!is_set_) return;
+    if (outer_) {
+      locals_.insert_or_assign("$fn", *outer_);
+    } else {
+      locals_.erase("$fn");
+    }
+  }
+  Inherited(const Inherited&) = delete;
+  Inherited& operator=(const Inherited&) = delete;
+
+ private:
+  Variables& locals_;
+  std::optional<Value> outer_ = {};
+  bool is_set_ = false;
+};
+
 /// A union, intersection or difference while its operands are read.
 struct Block {
   Operation operation;
@@ -101,8 +98,8 @@ class Program {
     while (reader_.peek().kind != Token::Kind::end) {
       const Token first = reader_.next();
       const bool is_collected = first.raw == "module" || reader_.at("=");
-      if (path_functions_ && first.offset == path_functions_->first) {
-        reader_.go_to(path_functions_->second);
+      if (const auto functions = path_functions_.find(first.offset); functions != path_functions_.end()) {
+        reader_.go_to(functions->second);
         continue;
       }
       reader_.go_to(first.offset);
@@ -150,7 +147,7 @@ class Program {
     }
     const bool is_same = expected.peek().kind == Token::Kind::end;
     if (is_same) {
-      path_functions_ = {first.offset, reader_.peek().offset};
+      path_functions_.emplace(first.offset, reader_.peek().offset);
     } else {
       reader_.go_to(first.offset);
       reader_.next();
@@ -235,6 +232,7 @@ class Program {
                                              visible_text(name.raw, k_longest_quote)));
     }
     const Arguments arguments = reader_.arguments(name);
+    const Inherited inherited(arguments, locals_);
     if (name.raw == "difference") return add_children(Operation::difference, frame);
     if (name.raw == "intersection") return add_children(Operation::intersection, frame);
     if (is_union) return add_children(Operation::union_of, frame);
@@ -251,10 +249,11 @@ class Program {
     for (const char* sign : {"(", ")", ";"}) reader_.expect(sign);
     const std::size_t back = reader_.peek().offset;
     const std::size_t before = primitives_.size();
-    const Variables outer = std::exchange(locals_, {});
+    Variables outer = std::exchange(locals_, {});
+    if (const auto facets = outer.find("$fn"); facets != outer.end()) locals_.insert(*facets);
     reader_.go_to(module.second);
     const bool is_solid = add_children(Operation::union_of, frame);
-    locals_ = outer;
+    locals_ = std::move(outer);
     reader_.go_to(back);
     if (primitives_.size() == before + 1) primitives_.back().id = module.first;
     return is_solid;
@@ -294,7 +293,7 @@ class Program {
                     fmt::format("expected '{}' within linear_extrude or rotate_extrude", call.call.raw));
     }
     const Value* const points = call.find("points", 0);
-    if (points != nullptr && points->is_path && !path_functions_) {
+    if (points != nullptr && points->is_path && path_functions_.empty()) {
       throw Refusal(points->offset, "expected a list of points, or path() as in files of cloud2csg");
     }
     const FlatShape shape{.profile = *flat_profile(call, sweep_ == "rotate_extrude"), .offset = call.call.offset};
@@ -344,7 +343,7 @@ class Program {
     try {
       validate(primitive);
     } catch (const Error& error) {
-      throw Refusal(offset, error.parts().where + ": " + error.parts().expected);
+      throw Refusal(offset, fmt::format("{}: expected {}", error.parts().where, error.parts().expected));
     }
     const auto index = static_cast<PrimitiveIndex>(primitives_.size());
     const auto [known, is_new] = index_of_.emplace(key_of(primitive), index);
@@ -360,7 +359,7 @@ class Program {
   std::map<std::vector<double>, PrimitiveIndex> index_of_ = {};
   std::vector<CsgNode> postfix_ = {};
   /// Begin and end of the functions that our files define.
-  std::optional<std::pair<std::size_t, std::size_t>> path_functions_ = {};
+  std::map<std::size_t, std::size_t> path_functions_ = {};
   std::string_view sweep_ = {};  ///< the call that sweeps the shapes being read
   std::vector<FlatShape> flat_ = {};
   std::size_t calls_ = 0;

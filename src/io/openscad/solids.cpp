@@ -237,8 +237,9 @@ double round_radius(const Arguments& call) {
 
 std::optional<int> facets_of(const Arguments& call) {
   constexpr double k_most = 8;
-  const double facets = std::floor(call.number("$fn", Arguments::k_by_name, 0));
-  return facets >= 3 && facets <= k_most ? std::optional(static_cast<int>(facets)) : std::nullopt;
+  const double facets = call.number("$fn", Arguments::k_by_name, 0);
+  if (!(facets > 0 && facets < k_most + 1)) return std::nullopt;
+  return std::max(static_cast<int>(facets), 3);  // as OpenSCAD does
 }
 
 std::optional<Affine3d> map_of(const Arguments& call) {

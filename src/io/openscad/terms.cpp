@@ -330,9 +330,11 @@ std::vector<Value> Reader::turns() {
 /// The corners for path() of our files, or any value.
 Value Reader::argument(const Token& call) {
   const Token first = token_;
-  const bool is_path = call.raw == "polygon" && take("path");
-  if (!is_path) return value();
-  expect("(");
+  const bool is_path = call.raw == "polygon" && take("path") && take("(");
+  if (!is_path) {
+    go_to(first.offset);
+    return value();
+  }
   Value corners = value();
   expect(")");
   corners.offset = first.offset;
@@ -355,7 +357,10 @@ Arguments Reader::arguments(const Token& call) {
     if (!is_named || !take("undef")) arguments.values.emplace_back(is_named ? first.raw : "", argument(call));
     if (!at(")")) expect(",");
   }
-  if (const auto facets = globals_.find("$fn"); facets != globals_.end()) arguments.values.emplace_back(*facets);
+  // Children inherit it from a call.
+  for (const Variables* variables : {&locals_, &globals_}) {
+    if (const auto facets = variables->find("$fn"); facets != variables->end()) arguments.values.emplace_back(*facets);
+  }
   return arguments;
 }
 

@@ -16,43 +16,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Points of a circle and a line or another circle whose common chord has this foot as seen from the circle's centre.
-/// Where they nearly touch there is one.
-std::vector<Vector2d> ends_of_chord(const ProfileSegment& circle, double foot, const Vector2d& direction,
-                                    double tolerance) {
-  const double off = circle.radius - std::abs(foot);
-  if (off < -tolerance) return {};
-  const Vector2d middle = circle.centre + std::clamp(foot, -circle.radius, circle.radius) * direction;
-  if (off <= tolerance) return {middle};
-  const Vector2d half = std::sqrt(circle.radius * circle.radius - foot * foot) * to_the_left(direction);
-  return {middle + half, middle - half};
-}
-
-/// Points where the whole lines or circles of both cross or nearly touch.
-std::vector<Vector2d> crossings(const ProfileSegment& a, const ProfileSegment& b, double tolerance) {
-  if (!a.is_arc() && b.is_arc()) return crossings(b, a, tolerance);
-  if (!a.is_arc()) {
-    const Vector2d u = a.end - a.start;
-    const Vector2d v = b.end - b.start;
-    const double sine = cross(u, v);
-    if (sine == 0) return {};
-    return {a.start + cross(b.start - a.start, v) / sine * u};
-  }
-  if (!b.is_arc()) {
-    const Vector2d normal = to_the_left(b.end - b.start).normalized();
-    return ends_of_chord(a, normal.dot(b.start - a.centre), normal, tolerance);
-  }
-  const Vector2d between = b.centre - a.centre;
-  const double distance = between.norm();
-  if (distance <= tolerance) return {};
-  const double foot = (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2 * distance);
-  // Near a touch the foot moves much for a small change of the radii. The gap says whether they touch.
-  const double gap =
-      std::min(std::abs(distance - a.radius - b.radius), std::abs(distance - std::abs(a.radius - b.radius)));
-  if (gap <= tolerance) return {a.centre + std::copysign(a.radius, foot) * between / distance};
-  return ends_of_chord(a, foot, between / distance, 0);
-}
-
 double share_of(const ProfileSegment& s, const Vector2d& point) {
   if (!s.is_arc()) return (point - s.start).dot(s.end - s.start) / (s.end - s.start).squaredNorm();
   const Vector2d from = s.start - s.centre;

@@ -308,7 +308,8 @@ bool is_whole_circle(const std::vector<ProfileSegment>& path) {
 TopoDS_Wire wire_of(const std::vector<ProfileSegment>& path, const PlaceOf& place, bool is_turned) {
   // Halves of a cylinder would have to be joined again, which may never end (see with_joined_faces()).
   if (is_whole_circle(path)) {
-    return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(curve_of(path[0], place, is_turned)).Edge()).Wire();
+    const Handle(Geom_Curve) circle = curve_of(path[0], place, is_turned);
+    if (circle->IsClosed()) return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(circle).Edge()).Wire();
   }
   std::vector<TopoDS_Vertex> corners;
   corners.reserve(path.size());
