@@ -11,6 +11,7 @@
 #include "pipeline/find_primitives.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/verdict.hpp"
+#include "raw/solids/overshoot.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -75,6 +76,14 @@ void refine_found(Extraction& found, const ReconstructOptions& options, double s
   found.statistics = std::move(after);
 }
 
+/// Separates the surfaces of the solids in the tree, as the last step: more cells would need more evidence.
+void let_overshoot(Extraction& result, const ReconstructOptions& options, const RunContext& run) {
+  result.model.primitives = with_overshoots(std::move(result.model.primitives), result.tree(), options.known.size(),
+                                            bounds_of(result.cloud.positions));
+  result.statistics.fit =
+      measure_fit(result.model, result.cloud, result.statistics.noise, options.extraction, without_stop(run));
+}
+
 /// Moves the results of the detection into the result.
 void take_finding(Extraction& result, FoundPrimitives& found) {
   result.cloud = std::move(found.prepared.cloud);
@@ -106,12 +115,9 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   result.statistics.verdict = judge_detection(found);
   if (found.no_solid) found.warnings.emplace_back(found.no_solid->what());
   result.model = {.primitives = std::move(found.choice.solids), .tree = std::move(found.choice.tree)};
-  if (!found.no_solid) {
-    result.statistics.fit =
-        measure_fit(result.model, found.prepared.cloud, result.statistics.noise, options.extraction, without_stop(run));
-  }
-  result.statistics.warnings = std::move(found.warnings);
   take_finding(result, found);
+  if (!found.no_solid) let_overshoot(result, options, run);
+  result.statistics.warnings = std::move(found.warnings);
   note_seconds(found, result.statistics.seconds);
   return moved_back(std::move(result), found.origin, options.known);
 }
@@ -142,6 +148,7 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   if (is_over) statistics.complete = false;
   take_finding(result, found);
   refine_found(result, rest, extracting.seconds(), run);
+  let_overshoot(result, rest, run);
   note_seconds(found, statistics.seconds);
   result = judged(std::move(result), found.choice.places, found.origin, without_stop(run));
   return moved_back(std::move(result), found.origin, options.known);

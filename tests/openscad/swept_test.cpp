@@ -317,7 +317,7 @@ TEST(OpenScadSweep, SaysWhatIsNoSweptSolid) {
       {"rotate_extrude()\n  circle(1);",
        "line 2, column 3: expected a shape entirely to the right of the axis (x >= 0)"},
       {"rotate_extrude() translate([1, 0]) polygon([[0, 0], [1, 1], [-1, 1]]);",
-       "column 36: profile/0/0: expected a profile that does not touch the axis in a single point"},
+       "column 36: profile/0/1: expected a profile that does not touch the axis in a single point"},
       {"linear_extrude(1) cube(1);", "column 19: expected a circle, square or polygon, found 'cube'"},
       {"linear_extrude(1) linear_extrude(1) square(1);", "found 'linear_extrude'"},
       {"square(1);", "line 1, column 1: expected 'square' within linear_extrude or rotate_extrude"},

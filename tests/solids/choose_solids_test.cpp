@@ -217,20 +217,6 @@ TEST(ChooseSolids, DoesNotDependOnThreads) {
   EXPECT_EQ(one.places.weights, two.places.weights);
 }
 
-TEST(ChooseSolids, HolesOvershootTheFacesThatTheyBreakThrough) {
-  const Part part = block_with_bores();
-  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, quick());
-  std::size_t holes = 0;
-  for (const Primitive& solid : choice.solids) {
-    const auto* cylinder = std::get_if<Cylinder>(&solid.shape);
-    if (cylinder == nullptr) continue;
-    ++holes;
-    EXPECT_GT(cylinder->height, 0.85) << "the shallowest bore is 0.8 deep";
-    EXPECT_LT(cylinder->height, 2);
-  }
-  EXPECT_EQ(holes, 3U);
-}
-
 TEST(ChooseSolids, RefusesWhatItCannotUse) {
   const Part part = plate_with_holes();
   EXPECT_THROW((void)choose_solids(part.cloud, {}, quick()), Error);

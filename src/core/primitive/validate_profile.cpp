@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cloud2csg/error.hpp"
@@ -83,18 +84,25 @@ void validate_profile(const Profile& profile) {
   std::vector<std::size_t> by_low(all.size());
   std::iota(by_low.begin(), by_low.end(), std::size_t{0});
   std::ranges::stable_sort(by_low, {}, [&](std::size_t k) { return all[k].box.min().x(); });
+  std::pair<std::size_t, std::size_t> first{all.size(),
+                                            0};  // of those that touch, the pair whose later segment is first
   for (std::size_t j = 0; j < all.size(); ++j) {
     for (std::size_t i = j + 1; i < all.size(); ++i) {
-      const auto [first, second] = std::minmax(by_low[i], by_low[j]);
-      const PlacedSegment& a = all[first];
-      const PlacedSegment& b = all[second];
       if (all[by_low[i]].box.min().x() > all[by_low[j]].box.max().x() + tolerance) break;
-      if (a.box.exteriorDistance(b.box) > tolerance) continue;
-      if (!touch(a.segment, b.segment, shared_corners(a, b, profile.paths[a.path].size()), tolerance)) continue;
-      refuse(fmt::format("profile/{}/{}", b.path, b.index),
-             fmt::format("a segment that does not cross or touch segment {} of path {}", a.index, a.path));
+      const auto [earlier, later] = std::minmax(by_low[i], by_low[j]);
+      const PlacedSegment& a = all[earlier];
+      const PlacedSegment& b = all[later];
+      if (std::pair(later, earlier) >= first || a.box.exteriorDistance(b.box) > tolerance) continue;
+      if (touch(a.segment, b.segment, shared_corners(a, b, profile.paths[a.path].size()), tolerance)) {
+        first = {later, earlier};
+      }
     }
   }
+  if (first.first == all.size()) return;
+  const PlacedSegment& a = all[first.second];
+  const PlacedSegment& b = all[first.first];
+  refuse(fmt::format("profile/{}/{}", b.path, b.index),
+         fmt::format("a segment that does not cross or touch segment {} of path {}", a.index, a.path));
 }
 
 void validate_turned_profile(const Profile& profile) {

@@ -97,10 +97,9 @@ Profile outline_of(const Drawing& drawing, const FaceSet& faces) {
   return profile;
 }
 
-bool is_writable(const Drawing& drawing, const FaceSet& faces) {
+bool is_valid(const Profile& profile, bool is_turned) {
   try {
-    const Profile profile = outline_of(drawing, faces);
-    if (drawing.is_turned) {
+    if (is_turned) {
       validate_turned_profile(profile);
     } else {
       validate_profile(profile);
@@ -109,6 +108,10 @@ bool is_writable(const Drawing& drawing, const FaceSet& faces) {
   } catch (const Error&) {
     return false;
   }
+}
+
+bool is_writable(const Drawing& drawing, const FaceSet& faces) {
+  return is_valid(outline_of(drawing, faces), drawing.is_turned);
 }
 
 }  // namespace cloud2csg
