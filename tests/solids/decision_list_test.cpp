@@ -245,7 +245,7 @@ RC_GTEST_PROP(TermSearch, NoCurvedSolidIsBetter, ()) {
 RC_GTEST_PROP(TermSearch, FindsTheTermThatExplainsAllGains, ()) {
   const TermSpace& space = scene().space;
   TermPart profile = any_profile();
-  profile.bare = 0;
+  profile.bare_leaves = 0;
   Term term{.parts = {profile}};
   if (*rc::gen::arbitrary<bool>()) {
     const auto family = *rc::gen::inRange(0U, static_cast<std::uint32_t>(space.revolved.size()));

@@ -33,8 +33,8 @@ struct Sweep {
 /// @throws Refusal also for a taper, a twist or less than a full turn
 [[nodiscard]] Sweep sweep_of(const Arguments& call);
 
-/// The profile of circle, square or polygon; absent for other calls. A circle is round but, in an extrusion, with $fn
-/// from 3 to 8: such a prism is drawn with its corners.
+/// The profile of circle, square or polygon; absent for other calls. A circle is round. In an extrusion, $fn up to 8
+/// makes it a polygon.
 [[nodiscard]] std::optional<Profile> flat_profile(const Arguments& call, bool is_turned);
 
 /// The shape under a map of the plane, which must keep arcs round.

@@ -288,7 +288,7 @@ class Program {
 
   /// Adds a leaf to a temporary tree, which add_swept() removes.
   bool add_flat(const Arguments& call, const Affine3d& frame) {
-    if (sweep_.empty()) {
+    if (sweeping_call_.empty()) {
       throw Refusal(call.call.offset,
                     fmt::format("expected '{}' within linear_extrude or rotate_extrude", call.call.raw));
     }
@@ -296,7 +296,8 @@ class Program {
     if (points != nullptr && points->is_path && path_functions_.empty()) {
       throw Refusal(points->offset, "expected a list of points, or path() as in files of cloud2csg");
     }
-    const FlatShape shape{.profile = *flat_profile(call, sweep_ == "rotate_extrude"), .offset = call.call.offset};
+    const FlatShape shape{.profile = *flat_profile(call, sweeping_call_ == "rotate_extrude"),
+                          .offset = call.call.offset};
     postfix_.push_back(CsgNode::leaf(static_cast<PrimitiveIndex>(flat_.size())));
     flat_.push_back(placed_in_plane(shape, frame));
     return true;
@@ -306,11 +307,11 @@ class Program {
   /// the shapes is one over their solids.
   bool add_swept(const Arguments& call, const Affine3d& frame) {
     const Token& name = call.call;
-    if (!std::exchange(sweep_, name.raw).empty()) refuse_solid(name.raw, name.offset);
+    if (!std::exchange(sweeping_call_, name.raw).empty()) refuse_solid(name.raw, name.offset);
     const Sweep sweep = sweep_of(call);
     const auto begin = static_cast<std::ptrdiff_t>(postfix_.size());
     (void)add_children(Operation::union_of, Affine3d::Identity());
-    sweep_ = {};
+    sweeping_call_ = {};
     const FlatTree shapes{.shapes = std::exchange(flat_, {}), .nodes = {postfix_.begin() + begin, postfix_.end()}};
     postfix_.erase(postfix_.begin() + begin, postfix_.end());
     if (const std::optional<LeafSolid> torus = sweep.height ? std::nullopt : torus_of(shapes)) {
@@ -337,7 +338,7 @@ class Program {
 
   /// Reuses the primitive of an equal solid.
   void add_leaf(const Shape& shape, std::string_view name, const Affine3d& frame, std::size_t offset) {
-    if (!sweep_.empty()) refuse_solid(name, offset);
+    if (!sweeping_call_.empty()) refuse_solid(name, offset);
     Primitive primitive = place_solid(shape, frame, offset);
     primitive.id = name;
     try {
@@ -360,7 +361,7 @@ class Program {
   std::vector<CsgNode> postfix_ = {};
   /// Begin and end of the functions that our files define.
   std::map<std::size_t, std::size_t> path_functions_ = {};
-  std::string_view sweep_ = {};  ///< the call that sweeps the shapes being read
+  std::string_view sweeping_call_ = {};  ///< whose shapes are being read
   std::vector<FlatShape> flat_ = {};
   std::size_t calls_ = 0;
 };

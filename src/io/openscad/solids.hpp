@@ -24,7 +24,7 @@ struct LeafSolid {
 
 [[nodiscard]] double round_radius(const Arguments& call);
 
-/// $fn from 3 to 8: so few facets mean a polygon, not a circle. Absent for all others.
+/// 3 to 8 facets for a $fn above 0 and up to 8: so few mean a polygon, not a circle. Absent for all others.
 [[nodiscard]] std::optional<int> facets_of(const Arguments& call);
 
 /// Applies an affine map to any solid but half-spaces and expressions, if the result is one of our solids. Boxes

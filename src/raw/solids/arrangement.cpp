@@ -129,7 +129,7 @@ class Builder {
     return h % 2 == 0 ? result_.edges[h / 2].start : result_.edges[h / 2].end;
   }
 
-  /// By the place a little along the edge, because curves may be tangent to each other.
+  /// Sorts by the place a little along each edge, because curves may be tangent to each other.
   void sort_around_vertices() {
     around_.resize(result_.vertices.size());
     const auto count = static_cast<HalfEdge>(2 * result_.edges.size());

@@ -17,11 +17,12 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr std::size_t k_most_curve_points = 2000;  // of a curve; more tell no better where it ends
-constexpr double k_reach = 0.06;                   // beyond the points, in diagonals of the drawing
-constexpr double k_meeting = 1e-9;                 // in diagonals: crossings that near are one
-constexpr double k_border = 0.01;                  // width of the empty border, in diagonals
-constexpr double k_gap = 3;                        // in spacings: an edge farther from all points has none
-constexpr double k_least_share = 0.002;            // of all points, on surfaces along the direction or axis
+/// How far curves reach beyond their points, in diagonals of the drawing. Whole lines make six times as many faces.
+constexpr double k_reach = 0.06;
+constexpr double k_meeting = 1e-9;       // in diagonals: crossings that near are one
+constexpr double k_border = 0.01;        // width of the empty border, in diagonals
+constexpr double k_gap = 3;              // in spacings: an edge farther from all points has none
+constexpr double k_least_share = 0.002;  // of all points, on surfaces along the direction or axis
 
 class ChartMaker {
  public:
@@ -128,8 +129,8 @@ class ChartMaker {
     return {box.center(), box.sizes().z(), box.sizes().head<2>().norm()};
   }
 
-  /// Whether a tilt with that sine moves nothing within the extent by more than the tolerance. Small surfaces leave
-  /// their direction uncertain.
+  /// Whether a tilt with that sine is below a degree, or moves nothing within the extent by more than the tolerance:
+  /// small surfaces leave their direction uncertain.
   [[nodiscard]] bool is_untilted(double sine, double extent) const {
     return sine < k_level || (sine < k_most_tilt && sine * extent <= options_.tolerance);
   }
@@ -188,7 +189,7 @@ class ChartMaker {
     return {.curve = Curve{.normal = normal, .offset = normal.dot(centre)}};
   }
 
-  /// The charts whose curves have the most points; those with hardly any are left out.
+  /// The charts whose curves have the most points, without those that have hardly any.
   [[nodiscard]] std::vector<Chart> best_of(const std::vector<Pose>& frames, bool is_turned, std::size_t most) const {
     struct Candidate {
       Chart chart;

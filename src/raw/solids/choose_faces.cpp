@@ -241,13 +241,18 @@ std::size_t segments_of(const Drawing& drawing, const FaceSet& faces) {
   return ends / 2 + closed;
 }
 
+double border_price(const Drawing& drawing, const FaceSet& faces) {
+  double price = 0;
+  for (std::size_t e = 0; e < drawing.price_of_edge.size(); ++e) {
+    if (is_border(drawing.arrangement.edges[e], faces)) price += drawing.price_of_edge[e];
+  }
+  return price;
+}
+
 double net_gain(const Drawing& drawing, std::span<const double> gains, double price_of_segment, const FaceSet& faces) {
   double net = -price_of_segment * static_cast<double>(segments_of(drawing, faces));
   for (std::size_t face = 1; face < faces.size(); ++face) net += faces[face] != 0 ? gains[face] : 0.0;
-  for (std::size_t e = 0; e < drawing.arrangement.edges.size(); ++e) {
-    if (is_border(drawing.arrangement.edges[e], faces)) net -= drawing.price_of_edge[e];
-  }
-  return net;
+  return net - border_price(drawing, faces);
 }
 
 FaceSet choose_faces(const Drawing& drawing, std::span<const double> gains, double price_of_segment) {

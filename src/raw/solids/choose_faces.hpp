@@ -22,6 +22,9 @@ using FaceSet = std::vector<std::uint8_t>;
 /// Segments of the region's border: maximal parts of one curve. O(edges)
 [[nodiscard]] std::size_t segments_of(const Drawing& drawing, const FaceSet& faces);
 
+/// Price of the edges at the region's border. O(edges)
+[[nodiscard]] double border_price(const Drawing& drawing, const FaceSet& faces);
+
 /// Sum of the gains of the faces, less the price of the border's edges and segments. O(edges)
 [[nodiscard]] double net_gain(const Drawing& drawing, std::span<const double> gains, double price_of_segment,
                               const FaceSet& faces);

@@ -75,7 +75,7 @@ ClosedPath path_of(std::vector<BorderEdge> loop) {
     angle = 0;
   };
   for (std::size_t k = 0; k < loop.size(); ++k) {
-    // Of a circle alone, the second half begins after half a turn.
+    // A lone circle gets its second half after half a turn.
     const bool is_half = first == loop.size() && path.size() == 1 && std::abs(angle) >= std::numbers::pi - 1e-9;
     if (k == 0 || is_half || (k > 0 && loop[k].curve != loop[k - 1].curve)) {
       finish();

@@ -92,15 +92,6 @@ double leaves_of_segments(std::size_t segments) {
   return segments > k_free_segments ? k_segment_leaves * static_cast<double>(segments - k_free_segments) : 0.0;
 }
 
-double bare_price(const Drawing& drawing, const FaceSet& faces) {
-  double price = 0;
-  for (std::size_t e = 0; e < drawing.price_of_edge.size(); ++e) {
-    const CurveArrangement::Edge& edge = drawing.arrangement.edges[e];
-    if (faces[edge.left] != faces[edge.right]) price += drawing.price_of_edge[e];
-  }
-  return price;
-}
-
 /// Gains by face, of all places below each edge of the slabs: a row an edge.
 std::vector<double> sums_below(const ProfileFamily& family, std::size_t faces, const Gains& gains) {
   std::vector<double> sums(faces * (family.slabs.count() + 1), 0.0);
@@ -157,7 +148,7 @@ PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains
     part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_leaves * costs.leaf / unit);
     part.segments = segments_of(family.chart.drawing, part.faces);
     if (part.segments == 0) continue;
-    part.bare = height * family.bare_price * bare_price(family.chart.drawing, part.faces);
+    part.bare_leaves = height * family.bare_price * border_price(family.chart.drawing, part.faces);
     double gain = 0;
     for (std::size_t f = 1; f < faces; ++f) gain += part.faces[f] != 0 ? unit * face_gains[f] : 0.0;
     PricedTerm found{.term = {.parts = {std::move(part)}}};
@@ -287,7 +278,7 @@ double cost_of(const Term& term, const TermCosts& costs) {
   double leaves = 0;
   for (const TermPart& part : term.parts) {
     const std::size_t planes = part.planes.size();
-    leaves += leaves_of_segments(part.segments) + part.bare;
+    leaves += leaves_of_segments(part.segments) + part.bare_leaves;
     leaves += (part.is_known ? costs.known : 1.0) +
               (planes > k_free_planes ? costs.plane * static_cast<double>(planes - k_free_planes) : 0.0);
   }

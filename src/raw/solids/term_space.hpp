@@ -87,7 +87,7 @@ struct TermPart {
       {};                    ///< for a polytope: 2 * plane, plus 1 for the side above it; none: everything
   FaceSet faces = {};        ///< for a profile
   std::size_t segments = 0;  ///< of the profile
-  double bare = 0;           ///< price in leaves of a profile's surfaces where no points are
+  double bare_leaves = 0;    ///< price of a profile's surfaces where no points are
   bool is_inverted = false;  ///< the outside
   bool is_known = false;
   friend bool operator==(const TermPart&, const TermPart&) = default;

@@ -95,7 +95,7 @@ class Corners {
 
  private:
   static std::array<std::int64_t, 3> cell_of(const gp_Pnt& point, const gp_XYZ& shift) {
-    constexpr double k_width = 1e-10;  // below the kernel's precision of 1e-7, above rounding
+    constexpr double k_width = 1e-10;  // below the kernel's precision of 1e-7, above rounding near the origin
     std::array<std::int64_t, 3> cell{};
     for (int k = 0; k < 3; ++k) {
       cell[static_cast<std::size_t>(k)] = std::llround(point.Coord(k + 1) / k_width + shift.Coord(k + 1));
