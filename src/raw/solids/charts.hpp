@@ -29,8 +29,7 @@ struct ChartOptions {
 };
 
 /// Charts of all directions and axes that surfaces have, those with the most points first. Curves reach a little beyond
-/// their points. O(frames x surfaces x their points), and arrange() for
-/// each chart
+/// their points. O(frames x surfaces x points of a surface), and arrange() for each chart
 [[nodiscard]] std::vector<Chart> make_charts(const Points& positions, std::span<const DetectedSurface> surfaces,
                                              const ChartOptions& options);
 
