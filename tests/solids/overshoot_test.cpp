@@ -8,6 +8,7 @@
 
 #include "cloud2csg/compare.hpp"
 #include "core/base/random.hpp"
+#include "support/any_profile.hpp"
 #include "support/known_solids.hpp"
 #include "support/random_scene.hpp"
 
@@ -108,6 +109,19 @@ TEST(Overshoot, ThinWallsNearACutStay) {
                                               subtract(body, CsgTree::leaf(1)), 0, k_part);
   EXPECT_GE(bounds(solids[1]).min().x(), bounds(rim).max().x());
   EXPECT_LT(bounds(solids[1]).min().x(), -4);
+}
+
+TEST(Overshoot, ThinLayersCount) {
+  // The bore ends a thousandth below the top, where only the hole in the profile is left.
+  const Profile ring{.paths = {test::circle_path({0, 0}, 3), test::circle_path({0, 0}, 1)}};
+  const Primitive body = test::placed("body", Extrusion{.profile = ring, .height = 4}, {0, 0, 0});
+  const Primitive bore = test::placed("bore", Cylinder{.radius = 1, .height = 3.98}, {0, 0, -0.02});
+  const PrimitiveSet solids =
+      with_overshoots({body, bore}, subtract(CsgTree::leaf(0), CsgTree::leaf(1)), 0, bounds(body));
+  for (const ClosedPath& path : std::get<Extrusion>(solids[0].shape).profile.paths) {
+    const double radius = path[0].point.norm();
+    EXPECT_TRUE(std::abs(radius - 3) < 1e-9 || std::abs(radius - 1) < 1e-9) << radius;
+  }
 }
 
 TEST(Overshoot, RandomSolidsStayWhatTheyAre) {
