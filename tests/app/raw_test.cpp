@@ -41,13 +41,14 @@ TEST_F(Raw, ExtractFindsThePrimitivesOfACloud) {
   EXPECT_NE(read_file(path("t.scad")).find("difference()"), std::string::npos);
 }
 
-/// A boss on a block and a blind bore in its side: radii of 0.6 and 0.608 are near enough to be made equal; the points tell
-/// them apart. What was found out about the cloud is told with the refined tree as well.
+/// A boss on a block and a blind bore in its side: radii of 0.6 and 0.608 are near enough to be made equal; the points
+/// tell them apart. What was found out about the cloud is told with the refined tree as well.
 TEST_F(Raw, RefineMovesSolidsBackToTheirPoints) {
   std::string text = read_file(block());
   text.replace(text.find("[4, 3, 1]"), 9, "[4, 3, 2]");
   text.replace(text.find("0.5, \"height\": 3"), 3, "0.608");
-  text.replace(text.find("[-1, 0.4, 0]"), 12, R"([-1, 1.5, 0], "quaternion": [0.7071067811865476, 0.7071067811865476, 0, 0])");
+  text.replace(text.find("[-1, 0.4, 0]"), 12,
+               R"([-1, 1.5, 0], "quaternion": [0.7071067811865476, 0.7071067811865476, 0, 0])");
   const std::string truth = file("unlike.json", text);
   ASSERT_EQ(run({"sample", truth, "-n", "30000", "--relative-noise", "0.001", "-o", path("c.ply")}).status, 0);
   const Outcome outcome = run({"extract", path("c.ply"), "--refine", "-o", path("t.json"), "--stats", path("s.json")});

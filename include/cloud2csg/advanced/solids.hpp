@@ -162,10 +162,8 @@ void option_table(OptionsOf<SolidOptions>, auto&& field) {
         "Share of volume and surface that an additional leaf must gain; larger values give smaller trees. In the "
         "weight of places. 0.001: a hole with that share of the volume or the surface is worth a leaf.",
         above_to(0, 1), {.unit = "SHARE"});
-  field(
-      &O::plane_cost, "plane_cost",
-      "Cost of each plane of a polytope beyond the sixth, in leaves.",
-      above(0), k_library);
+  field(&O::plane_cost, "plane_cost", "Cost of each plane of a polytope beyond the sixth, in leaves.", above(0),
+        k_library);
   field(&O::most_rules, "most_rules",
         "Largest number of rules of the decision list; a safeguard, with a warning where it ends the choice",
         at_least(1), k_library);
