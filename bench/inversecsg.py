@@ -91,7 +91,8 @@ def measure(program, openscad, mesh, variant, arguments):
             (keep / f"{mesh.stem}_{variant}.scad").write_text(scad.read_text())
         return {
             "model": mesh.stem, "variant": variant, "points": values["points"],
-            "surfaces": values["finding"]["surfaces"], "leaves": values["tree"]["leaves"], "verdict": values["verdict"]["grade"],
+            "surfaces": values["finding"]["surfaces"], "leaves": values["tree"]["leaves"],
+            "price": values["tree"]["price"], "verdict": values["verdict"]["grade"],
             "iou": compared["intersection_over_union"], "mean": compared["mean_distance"],
             "hausdorff": compared["hausdorff_distance"], "seconds": seconds,
             "stages": {stage: values["seconds"].get(stage, 0) for stage in STAGES},
@@ -103,14 +104,14 @@ def row(cells, widths):
 
 
 def print_table(rows):
-    head = ["model", "variant", "points", "surfaces", "leaves", "verdict", "IoU", "mean", "Hausdorff", "s", *STAGES]
+    head = ["model", "variant", "points", "surfaces", "leaves", "price", "verdict", "IoU", "mean", "Hausdorff", "s", *STAGES]
     lines = []
     for r in rows:
         if "error" in r:
             lines.append([r["model"], r["variant"], r["error"][:60]] + [""] * (len(head) - 3))
             continue
-        lines.append([r["model"], r["variant"], r["points"], r["surfaces"], r["leaves"], r["verdict"], f"{r['iou']:.4f}",
-                      f"{r['mean']:.4f}", f"{r['hausdorff']:.3f}", f"{r['seconds']:.2f}",
+        lines.append([r["model"], r["variant"], r["points"], r["surfaces"], r["leaves"], f"{r['price']:.1f}", r["verdict"],
+                      f"{r['iou']:.4f}", f"{r['mean']:.4f}", f"{r['hausdorff']:.3f}", f"{r['seconds']:.2f}",
                       *(f"{r['stages'][stage]:.2f}" for stage in STAGES)])
     widths = [max(len(str(line[k])) for line in [head, *lines]) for k in range(len(head))]
     print(row(head, widths))

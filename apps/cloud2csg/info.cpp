@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cloud2csg/compare.hpp"
+#include "cloud2csg/extract.hpp"
 #include "command.hpp"
 #include "core/base/text.hpp"
 
@@ -58,8 +59,10 @@ AlignedBox bounds_of(const PrimitiveSet& primitives) {
 }
 
 Json describe(const CsgTree& tree, const PrimitiveSet& primitives) {
-  return {
-      {"size", tree.size()}, {"leaves", leaf_count(tree)}, {"depth", depth(tree)}, {"text", to_text(tree, primitives)}};
+  const TreeStatistics statistics = statistics_of(tree, primitives);
+  return {{"size", statistics.size},   {"leaves", statistics.leaves},
+          {"price", statistics.price}, {"operations", statistics.operations},
+          {"depth", statistics.depth}, {"text", to_text(tree, primitives)}};
 }
 
 Json describe(const Model& model) {

@@ -33,7 +33,7 @@ std::string fingerprint(const Model& model) {
 ModelDetails details_of(const std::string& name, const Model& model) {
   return {.name = name,
           .primitives = model.primitives.size(),
-          .tree = statistics_of(*model.tree),
+          .tree = statistics_of(*model.tree, model.primitives),
           .fingerprint = fingerprint(model)};
 }
 

@@ -69,7 +69,7 @@ ScalingRun run_scaling_case(const ScalingCase& scaling_case, std::uint64_t seed,
   // Only a time limit, not an interrupt, gives a valid best tree so far.
   run.throw_if_stopped();
   take_statistics(result, extraction.statistics);
-  result.true_tree = statistics_of(*model.tree);
+  result.true_tree = statistics_of(*model.tree, model.primitives);
   result.fingerprint = fmt::format("{:016x}", structural_hash(extraction.tree()));
   // Beyond the noise, so that the side of a place is clear.
   constexpr double k_offset_in_noise = 4;

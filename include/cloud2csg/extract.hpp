@@ -195,9 +195,11 @@ struct FindingStatistics {
 
 struct TreeStatistics {
   std::size_t size = 0, leaves = 0, depth = 0, levels = 0;
+  double price = 0;            ///< sum of price_of() the leaves
+  std::size_t operations = 0;  ///< drawing a profile, or combining two solids
 };
 /// O(size of the tree).
-[[nodiscard]] TreeStatistics statistics_of(const CsgTree& tree);
+[[nodiscard]] TreeStatistics statistics_of(const CsgTree& tree, const PrimitiveSet& primitives);
 
 struct FitStatistics {
   double objective = 0;                    ///< E of the result over all points

@@ -75,7 +75,7 @@ class PaperMethod {
         seconds.segment + seconds.overlap + seconds.partition + seconds.search + seconds.merge + seconds.simplify;
     seconds.total = seconds.extraction;
     statistics_.points = cloud_.size();
-    statistics_.tree = statistics_of(tree);
+    statistics_.tree = statistics_of(tree, input_);
     if (!primitives_of(tree).empty()) {
       statistics_.fit = measure_fit({.primitives = input_, .tree = tree}, cloud_, scale_.noise, options_, run_);
     }

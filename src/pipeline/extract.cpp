@@ -188,9 +188,9 @@ class Extractor {
 
   CsgTree simplified(const CsgTree& tree) {
     Stopwatch watch;
-    statistics_.before_simplification = statistics_of(tree);
+    statistics_.before_simplification = statistics_of(tree, input_);
     CsgTree result = simplify(tree);
-    statistics_.tree = statistics_of(result);
+    statistics_.tree = statistics_of(result, input_);
     note("simplification", result);
     statistics_.seconds.simplify += watch.lap();
     return result;
@@ -238,8 +238,19 @@ StageSeconds& StageSeconds::operator+=(const StageSeconds& other) {
   return *this;
 }
 
-TreeStatistics statistics_of(const CsgTree& tree) {
-  return {.size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree), .levels = levels(tree)};
+TreeStatistics statistics_of(const CsgTree& tree, const PrimitiveSet& primitives) {
+  TreeStatistics statistics{
+      .size = tree.size(), .leaves = leaf_count(tree), .depth = depth(tree), .levels = levels(tree)};
+  for (const CsgNode& node : tree.nodes()) {
+    if (!node.is_leaf()) continue;
+    const Primitive& primitive = primitives[node.primitive()];
+    statistics.price += price_of(primitive);
+    const bool is_profile =
+        std::holds_alternative<Extrusion>(primitive.shape) || std::holds_alternative<Revolution>(primitive.shape);
+    statistics.operations += is_profile ? 1 : 0;
+  }
+  statistics.operations += statistics.leaves > 0 ? statistics.leaves - 1 : 0;
+  return statistics;
 }
 
 Extraction extract_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,

@@ -16,10 +16,10 @@
 namespace cloud2csg {
 namespace {
 
-/// Cost of a tree: wrong places and leaves.
+/// Cost of a tree: wrong places and the price of leaves.
 double cost_of(const CsgTree& tree, const SolidChoice& choice, const SolidOptions& options) {
   return wrong_place_share(tree, choice.solids, choice.places) +
-         options.leaf_cost * static_cast<double>(leaf_count(tree));
+         options.leaf_cost * statistics_of(tree, choice.solids).price;
 }
 
 /// The tree of the choice is a fall-back, so partitions need not be searched where cells fail.
@@ -36,7 +36,7 @@ Extraction extract_over(const SolidChoice& choice, const PreparedCloud& prepared
   if (cost_of(choice.tree, choice, options.solids) < cost_of(result.tree(), choice, options.solids)) {
     result.model.tree = choice.tree;
     ExtractStatistics& statistics = result.statistics;
-    statistics.tree = statistics_of(choice.tree);
+    statistics.tree = statistics_of(choice.tree, choice.solids);
     statistics.steps = {{"choice of solids", choice.tree.size()}};
     statistics.cells.reset();
     statistics.warnings.clear();  // they describe the other tree
@@ -108,7 +108,7 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   result.statistics.points = found.prepared.cloud.size();
   result.statistics.primitives = found.choice.solids.size();
   result.statistics.noise = found.prepared.scale.noise;
-  result.statistics.tree = statistics_of(found.choice.tree);
+  result.statistics.tree = statistics_of(found.choice.tree, found.choice.solids);
   result.statistics.finding = statistics_of(found, options.known.size(), cloud.size());
   result.statistics.finding->is_tree_of_choice = true;
   result.statistics.finding->disagreement = found.choice.disagreement;

@@ -166,7 +166,8 @@ Json verdict_json(const Verdict& verdict) {
 }
 
 Json tree_json(const TreeStatistics& tree) {
-  return {{"size", tree.size}, {"leaves", tree.leaves}, {"depth", tree.depth}, {"levels", tree.levels}};
+  return {{"size", tree.size},     {"leaves", tree.leaves}, {"depth", tree.depth},
+          {"levels", tree.levels}, {"price", tree.price},   {"operations", tree.operations}};
 }
 
 Json steps_json(const std::vector<TreeStep>& steps) {

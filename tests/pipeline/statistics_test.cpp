@@ -6,6 +6,7 @@
 
 #include "cloud2csg/extract.hpp"
 #include "pipeline/strategies.hpp"
+#include "support/any_profile.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {
@@ -75,6 +76,18 @@ TEST(Statistics, MeasureTheTree) {
   EXPECT_EQ(result.statistics.tree.leaves, leaf_count(result.tree()));
   EXPECT_EQ(result.statistics.tree.depth, depth(result.tree()));
   EXPECT_GE(result.statistics.before_simplification.size, result.tree().size());
+}
+
+TEST(Statistics, PriceTheTreeByItsLeaves) {
+  const ClosedPath star = test::regular_path(9, 1);
+  const PrimitiveSet primitives{
+      test::placed("ball", Sphere{.radius = 1}, {0, 0, 0}),
+      test::placed("star", Extrusion{.profile = {.paths = {star}}, .height = 1}, {0, 0, 0}),
+      test::placed("unused", Extrusion{.profile = {.paths = {star}}, .height = 2}, {0, 0, 0})};
+  const CsgTree tree = subtract(unite(CsgTree::leaf(0), CsgTree::leaf(1)), CsgTree::leaf(1));
+  const TreeStatistics statistics = statistics_of(tree, primitives);
+  EXPECT_NEAR(statistics.price, 1 + 2 * 1.5, 1e-12);
+  EXPECT_EQ(statistics.operations, 4U) << "two profiles and two combinations";
 }
 
 TEST(Statistics, FitIsThatOfTheNoise) {

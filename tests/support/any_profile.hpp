@@ -24,6 +24,16 @@ inline ClosedPath circle_path(const Eigen::Vector2d& centre, double radius) {
   return {{.point = centre - arm, .bulge = 1}, {.point = centre + arm, .bulge = 1}};
 }
 
+/// A regular polygon around the origin.
+inline ClosedPath regular_path(std::size_t corners, double radius) {
+  ClosedPath path;
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(corners);
+    path.push_back({.point = radius * Eigen::Vector2d(std::cos(angle), std::sin(angle))});
+  }
+  return path;
+}
+
 /// A star of lines and arcs around the origin, 0.5 to 1 far from it, in either direction; with a round hole if there is
 /// room.
 template <class Draw>

@@ -90,7 +90,7 @@ export interface Statistics {
   primitives: number;
   noise: number;
   seconds: Record<string, number>;
-  tree: { size: number; leaves: number; depth: number; levels: number };
+  tree: { size: number; leaves: number; depth: number; levels: number; price: number; operations: number };
   fit: {
     objective: number;
     rms_distance: number;

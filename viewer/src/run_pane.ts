@@ -43,6 +43,8 @@ function figuresOf(statistics: Statistics): [string, string][] {
     ["nodes", count(statistics.tree.size)],
     ["leaves", count(statistics.tree.leaves)],
     ["levels", count(statistics.tree.levels)],
+    ["price", figures(statistics.tree.price)],
+    ["operations", count(statistics.tree.operations)],
     ["strategy", statistics.strategy],
     ["seed", String(statistics.seed)],
     ["threads", String(statistics.threads)],

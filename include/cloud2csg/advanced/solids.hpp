@@ -150,7 +150,7 @@ struct FixedValues {
                                          std::span<const FixedValues> fixed = {});
 
 struct SolidOptions {
-  double leaf_cost = 0.001, plane_cost = 0.2;
+  double leaf_cost = 0.001;
   std::size_t most_rules = 1024;
   PlaceOptions places = {};
   std::size_t volume_places_a_surface = 400, surface_points_a_surface = 100;
@@ -162,8 +162,6 @@ void option_table(OptionsOf<SolidOptions>, auto&& field) {
         "Share of volume and surface that an additional leaf must gain; larger values give smaller trees. In the "
         "weight of places. 0.001: a hole with that share of the volume or the surface is worth a leaf.",
         above_to(0, 1), {.unit = "SHARE"});
-  field(&O::plane_cost, "plane_cost", "Cost of each plane of a polytope beyond the sixth, in leaves.", above(0),
-        k_library);
   field(&O::most_rules, "most_rules",
         "Largest number of rules of the decision list; a safeguard, with a warning where it ends the choice",
         at_least(1), k_library);

@@ -83,7 +83,7 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   GivenSurfaces regular = made_regular(cloud, surfaces, terms.surfaces, options.regularity, tolerance);
   run.throw_if_stopped();
   const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance, terms);
-  const TermCosts costs{.leaf = options.leaf_cost, .plane = options.plane_cost};
+  const TermCosts costs{.leaf = options.leaf_cost};
   const DecisionList list = search_list(space, costs, {.rules = options.most_rules}, run);
   WrittenSolids written = write_solids(space, list);
   choice.solids = std::move(written.solids);

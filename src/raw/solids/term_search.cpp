@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/primitive/price.hpp"
 #include "raw/solids/max_sum.hpp"
 #include "raw/solids/outline.hpp"
 
@@ -10,7 +11,6 @@ namespace cloud2csg {
 namespace {
 
 constexpr std::size_t k_polytope_seeds = 4;
-constexpr std::size_t k_free_planes = 6;
 constexpr double k_gain_floor = 1e-9;  // less is rounding
 
 /// Gains by place, and the places where they are not zero.
@@ -83,14 +83,7 @@ PricedTerm best_revolved(const TermSpace& space, std::uint32_t family, const Gai
   return {.term = {.parts = {revolved_part(space, family, best.range)}}, .net = best.sum - price};
 }
 
-/// A segment of a profile beyond the fourth, in leaves.
-constexpr double k_segment_leaves = 0.1;
-constexpr std::size_t k_free_segments = 4;
 constexpr std::size_t k_tried_intervals = 10;
-
-double leaves_of_segments(std::size_t segments) {
-  return segments > k_free_segments ? k_segment_leaves * static_cast<double>(segments - k_free_segments) : 0.0;
-}
 
 /// Gains by face, of all places below each edge of the slabs: a row an edge.
 std::vector<double> sums_below(const ProfileFamily& family, std::size_t faces, const Gains& gains) {
@@ -145,7 +138,7 @@ PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains
       face_gains[f] = (sums[(last + std::size_t{1}) * faces + f] - sums[first * faces + f]) / unit;
     }
     TermPart part{.kind = PartKind::profile, .family = index, .range = interval.range};
-    part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_leaves * costs.leaf / unit);
+    part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_price * costs.leaf / unit);
     part.segments = segments_of(family.chart.drawing, part.faces);
     if (part.segments == 0) continue;
     part.bare_leaves = height * family.bare_price * border_price(family.chart.drawing, part.faces);
@@ -206,7 +199,8 @@ class PolytopeCuts {
 
  private:
   bool cut(std::size_t seed, TermPart& part, double& sum) {
-    const double price = part.planes.size() < k_free_planes ? 0.0 : costs_.plane * costs_.leaf;
+    const std::size_t planes = part.planes.size();
+    const double price = (price_of_planes(planes + 1) - price_of_planes(planes)) * costs_.leaf;
     double best = price + k_gain_floor;
     std::uint32_t best_side = 0;
     bool found = false;
@@ -277,10 +271,8 @@ PricedTerm best_polytope(const TermSpace& space, std::span<const double> gains, 
 double cost_of(const Term& term, const TermCosts& costs) {
   double leaves = 0;
   for (const TermPart& part : term.parts) {
-    const std::size_t planes = part.planes.size();
-    leaves += leaves_of_segments(part.segments) + part.bare_leaves;
-    leaves += (part.is_known ? costs.known : 1.0) +
-              (planes > k_free_planes ? costs.plane * static_cast<double>(planes - k_free_planes) : 0.0);
+    leaves += price_of_segments(part.segments) + part.bare_leaves;
+    leaves += (part.is_known ? costs.known : 1.0) + price_of_planes(part.planes.size());
   }
   return leaves * costs.leaf;
 }

@@ -9,7 +9,6 @@ namespace cloud2csg {
 
 struct TermCosts {
   double leaf = 0.001;
-  double plane = 0.2;   ///< a polytope's plane beyond the sixth, in leaves
   double known = 0.05;  ///< a known solid, in leaves: it wins over a profile of its and other surfaces
 };
 

@@ -1,0 +1,204 @@
+// How often random extrusions and revolutions of lines and arcs come back from points: with the right number of
+// segments and the right solid.
+//   bench_profiles [--count N] [--noise SHARE] [--points N]
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cloud2csg/compare.hpp"
+#include "cloud2csg/error.hpp"
+#include "cloud2csg/reconstruct.hpp"
+#include "cloud2csg/sample.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/primitive/profile.hpp"
+#include "run_main.hpp"
+
+namespace cloud2csg::bench {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double k_least_iou = 0.98;
+
+struct Options {
+  std::size_t count = 200, points = 40'000;
+  double noise = 0;  ///< in diagonals
+};
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string name = argv[i];
+    if (name == "--count") options.count = std::stoul(argv[i + 1]);
+    if (name == "--points") options.points = std::stoul(argv[i + 1]);
+    if (name == "--noise") options.noise = std::stod(argv[i + 1]);
+  }
+  return options;
+}
+
+/// Whether a person could count the segments: none is short, and none goes on as the one before.
+bool is_clear(const Profile& profile) {
+  constexpr double k_shortest = 0.15;
+  constexpr double k_least_turn = 0.25;  // radians
+  for (const ClosedPath& path : profile.paths) {
+    const std::vector<ProfileSegment> segments = segments_of(path);
+    for (std::size_t k = 0; k < segments.size() && !is_circle(segments); ++k) {
+      const ProfileSegment& s = segments[k];
+      const Vector2d before = s.normal(1);
+      const Vector2d after = segments[(k + 1) % segments.size()].normal(0);
+      if (s.length() < k_shortest || std::abs(std::atan2(cross(before, after), before.dot(after))) < k_least_turn) {
+        return false;
+      }
+    }
+  }
+  try {
+    validate_profile(profile);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// A star of lines and arcs, 0.4 to 1 from the origin, some with a round hole.
+Profile any_profile(RandomStream& random) {
+  while (true) {
+    const std::size_t corners = 3 + random.below(7);
+    ClosedPath path;
+    for (std::size_t k = 0; k < corners; ++k) {
+      const double angle =
+          2 * std::numbers::pi * (static_cast<double>(k) + random.uniform(0, 0.5)) / static_cast<double>(corners);
+      const double bulge = random.chance(0.6) ? 0.0 : random.uniform(0.15, 0.8) * (random.chance(0.3) ? -1 : 1);
+      path.push_back({.point = random.uniform(0.4, 1) * Vector2d(std::cos(angle), std::sin(angle)), .bulge = bulge});
+    }
+    Profile profile{.paths = {path}};
+    if (random.chance(0.3)) {
+      const double radius = random.uniform(0.08, 0.2);
+      profile.paths.push_back({{.point = {-radius, 0}, .bulge = 1}, {.point = {radius, 0}, .bulge = 1}});
+    }
+    if (is_clear(profile)) return profile;
+  }
+}
+
+Pose any_pose(RandomStream& random, double far) {
+  return {.position = far * Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)),
+          .orientation =
+              Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized()};
+}
+
+Shape any_extrusion(RandomStream& random) {
+  return Extrusion{.profile = any_profile(random), .height = random.uniform(0.3, 1.5)};
+}
+
+/// A ring, or what is right of the axis.
+Shape any_revolution(RandomStream& random) {
+  Profile profile = any_profile(random);
+  const double shift = random.uniform(0.2, 1) - bounds_of(profile).min().x();
+  for (ClosedPath& path : profile.paths) {
+    for (PathCorner& corner : path) corner.point.x() += shift;
+  }
+  return Revolution{profile};
+}
+
+/// Segments of a solid as a profile; a circle is one. A box has four, a cylinder or torus one, or as turned ones four.
+std::vector<std::size_t> segment_counts(const Primitive& primitive) {
+  const auto count = [](const Profile& profile) {
+    std::size_t sum = 0;
+    for (const ClosedPath& path : profile.paths) sum += is_circle(segments_of(path)) ? 1 : path.size();
+    return sum;
+  };
+  if (const auto* extrusion = std::get_if<Extrusion>(&primitive.shape)) return {count(extrusion->profile)};
+  if (const auto* revolution = std::get_if<Revolution>(&primitive.shape)) return {count(revolution->profile)};
+  if (std::holds_alternative<Box>(primitive.shape)) return {4};
+  if (std::holds_alternative<Cylinder>(primitive.shape)) return {1, 4};
+  if (std::holds_alternative<Cone>(primitive.shape)) return {3, 4};
+  return {1};
+}
+
+bool has_right_counts(const Model& truth, const Extraction& result) {
+  std::vector<PrimitiveIndex> left = primitives_of(result.tree());
+  if (left.size() != truth.primitives.size()) return false;
+  for (const Primitive& solid : truth.primitives) {
+    const std::size_t wanted = segment_counts(solid)[0];
+    const auto fits = [&](PrimitiveIndex p) {
+      const std::vector<std::size_t> counts = segment_counts(result.model.primitives[p]);
+      return std::ranges::find(counts, wanted) != counts.end();
+    };
+    const auto found = std::ranges::find_if(left, fits);
+    if (found == left.end()) return false;
+    left.erase(found);
+  }
+  return true;
+}
+
+struct Outcome {
+  bool is_counted = false, is_right = false;
+  double iou = 0;
+};
+
+Outcome outcome_of(const Model& truth, const Options& options, std::uint64_t seed) {
+  PointCloud cloud = sample_surface(truth, {.count = options.points, .seed = seed});
+  cloud = with_noise(cloud, options.noise * bounds_of(cloud.positions).diagonal().norm());
+  try {
+    RunContext alone;
+    alone.threads = 1;
+    const Extraction result = reconstruct(cloud, {}, alone);
+    const Shape3d a{.model = truth};
+    const Shape3d b{.model = result.model};
+    const double iou = compare(a, b, {.resolution = 96, .surface_samples = 1000}).intersection_over_union.value_or(0);
+    return {.is_counted = has_right_counts(truth, result), .is_right = iou >= k_least_iou, .iou = iou};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// One solid, or two of which the second is added or taken away.
+Model any_model(bool is_turned, bool is_pair, std::uint64_t seed) {
+  RandomStream random(seed);
+  const auto any_shape = [&](bool turned) { return turned ? any_revolution(random) : any_extrusion(random); };
+  Model model{.primitives = {{.id = "first", .shape = any_shape(is_turned), .pose = any_pose(random, 0)}},
+              .tree = CsgTree::leaf(0)};
+  if (!is_pair) return model;
+  model.primitives.push_back({.id = "second", .shape = any_shape(random.chance(0.5)), .pose = any_pose(random, 0.6)});
+  model.tree =
+      random.chance(0.5) ? unite(CsgTree::leaf(0), CsgTree::leaf(1)) : subtract(CsgTree::leaf(0), CsgTree::leaf(1));
+  return model;
+}
+
+int run(int argc, char** argv) {
+  const Options options = read_options(argc, argv);
+  fmt::print("{} solids a row, {} points, noise {} % of the diagonal; right: IoU >= {}\n\n", options.count,
+             options.points, 100 * options.noise, k_least_iou);
+  fmt::print("| solids | right number of segments | right | mean IoU |\n|---|---:|---:|---:|\n");
+  for (const bool is_pair : {false, true}) {
+    for (const bool is_turned : {false, true}) {
+      std::vector<Outcome> outcomes(options.count);
+      for_each_index(options.count, {},
+                     [&](std::size_t k) { outcomes[k] = outcome_of(any_model(is_turned, is_pair, k), options, k); });
+      double counted = 0;
+      double right = 0;
+      double iou = 0;
+      for (const Outcome& outcome : outcomes) {
+        counted += outcome.is_counted ? 1 : 0;
+        right += outcome.is_right ? 1 : 0;
+        iou += outcome.iou;
+      }
+      const double n = static_cast<double>(options.count);
+      fmt::print("| {}{} | {:.1f} % | {:.1f} % | {:.4f} |\n", is_turned ? "revolution" : "extrusion",
+                 is_pair ? " and another solid" : "", 100 * counted / n, 100 * right / n, iou / n);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace cloud2csg::bench
+
+int main(int argc, char** argv) {
+  return cloud2csg::bench::run_main(argc, argv, cloud2csg::bench::run);
+}
