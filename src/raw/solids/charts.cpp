@@ -233,8 +233,9 @@ class ChartMaker {
     curves = with_closed_gaps(std::move(curves), k_reach * diagonal, options_.tolerance);
     std::vector<ProfileSegment> pieces;
     std::vector<std::uint32_t> curve_of_piece;
+    const std::vector<CurveExtent> extents = extents_of(curves, k_reach * diagonal);
     for (std::uint32_t c = 0; c < curves.size(); ++c) {
-      for (const ProfileSegment& piece : pieces_of(curves[c], k_reach * diagonal)) {
+      for (const ProfileSegment& piece : pieces_of(curves[c], extents[c])) {
         pieces.push_back(piece);
         curve_of_piece.push_back(c);
       }

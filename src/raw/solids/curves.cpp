@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -30,6 +31,122 @@ std::optional<Vector2d> nearest_place(const Curve& curve, const Curve& circle) {
   return curve.normal + curve.offset * arm.normalized();
 }
 
+double circumference(const Curve& circle) {
+  return 2 * std::numbers::pi * circle.offset;
+}
+
+/// The part with points; of a circle, all but the largest gap.
+CurveExtent supported_part(const Curve& curve) {
+  std::vector<double> along;
+  for (const Vector2d& p : curve.points) along.push_back(curve.along(p));
+  std::ranges::sort(along);
+  if (!curve.is_circle) return {along.front(), along.back()};
+  const double around = circumference(curve);
+  double gap = along.front() + around - along.back();
+  double start = along.front();
+  for (std::size_t k = 1; k < along.size(); ++k) {
+    if (along[k] - along[k - 1] <= gap) continue;
+    gap = along[k] - along[k - 1];
+    start = along[k];
+  }
+  return {start, start + around - gap};
+}
+
+CurveExtent with_reach(const Curve& curve, CurveExtent part, double reach) {
+  const double more = curve.is_circle ? std::max(reach, k_least_arc_reach * curve.offset) : reach;
+  return {part.low - more, part.high + more};
+}
+
+/// The whole line or circle, for crossings().
+ProfileSegment whole(const Curve& curve) {
+  return pieces_of(curve, {0, curve.is_circle ? 0.5 * circumference(curve) : 1.0})[0];
+}
+
+/// How far a place on the curve is beyond the end of a part, negative before it. On a circle, a place is before the
+/// nearer end.
+double way_beyond(const Curve& curve, const CurveExtent& part, bool is_high, const Vector2d& place) {
+  const double along = curve.along(place);
+  if (!curve.is_circle) return is_high ? along - part.high : part.low - along;
+  const double around = circumference(curve);
+  double beyond = std::fmod(is_high ? along - part.high : part.low - along, around);
+  if (beyond < 0) beyond += around;
+  const double length = part.high - part.low;
+  return beyond > around - 0.5 * length ? beyond - around : beyond;
+}
+
+/// How far a place on the curve is from a part; 0 in it.
+double way_to(const Curve& curve, const CurveExtent& part, const Vector2d& place) {
+  if (!curve.is_circle) {
+    const double along = curve.along(place);
+    return std::max({part.low - along, along - part.high, 0.0});
+  }
+  return std::max(std::min(way_beyond(curve, part, true, place), way_beyond(curve, part, false, place)), 0.0);
+}
+
+/// Lets curves go on to each other.
+class Extender {
+ public:
+  Extender(std::span<const Curve> curves, double reach) : curves_(curves), reach_(reach) {
+    for (const Curve& curve : curves) {
+      parts_.push_back(supported_part(curve));
+      extents_.push_back(with_reach(curve, parts_.back(), reach));
+    }
+    near_ = extents_;
+  }
+
+  std::vector<CurveExtent> extents() {
+    for (std::size_t c = 0; c < curves_.size(); ++c) {
+      if (curves_[c].count == 0) continue;
+      for (const bool is_high : {false, true}) extend(c, is_high);
+    }
+    return std::move(extents_);
+  }
+
+ private:
+  struct Meeting {
+    std::size_t other = 0;
+    Vector2d place = Vector2d::Zero();
+    double way = std::numeric_limits<double>::infinity();  ///< by which both grow
+  };
+
+  void extend(std::size_t c, bool is_high) {
+    Meeting best;
+    for (std::size_t k = 0; k < curves_.size(); ++k) {
+      if (k == c || curves_[k].count == 0) continue;
+      for (const Vector2d& place : crossings(whole(curves_[c]), whole(curves_[k]), 0)) {
+        const double beyond = way_beyond(curves_[c], parts_[c], is_high, place);
+        const double to_other = way_to(curves_[k], near_[k], place);
+        if (beyond < -reach_) continue;
+        if (beyond <= reach_ && to_other == 0) return;  // they meet
+        if (std::max(beyond, 0.0) + to_other < best.way) best = {k, place, std::max(beyond, 0.0) + to_other};
+      }
+    }
+    if (!std::isfinite(best.way)) return;
+    grow(c, best.place);
+    grow(best.other, best.place);
+  }
+
+  /// To the place and a little more.
+  void grow(std::size_t c, const Vector2d& place) {
+    constexpr double k_more = 0.1;  // of the reach
+    CurveExtent& extent = extents_[c];
+    const double low = way_beyond(curves_[c], near_[c], false, place);
+    const double high = way_beyond(curves_[c], near_[c], true, place);
+    if (way_to(curves_[c], near_[c], place) == 0) return;
+    const bool is_high = curves_[c].is_circle ? high < low : high > low;
+    if (is_high) {
+      extent.high = std::max(extent.high, near_[c].high + high + k_more * reach_);
+    } else {
+      extent.low = std::min(extent.low, near_[c].low - low - k_more * reach_);
+    }
+  }
+
+  std::span<const Curve> curves_;
+  double reach_;
+  std::vector<CurveExtent> parts_ = {};           // with points
+  std::vector<CurveExtent> near_, extents_ = {};  // with the reach, and what they grow to
+};
+
 }  // namespace
 
 std::vector<Curve> merged(std::vector<Curve> curves, double tolerance) {
@@ -51,7 +168,9 @@ std::vector<Curve> merged(std::vector<Curve> curves, double tolerance) {
 std::vector<Curve> with_closed_gaps(std::vector<Curve> curves, double reach, double tolerance) {
   std::vector<std::vector<ProfileSegment>> pieces;
   pieces.reserve(curves.size());
-  for (const Curve& curve : curves) pieces.push_back(pieces_of(curve, reach));
+  for (const Curve& curve : curves) {
+    pieces.push_back(pieces_of(curve, with_reach(curve, supported_part(curve), reach)));
+  }
   const auto is_on = [&](std::size_t c, const Vector2d& place) {
     return std::ranges::any_of(
         pieces[c], [&](const ProfileSegment& piece) { return (nearest(piece, place) - place).norm() <= tolerance; });
@@ -70,30 +189,21 @@ std::vector<Curve> with_closed_gaps(std::vector<Curve> curves, double reach, dou
   return curves;
 }
 
-std::vector<ProfileSegment> pieces_of(const Curve& curve, double reach) {
-  std::vector<double> along;
-  for (const Vector2d& p : curve.points) along.push_back(curve.along(p));
-  std::ranges::sort(along);
-  if (along.empty()) return {};
+std::vector<CurveExtent> extents_of(std::span<const Curve> curves, double reach) {
+  return Extender(curves, reach).extents();
+}
+
+std::vector<ProfileSegment> pieces_of(const Curve& curve, const CurveExtent& extent) {
   if (!curve.is_circle) {
     const Vector2d direction = to_the_left(curve.normal);
     const Vector2d foot = curve.offset * curve.normal;
-    return {segment_between(foot + (along.front() - reach) * direction, 0, foot + (along.back() + reach) * direction)};
+    return {segment_between(foot + extent.low * direction, 0, foot + extent.high * direction)};
   }
-  const double around = 2 * std::numbers::pi * curve.offset;
-  double gap = along.front() + around - along.back();
-  double start = along.front();
-  for (std::size_t k = 1; k < along.size(); ++k) {
-    if (along[k] - along[k - 1] <= gap) continue;
-    gap = along[k] - along[k - 1];
-    start = along[k];
-  }
-  const double more = std::max(reach, k_least_arc_reach * curve.offset);
-  double length = around - gap + 2 * more;
-  start -= more;
-  if (length > 0.95 * around) length = around;
+  const double around = circumference(curve);
+  constexpr double k_nearly_whole = 0.95;
+  const double length = extent.high - extent.low > k_nearly_whole * around ? around : extent.high - extent.low;
   const auto at = [&](double share) {
-    const double angle = (start + share * length) / curve.offset;
+    const double angle = (extent.low + share * length) / curve.offset;
     return Vector2d(curve.normal + curve.offset * Vector2d(std::cos(angle), std::sin(angle)));
   };
   const double bulge = std::tan(length / curve.offset / 8);  // of a half
