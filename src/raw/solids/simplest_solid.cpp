@@ -102,9 +102,55 @@ std::optional<Primitive> as_sphere(const Primitive& solid, const std::vector<Pro
   return with_shape(solid, Sphere{arc.radius}, Vector3d(0, 0, arc.centre.y()));
 }
 
+/// Whether all planes are along the direction, apart from two ends.
+bool is_prism_along(const Vector3d& direction, const Polytope& polytope) {
+  const auto ends = std::ranges::count_if(
+      polytope.planes, [&](const Plane& plane) { return (plane.normal.cross(direction)).norm() <= k_equal; });
+  return ends == 2 && std::ranges::all_of(polytope.planes, [&](const Plane& plane) {
+           const double sine = std::abs(plane.normal.dot(direction));
+           return sine <= k_equal || sine >= 1 - k_equal;
+         });
+}
+
+/// A polytope with two ends across all other planes as an extrusion.
+std::optional<Primitive> as_prism(const Primitive& solid, const Polytope& polytope) {
+  const auto end =
+      std::ranges::find_if(polytope.planes, [&](const Plane& plane) { return is_prism_along(plane.normal, polytope); });
+  if (end == polytope.planes.end()) return std::nullopt;
+  const Pose frame = pose_from_axis(Vector3d::Zero(), end->normal);
+  AlignedBox box;
+  std::vector<Vector3d> places_in_space;
+  for (const Vector3d& corner : corners(polytope)) {
+    places_in_space.push_back(frame.to_local(corner));
+    box.extend(places_in_space.back());
+  }
+  const double height = box.isEmpty() ? 0.0 : box.sizes().z();
+  const double rounding = k_equal * (box.isEmpty() ? 0.0 : box.diagonal().norm());
+  std::vector<Vector2d> places;
+  for (const Vector3d& corner : places_in_space) {
+    const Vector2d place = corner.head<2>();
+    const auto is_near = [&](const Vector2d& known) { return (known - place).norm() <= rounding; };
+    if (std::ranges::none_of(places, is_near)) places.push_back(place);
+  }
+  if (!(height > rounding) || places.size() < 3) return std::nullopt;
+  Vector2d middle = Vector2d::Zero();
+  for (const Vector2d& place : places) middle += place / static_cast<double>(places.size());
+  std::ranges::sort(places, {}, [&](const Vector2d& p) { return std::atan2(p.y() - middle.y(), p.x() - middle.x()); });
+  ClosedPath path;
+  for (const Vector2d& place : places) path.push_back({.point = place - middle});
+  Primitive prism = with_shape(solid, Extrusion{.profile = {.paths = {path}}, .height = height},
+                               frame.to_world({middle.x(), middle.y(), end->offset - 0.5 * height}));
+  prism.pose.orientation = solid.pose.orientation * frame.orientation;
+  return prism;
+}
+
 }  // namespace
 
 Primitive simplest(const Primitive& solid) {
+  if (const auto* polytope = std::get_if<Polytope>(&solid.shape)) {
+    const std::optional<Primitive> prism = as_prism(solid, *polytope);
+    return prism ? simplest(*prism) : solid;
+  }
   const auto* extrusion = std::get_if<Extrusion>(&solid.shape);
   const auto* revolution = std::get_if<Revolution>(&solid.shape);
   if (extrusion == nullptr && revolution == nullptr) return solid;

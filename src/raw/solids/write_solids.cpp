@@ -112,7 +112,7 @@ Primitive profile_solid(const Chart& chart, const FaceSet& faces, const Span& sp
 /// Solids that add to the part end with it. Solids that subtract reach beyond all those.
 Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
   const AlignedBox& bounds = adds ? space.part_bounds : space.bounds;
-  if (part.kind == PartKind::polytope) return polytope_solid(space, part, bounds);
+  if (part.kind == PartKind::polytope) return simplest(polytope_solid(space, part, bounds));
   const auto span_along = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
     const double most = k_most_overshoot * space.bounds.diagonal().norm();
     const Span wanted = span_of(bins_of(space, part), part.range, overshoots, most);
