@@ -108,7 +108,7 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   result.statistics.points = found.prepared.cloud.size();
   result.statistics.primitives = found.choice.solids.size();
   result.statistics.noise = found.prepared.scale.noise;
-  result.statistics.tree = statistics_of(found.choice.tree, found.choice.solids);
+  if (!found.no_solid) result.statistics.tree = statistics_of(found.choice.tree, found.choice.solids);
   result.statistics.finding = statistics_of(found, options.known.size(), cloud.size());
   result.statistics.finding->is_tree_of_choice = true;
   result.statistics.finding->disagreement = found.choice.disagreement;
