@@ -219,7 +219,7 @@ int run(int argc, char** argv) {
         right += outcome.is_right ? 1 : 0;
         iou += outcome.iou;
       }
-      const double n = static_cast<double>(options.count);
+      const auto n = static_cast<double>(options.count);
       fmt::print("| {}{} | {:.1f} % | {:.1f} % | {:.4f} |\n", is_turned ? "revolution" : "extrusion",
                  is_pair ? " and another solid" : "", 100 * counted / n, 100 * right / n, iou / n);
     }

@@ -10,7 +10,7 @@
 namespace cloud2csg {
 
 /// Whether a profile may contain a place or not without a difference.
-using IsFree = std::function<bool(const Vector2d&)>;
+using IsFree = std::function<bool(const Eigen::Vector2d&)>;
 
 /// Where the boxes of other solids begin and end along a solid's own axes.
 using Levels = std::array<std::vector<double>, 3>;
