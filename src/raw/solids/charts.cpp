@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr std::size_t k_most_curve_points = 2000;  // of a curve; more tell no better where it ends
 /// How far curves reach beyond their points, in diagonals of the drawing. Whole lines make six times as many faces.
 constexpr double k_reach = 0.06;
-constexpr double k_meeting = 1e-9;       // in diagonals: crossings that near are one
+constexpr double k_meeting = 1e-6;       // in diagonals: crossings that near are one, as in OpenSCAD
 constexpr double k_border = 0.01;        // width of the empty border, in diagonals
 constexpr double k_gap = 3;              // in spacings: an edge farther from all points has none
 constexpr double k_least_share = 0.002;  // of all points, on surfaces along the direction or axis
