@@ -107,13 +107,7 @@ Shape any_revolution(RandomStream& random) {
 
 /// Segments of a solid as a profile; a circle is one. A box has four, a cylinder or torus one, or as turned ones four.
 std::vector<std::size_t> segment_counts(const Primitive& primitive) {
-  const auto count = [](const Profile& profile) {
-    std::size_t sum = 0;
-    for (const ClosedPath& path : profile.paths) sum += is_circle(segments_of(path)) ? 1 : path.size();
-    return sum;
-  };
-  if (const auto* extrusion = std::get_if<Extrusion>(&primitive.shape)) return {count(extrusion->profile)};
-  if (const auto* revolution = std::get_if<Revolution>(&primitive.shape)) return {count(revolution->profile)};
+  if (const Profile* const profile = profile_of(primitive.shape)) return {count_segments(*profile)};
   if (std::holds_alternative<Box>(primitive.shape)) return {4};
   if (std::holds_alternative<Cylinder>(primitive.shape)) return {1, 4};
   if (std::holds_alternative<Cone>(primitive.shape)) return {3, 4};
@@ -142,8 +136,7 @@ bool shows_all_segments(const Model& model, const PointCloud& cloud) {
   constexpr double k_near = 1e-6;
   for (const Primitive& solid : model.primitives) {
     const auto* extrusion = std::get_if<Extrusion>(&solid.shape);
-    const Profile& profile = extrusion != nullptr ? extrusion->profile : std::get<Revolution>(solid.shape).profile;
-    for (const ProfileSegment& segment : segments_of(profile)) {
+    for (const ProfileSegment& segment : segments_of(*profile_of(solid.shape))) {
       std::size_t count = 0;
       for (std::size_t i = 0; i < cloud.size() && count < k_enough; ++i) {
         const Eigen::Vector3d local = solid.pose.to_local(cloud.positions[i]);

@@ -10,6 +10,7 @@
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/run.hpp"
+#include "core/primitive/profile.hpp"
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"
@@ -245,9 +246,7 @@ TreeStatistics statistics_of(const CsgTree& tree, const PrimitiveSet& primitives
     if (!node.is_leaf()) continue;
     const Primitive& primitive = primitives[node.primitive()];
     statistics.price += price_of(primitive);
-    const bool is_profile =
-        std::holds_alternative<Extrusion>(primitive.shape) || std::holds_alternative<Revolution>(primitive.shape);
-    statistics.operations += is_profile ? 1 : 0;
+    statistics.operations += profile_of(primitive.shape) != nullptr ? 1 : 0;
   }
   statistics.operations += statistics.leaves > 0 ? statistics.leaves - 1 : 0;
   return statistics;

@@ -12,6 +12,7 @@
 #include "cloud2csg/model.hpp"
 #include "core/base/files.hpp"
 #include "core/base/random.hpp"
+#include "openscad/refusal.hpp"
 #include "support/random_scene.hpp"
 
 namespace cloud2csg {
@@ -23,14 +24,7 @@ bool contains(const Model& model, const Vector3d& point) {
   return implicit_value(*model.tree, model.primitives, test::single(point))[0] < 0;
 }
 
-std::string refusal(const std::string& text) {
-  try {
-    (void)parse_openscad(text, "part.scad");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+using test::refusal;
 
 /// A part by itself, to look at its primitive.
 Primitive only_primitive(const std::string& text) {

@@ -12,6 +12,7 @@
 #include "cloud2csg/model.hpp"
 #include "core/base/random.hpp"
 #include "core/primitive/profile.hpp"
+#include "openscad/refusal.hpp"
 #include "support/any_profile.hpp"
 #include "support/random_scene.hpp"
 
@@ -22,18 +23,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-std::string refusal_of_sweep(const std::string& text) {
-  try {
-    (void)parse_openscad(text, "part.scad");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 const Profile& profile_of(const Primitive& primitive) {
-  const auto* const extrusion = std::get_if<Extrusion>(&primitive.shape);
-  return extrusion != nullptr ? extrusion->profile : std::get<Revolution>(primitive.shape).profile;
+  return *profile_of(primitive.shape);
 }
 
 void expect_same_path(const std::vector<ProfileSegment>& expected, const std::vector<ProfileSegment>& found) {
@@ -279,7 +270,7 @@ TEST(OpenScadSweep, SolidsAreMappedAsOthers) {
   EXPECT_FALSE(is_in(1.9, 0.01, 0.1));
   EXPECT_FALSE(is_in(0.1, 1.01, -1));
   EXPECT_TRUE(is_in(9.1, 1.8, 0.9));
-  EXPECT_NE(refusal_of_sweep("scale([1, 2, 1]) linear_extrude(1) circle(1);").find("keeps round solids round"),
+  EXPECT_NE(test::refusal("scale([1, 2, 1]) linear_extrude(1) circle(1);").find("keeps round solids round"),
             std::string::npos);
   const Model sheared = parse_openscad("translate([1, 0, 0]) scale([2, 1, 1]) rotate(45) linear_extrude(1) square(1);");
   EXPECT_EQ(sheared.primitives.size(), 1U);
@@ -291,7 +282,7 @@ TEST(OpenScadSweep, SolidsAreMappedAsOthers) {
     EXPECT_EQ(implicit_value(*sheared.tree, sheared.primitives, test::single(place))[0] < 0, expected)
         << place.transpose();
   }
-  EXPECT_NE(refusal_of_sweep("scale([2, 1, 1]) rotate([0, 45, 0]) linear_extrude(1) square(1);").find("upright"),
+  EXPECT_NE(test::refusal("scale([2, 1, 1]) rotate([0, 45, 0]) linear_extrude(1) square(1);").find("upright"),
             std::string::npos);
   const Primitive knob = parse_openscad("scale([2, 2, 3]) rotate_extrude() square([1, 2]);").primitives.at(0);
   EXPECT_TRUE(bounds(knob).isApprox(AlignedBox(Vector3d(-2, -2, 0), Vector3d(2, 2, 6)), 1e-12));
@@ -335,7 +326,7 @@ TEST(OpenScadSweep, SaysWhatIsNoSweptSolid) {
       {"linear_extrude(1) { }", "expected a solid, found none"},
   };
   for (const auto& [text, message] : texts) {
-    EXPECT_NE(refusal_of_sweep(text).find(message), std::string::npos) << text << "\n" << refusal_of_sweep(text);
+    EXPECT_NE(test::refusal(text).find(message), std::string::npos) << text << "\n" << test::refusal(text);
   }
 }
 
@@ -348,20 +339,20 @@ Model lens() {
 
 TEST(OpenScadSweep, KnowsOnlyOurOwnFunctions) {
   const std::string text = to_openscad(lens());
-  EXPECT_EQ(refusal_of_sweep(text), "accepted");
+  EXPECT_EQ(test::refusal(text), "accepted");
   std::string other = text;
   other.replace(other.find("4 * atan(bulge)"), 1, "3");
-  EXPECT_NE(refusal_of_sweep(other).find("path() as in files"), std::string::npos) << refusal_of_sweep(other);
-  EXPECT_NE(refusal_of_sweep(text + "function half(x) = x / 2;").find("found 'function'"), std::string::npos);
+  EXPECT_NE(test::refusal(other).find("path() as in files"), std::string::npos) << test::refusal(other);
+  EXPECT_NE(test::refusal(text + "function half(x) = x / 2;").find("found 'function'"), std::string::npos);
   std::string with_returns;
   for (const char c : text) with_returns += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  EXPECT_EQ(refusal_of_sweep(with_returns), "accepted");
+  EXPECT_EQ(test::refusal(with_returns), "accepted");
 }
 
 TEST(OpenScadSweep, DamagedFilesAreReadOrRefused) {
   const std::string text = to_openscad(lens());
   for (std::size_t length = 0; length < text.size(); length += 3) {
-    const std::string answer = refusal_of_sweep(text.substr(0, length));
+    const std::string answer = test::refusal(text.substr(0, length));
     EXPECT_TRUE(answer == "accepted" || answer.starts_with("part.scad: ")) << answer;
   }
   const std::string alphabet = "(){}[];,=+-*/%#!\"1a. \n\xc3";
@@ -369,7 +360,7 @@ TEST(OpenScadSweep, DamagedFilesAreReadOrRefused) {
     RandomStream random(seed);
     std::string changed = text;
     for (int i = 0; i < 3; ++i) changed[random.below(changed.size())] = alphabet[random.below(alphabet.size())];
-    const std::string answer = refusal_of_sweep(changed);
+    const std::string answer = test::refusal(changed);
     ASSERT_TRUE(answer == "accepted" || answer.starts_with("part.scad: ")) << answer << "\n" << changed;
   }
 }

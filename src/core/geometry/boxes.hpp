@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <utility>
 
 #include "cloud2csg/geometry.hpp"
 #include "core/base/random.hpp"
@@ -15,6 +16,14 @@ namespace cloud2csg {
 /// The box with `margin` added on each side. Precondition: the box is not empty.
 [[nodiscard]] inline AlignedBox grown(const AlignedBox& box, double margin) {
   return {box.min().array() - margin, box.max().array() + margin};
+}
+
+/// Least and greatest coordinate of the box along an axis from `origin`; `axis` has unit length.
+[[nodiscard]] inline std::pair<double, double> extent_along(const AlignedBox& box, const Eigen::Vector3d& origin,
+                                                            const Eigen::Vector3d& axis) {
+  const double middle = (box.center() - origin).dot(axis);
+  const double half = 0.5 * box.sizes().dot(axis.cwiseAbs());
+  return {middle - half, middle + half};
 }
 
 /// Whether no side is at infinity.

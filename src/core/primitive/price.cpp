@@ -10,12 +10,6 @@ double price_beyond(std::size_t count, std::size_t free, double price) {
   return count > free ? price * static_cast<double>(count - free) : 0.0;
 }
 
-std::size_t count_segments(const Profile& profile) {
-  std::size_t count = 0;
-  for (const ClosedPath& path : profile.paths) count += is_circle(segments_of(path)) ? 1 : path.size();
-  return count;
-}
-
 }  // namespace
 
 double price_of_segments(std::size_t segments) {
@@ -28,12 +22,8 @@ double price_of_planes(std::size_t planes) {
 }
 
 double price_of(const Primitive& primitive) {
-  if (const auto* extrusion = std::get_if<Extrusion>(&primitive.shape)) {
-    return 1 + price_of_segments(count_segments(extrusion->profile));
-  }
-  if (const auto* revolution = std::get_if<Revolution>(&primitive.shape)) {
-    return 1 + price_of_segments(count_segments(revolution->profile));
-  }
+  if (const Profile* const profile = profile_of(primitive.shape))
+    return 1 + price_of_segments(count_segments(*profile));
   if (const auto* polytope = std::get_if<Polytope>(&primitive.shape)) {
     return 1 + price_of_planes(polytope->planes.size());
   }

@@ -172,6 +172,32 @@ bool is_inside(std::span<const ProfileSegment> segments, const Vector2d& point) 
   return inside;
 }
 
+const Profile* profile_of(const Shape& shape) {
+  if (const auto* extrusion = std::get_if<Extrusion>(&shape)) return &extrusion->profile;
+  if (const auto* revolution = std::get_if<Revolution>(&shape)) return &revolution->profile;
+  return nullptr;
+}
+
+std::size_t count_segments(const Profile& profile) {
+  std::size_t count = 0;
+  for (const ClosedPath& path : profile.paths) count += is_circle(segments_of(path)) ? 1 : path.size();
+  return count;
+}
+
+std::size_t count_corners(const Profile& profile) {
+  std::size_t count = 0;
+  for (const ClosedPath& path : profile.paths) count += path.size();
+  return count;
+}
+
+double angle_from_start(const ProfileSegment& arc, const Vector2d& direction) {
+  const Vector2d from = arc.start - arc.centre;
+  const double angle = std::atan2(cross(from, direction), from.dot(direction));
+  if (arc.angle > 0 && angle < 0) return angle + 2 * pi;
+  if (arc.angle < 0 && angle > 0) return angle - 2 * pi;
+  return angle;
+}
+
 bool is_circle(std::span<const ProfileSegment> path) {
   constexpr double k_equal = 1e-9;  // in radii
   const ProfileSegment& first = path.front();

@@ -76,6 +76,19 @@ struct ProfileRegion {
 /// Whether the point is in the region inside an odd number of the segments' paths. O(segments)
 [[nodiscard]] bool is_inside(std::span<const ProfileSegment> segments, const Eigen::Vector2d& point);
 
+/// The profile of an extrusion or revolution; null for other shapes.
+[[nodiscard]] const Profile* profile_of(const Shape& shape);
+
+/// The segments of all paths, where a whole circle is one. O(segments)
+[[nodiscard]] std::size_t count_segments(const Profile& profile);
+
+/// The corners of all paths. O(paths)
+[[nodiscard]] std::size_t count_corners(const Profile& profile);
+
+/// The angle from the arc's start to a direction from its centre, as the arc turns: with the arc's sign, below a full
+/// turn. O(1)
+[[nodiscard]] double angle_from_start(const ProfileSegment& arc, const Eigen::Vector2d& direction);
+
 /// Whether all segments are arcs of one circle, in one direction.
 [[nodiscard]] bool is_circle(std::span<const ProfileSegment> path);
 

@@ -19,12 +19,6 @@ bool has_clear_paths(const Profile& profile) {
   }
 }
 
-std::size_t count_of_segments(const Profile& profile) {
-  std::size_t count = 0;
-  for (const ClosedPath& path : profile.paths) count += path.size();
-  return count;
-}
-
 /// A shape whose paths have boxes, because most paths are far from most others.
 struct BoxedShape {
   Profile profile;
@@ -33,7 +27,7 @@ struct BoxedShape {
 };
 
 BoxedShape boxed(const Profile& profile) {
-  BoxedShape shape{.profile = profile, .boxes = {}, .segments = count_of_segments(profile)};
+  BoxedShape shape{.profile = profile, .boxes = {}, .segments = count_corners(profile)};
   for (const ClosedPath& path : profile.paths) shape.boxes.push_back(bounds_of(segments_of(path)));
   return shape;
 }
@@ -132,7 +126,7 @@ class Joiner {
     for (std::size_t i = 0; i < whole.boxes.size(); ++i) {
       if (whole.boxes[i].exteriorDistance(box) <= tolerance) near.paths.push_back(whole.profile.paths[i]);
     }
-    const std::size_t segments = count_of_segments(near);
+    const std::size_t segments = count_corners(near);
     if (segments * segments > pairs_left_) return false;
     pairs_left_ -= segments * segments;
     return has_clear_paths(near);

@@ -45,8 +45,7 @@ void number_names(PrimitiveSet& primitives) {
 /// How many calls take as long as to find that the paths of the profile do not cross.
 std::size_t calls_worth(const Profile& profile) {
   constexpr std::size_t k_pairs_per_call = 2000;
-  std::size_t segments = 0;
-  for (const ClosedPath& path : profile.paths) segments += path.size();
+  const std::size_t segments = count_corners(profile);
   return segments * segments / k_pairs_per_call;
 }
 

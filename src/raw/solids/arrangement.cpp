@@ -18,13 +18,8 @@ using Eigen::Vector2d;
 
 double share_of(const ProfileSegment& s, const Vector2d& point) {
   if (!s.is_arc()) return (point - s.start).dot(s.end - s.start) / (s.end - s.start).squaredNorm();
-  const Vector2d from = s.start - s.centre;
-  const Vector2d to = point - s.centre;
-  double angle = std::atan2(cross(from, to), from.dot(to));
-  if (s.angle > 0 && angle < 0) angle += 2 * std::numbers::pi;
-  if (s.angle < 0 && angle > 0) angle -= 2 * std::numbers::pi;
   // Just before the start is the start.
-  const double share = angle / s.angle;
+  const double share = angle_from_start(s, point - s.centre) / s.angle;
   return share > 0.5 + std::numbers::pi / std::abs(s.angle) ? 0.0 : share;
 }
 

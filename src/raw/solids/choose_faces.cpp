@@ -19,25 +19,28 @@ bool is_border(const CurveArrangement::Edge& edge, const FaceSet& faces) {
   return faces[edge.left] != faces[edge.right];
 }
 
-/// The edges around each vertex, or around each face.
+/// The edges at each vertex, or around each face.
 using EdgeLists = std::vector<std::vector<std::uint32_t>>;
 
-EdgeLists edges_at_vertices(const CurveArrangement& arrangement) {
-  EdgeLists lists(arrangement.vertices.size());
+/// By the two numbers of each edge, below `count`.
+EdgeLists edges_by(const CurveArrangement& arrangement, std::size_t count, std::uint32_t CurveArrangement::Edge::*one,
+                   std::uint32_t CurveArrangement::Edge::*other) {
+  EdgeLists lists(count);
   for (std::uint32_t e = 0; e < arrangement.edges.size(); ++e) {
-    lists[arrangement.edges[e].start].push_back(e);
-    lists[arrangement.edges[e].end].push_back(e);
+    lists[arrangement.edges[e].*one].push_back(e);
+    lists[arrangement.edges[e].*other].push_back(e);
   }
   return lists;
 }
 
+EdgeLists edges_at_vertices(const CurveArrangement& arrangement) {
+  using Edge = CurveArrangement::Edge;
+  return edges_by(arrangement, arrangement.vertices.size(), &Edge::start, &Edge::end);
+}
+
 EdgeLists edges_around_faces(const CurveArrangement& arrangement) {
-  EdgeLists lists(arrangement.areas.size());
-  for (std::uint32_t e = 0; e < arrangement.edges.size(); ++e) {
-    lists[arrangement.edges[e].left].push_back(e);
-    lists[arrangement.edges[e].right].push_back(e);
-  }
-  return lists;
+  using Edge = CurveArrangement::Edge;
+  return edges_by(arrangement, arrangement.areas.size(), &Edge::left, &Edge::right);
 }
 
 /// Ends of border segments at a vertex: a curve that arrives and goes on has none.

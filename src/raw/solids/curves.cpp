@@ -88,6 +88,7 @@ class Extender {
  public:
   Extender(std::span<const Curve> curves, double reach) : curves_(curves), reach_(reach) {
     for (const Curve& curve : curves) {
+      wholes_.push_back(whole(curve));
       parts_.push_back(supported_part(curve));
       extents_.push_back(with_reach(curve, parts_.back(), reach));
     }
@@ -113,7 +114,7 @@ class Extender {
     Meeting best;
     for (std::size_t k = 0; k < curves_.size(); ++k) {
       if (k == c || curves_[k].count == 0) continue;
-      for (const Vector2d& place : crossings(whole(curves_[c]), whole(curves_[k]), 0)) {
+      for (const Vector2d& place : crossings(wholes_[c], wholes_[k], 0)) {
         const double beyond = way_beyond(curves_[c], parts_[c], is_high, place);
         const double to_other = way_to(curves_[k], near_[k], place);
         if (beyond < -reach_) continue;
@@ -143,6 +144,7 @@ class Extender {
 
   std::span<const Curve> curves_;
   double reach_;
+  std::vector<ProfileSegment> wholes_ = {};
   std::vector<CurveExtent> parts_ = {};           // with points
   std::vector<CurveExtent> near_, extents_ = {};  // with the reach, and what they grow to
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/boxes.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -25,12 +27,6 @@ Bins closed(std::vector<double> edges, double low, double high) {
   edges.push_back(high);
   std::ranges::sort(edges);
   return {.edges = std::move(edges)};
-}
-
-std::pair<double, double> extent(const AlignedBox& box, const Eigen::Vector3d& direction) {
-  const double middle = box.center().dot(direction);
-  const double half = 0.5 * box.sizes().dot(direction.cwiseAbs());
-  return {middle - half, middle + half};
 }
 
 std::vector<double> plane_offsets(const Eigen::Vector3d& direction, std::span<const DetectedSurface> surfaces) {
@@ -87,7 +83,7 @@ Bins edges_along_axis(const DetectedSurface& surface, const Points& positions,
     add_distinct(edges, {offset - origin}, rules.plane_tolerance);
   }
   add_distinct(edges, reach_of(surface, positions), rules.derived_tolerance);
-  auto [low, high] = extent(rules.bounds, axis);
+  auto [low, high] = extent_along(rules.bounds, Eigen::Vector3d::Zero(), axis);
   low -= origin;
   high -= origin;
   if (surface.surface.type == SurfaceType::cone) {

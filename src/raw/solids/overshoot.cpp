@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/geometry/boxes.hpp"
 #include "core/primitive/profile.hpp"
 #include "raw/solids/overshooting_outline.hpp"
 #include "raw/solids/simplest_solid.hpp"
@@ -45,10 +46,8 @@ Primitive as_swept(Primitive solid) {
 
 /// Where an extrusion lies within the box: its least and greatest local z.
 std::pair<double, double> heights_within(const Extrusion& extrusion, const Pose& pose, const AlignedBox& box) {
-  const Vector3d axis = pose.orientation * Vector3d::UnitZ();
-  const double middle = (box.center() - pose.position).dot(axis);
-  const double half = 0.5 * box.sizes().dot(axis.cwiseAbs());
-  return {std::max(middle - half, -0.5 * extrusion.height), std::min(middle + half, 0.5 * extrusion.height)};
+  const auto [low, high] = extent_along(box, pose.position, pose.orientation * Vector3d::UnitZ());
+  return {std::max(low, -0.5 * extrusion.height), std::min(high, 0.5 * extrusion.height)};
 }
 
 /// A grid of places in the profile.

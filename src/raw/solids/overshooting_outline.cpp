@@ -109,11 +109,9 @@ class Overshooting {
     const ProfileSegment& curve = curves_[k];
     double bulge = 0;
     if (curve.is_arc()) {
-      const Vector2d from = *start - curve.centre;
-      const Vector2d to = *end - curve.centre;
-      double angle = std::atan2(cross(from, to), from.dot(to));
-      if (curve.angle > 0 && angle < 0) angle += 2 * std::numbers::pi;
-      if (curve.angle < 0 && angle > 0) angle -= 2 * std::numbers::pi;
+      ProfileSegment cut = curve;
+      cut.start = *start;
+      const double angle = angle_from_start(cut, *end - curve.centre);
       if (std::abs(angle - curve.angle) > std::numbers::pi) return false;
       bulge = std::tan(angle / 4);
     } else if ((*end - *start).dot(curve.end - curve.start) <= 0) {

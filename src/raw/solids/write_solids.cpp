@@ -36,12 +36,6 @@ Span span_of(const Bins& bins, BinRange range, const std::array<bool, 2>& oversh
   return span;
 }
 
-Span extent(const AlignedBox& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
-  const double middle = (box.center() - origin).dot(axis);
-  const double half = 0.5 * box.sizes().dot(axis.cwiseAbs());
-  return {middle - half, middle + half};
-}
-
 Primitive revolved_solid(const Surface& surface, const Span& span) {
   const Eigen::Vector3d middle = surface.position + 0.5 * (span.low + span.high) * surface.axis;
   const double height = span.high - span.low;
@@ -116,8 +110,8 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
   const auto span_along = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
     const double most = k_most_overshoot * space.bounds.diagonal().norm();
     const Span wanted = span_of(bins_of(space, part), part.range, overshoots, most);
-    const Span limit = extent(bounds, origin, axis);
-    return Span{std::max(wanted.low, limit.low), std::min(wanted.high, limit.high)};
+    const auto [low, high] = extent_along(bounds, origin, axis);
+    return Span{std::max(wanted.low, low), std::min(wanted.high, high)};
   };
   if (part.kind == PartKind::profile) {
     const Chart& chart = space.profiles[part.family].chart;
