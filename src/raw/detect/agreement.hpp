@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cloud2csg/advanced/surface.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 
@@ -20,9 +21,6 @@ struct OrientedPoint {
 struct Agreement {
   double distance, cosine;
 };
-
-/// Of normally distributed points, 1 in 370 is more standard deviations off its surface.
-constexpr double k_deviations = 3;
 
 /// A surface is no chance if the logarithm of its likelihood ratio is at least this. e^14 is about a million.
 constexpr double k_evidence = 14;

@@ -17,6 +17,7 @@
 #include "raw/detect/settle_surfaces.hpp"
 #include "raw/detect/split_surfaces.hpp"
 #include "raw/detect/unexplained.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -35,9 +36,8 @@ std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimit
   std::vector<Surface> candidates;
   for (const auto& some : proposed) candidates.insert(candidates.end(), some.begin(), some.end());
 
-  constexpr std::size_t k_subset = 3000;
   RandomStream random(seed, k_subset_stage, round);
-  const std::vector<OrientedPoint> subset = points.draw(k_subset, random);
+  const std::vector<OrientedPoint> subset = points.draw(k_large_sample, random);
   std::vector<double> scores(candidates.size());
   for_each_index(candidates.size(), run, [&](std::size_t i) {
     scores[i] = preference(candidates[i].type) * support_of(candidates[i], subset, limits.agreement);
@@ -96,15 +96,14 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
 /// surfaces explain are no evidence for a later one. Only its other points get the new normals.
 std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
                                              const RunContext& run, const StageShare& share) {
-  constexpr double k_first_pass = 0.8;  // of the time, roughly
   FreePoints points(cloud);
   const auto always = [](std::uint32_t) { return true; };
-  std::vector<GrownSurface> found = find_all(points, limits, seed, always, run, share.part(0, k_first_pass));
+  std::vector<GrownSurface> found = find_all(points, limits, seed, always, run, share.part(0, 0.8));
   if (points.list().size() < limits.least_points) return found;
   const WorkCloud part = unexplained_part(points, limits.agreement.noise, run);
   FreePoints of_part(part);
   const auto is_unexplained = [&](std::uint32_t k) { return points.is_free(part.index[k]); };
-  for (GrownSurface& surface : find_all(of_part, limits, seed, is_unexplained, run, share.part(k_first_pass, 1))) {
+  for (GrownSurface& surface : find_all(of_part, limits, seed, is_unexplained, run, share.part(0.8, 1))) {
     for (std::uint32_t& k : surface.points) {
       if (is_unexplained(k)) cloud.points[part.index[k]].normal = part.points[k].normal;
       k = part.index[k];
@@ -129,9 +128,8 @@ double rms_distance(const GrownSurface& grown, const WorkCloud& work) {
 
 /// Uncertainty of the axis in degrees, which is large for a short piece of a pipe.
 double turn_of(const GrownSurface& grown, const WorkCloud& work) {
-  constexpr std::size_t k_points = 1000;  // more points make the axis no more certain
   std::vector<Eigen::Vector3d> positions;
-  for (const OrientedPoint& p : work.some_of(grown.points, k_points)) positions.push_back(p.position);
+  for (const OrientedPoint& p : work.some_of(grown.points, k_sample)) positions.push_back(p.position);
   const std::optional<SurfaceFit> fit = fit_surface(grown.surface, positions);
   return fit ? fit->uncertainty.axis * 180 / std::numbers::pi : 0;
 }

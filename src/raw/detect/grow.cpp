@@ -8,12 +8,10 @@
 #include "core/base/robust_deviation.hpp"
 #include "core/geometry/cubes.hpp"
 #include "raw/detect/propose.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 namespace {
-
-/// This many points suffice to fit a surface.
-constexpr std::size_t k_sample = 400;
 
 /// The largest connected group of agreeing points; empty if it is smaller than the limit.
 std::vector<std::uint32_t> connected_points(const Surface& surface, const FreePoints& points,
@@ -93,7 +91,6 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
   wide.agreement.distance *= 1.5;
   std::vector<std::uint32_t> seen = connected_points(start, points, wide);
   GrownSurface best{.surface = start, .points = {}, .reach = reach_of(start, points.cloud(), seen, limits.agreement)};
-  constexpr int k_rounds = 4;
   for (int round = 0; round < k_rounds && !seen.empty(); ++round) {
     const std::optional<Surface> fitted =
         fit_plausible(best.surface, points.cloud().some_of(seen, k_sample), limits.agreement.within(best.reach));
@@ -140,15 +137,14 @@ GrownSurface with_best_round_type(GrownSurface grown, const FreePoints& points, 
 GrownSurface with_simplest_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
   constexpr std::array k_simplest_first{SurfaceType::plane, SurfaceType::sphere, SurfaceType::cylinder,
                                         SurfaceType::cone};
-  constexpr double k_nearly = 0.95;
   const std::vector<OrientedPoint> sample = points.cloud().some_of(grown.points, k_sample);
   const double support = support_of(grown.surface, sample, limits.agreement);
   for (const SurfaceType type : k_simplest_first) {
     if (preference(type) <= preference(grown.surface.type)) break;
     const std::optional<Surface> simpler = estimate_plausible(type, sample, limits.agreement);
-    if (!simpler || support_of(*simpler, sample, limits.agreement) < k_nearly * support) continue;
+    if (!simpler || support_of(*simpler, sample, limits.agreement) < k_nearly_all * support) continue;
     std::optional<GrownSurface> result = grow_surface(*simpler, points, limits);
-    if (result && result->support >= k_nearly * grown.support) return std::move(*result);
+    if (result && result->support >= k_nearly_all * grown.support) return std::move(*result);
   }
   return grown;
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "raw/prepare/constants.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -24,10 +26,6 @@ std::optional<Vector3d> meeting(const Vector3d& p, const Vector3d& u, const Vect
 }
 
 using Neighbourhood = std::span<const OrientedPoint>;
-
-constexpr std::size_t k_neighbours = 24;
-/// Fewer neighbours are no evidence. Half of them must agree with a surface.
-constexpr std::size_t k_least_neighbours = 8;
 
 struct Columns {
   std::vector<Eigen::Vector3d> positions, normals;
@@ -162,8 +160,7 @@ std::optional<Surface> fit_plausible(const Surface& start, std::span<const Orien
 
 std::optional<Surface> fit_plausible(const Surface& start, const WorkCloud& cloud,
                                      const std::vector<std::uint32_t>& points, const AgreementLimits& limits) {
-  constexpr std::size_t k_most = 4000;
-  return fit_plausible(start, cloud.some_of(points, k_most), limits);
+  return fit_plausible(start, cloud.some_of(points, k_large_sample), limits);
 }
 
 std::optional<Surface> estimate_plausible(SurfaceType type, std::span<const OrientedPoint> points,
@@ -174,14 +171,13 @@ std::optional<Surface> estimate_plausible(SurfaceType type, std::span<const Orie
 }
 
 std::vector<Surface> propose_surfaces(const FreePoints& points, const AgreementLimits& limits, RandomStream& random) {
-  const std::vector<OrientedPoint> near = points.draw_neighbours(k_neighbours, random);
+  const std::vector<OrientedPoint> near = points.draw_neighbours(k_around, random);
   std::vector<Surface> proposed;
-  if (near.size() < k_least_neighbours) return proposed;
+  if (near.size() < k_nearest) return proposed;
   const auto propose = [&](const std::optional<Surface>& surface) {
     if (const std::optional<Surface> sure = confirmed(surface, near, limits)) proposed.push_back(*sure);
   };
-  constexpr std::size_t k_tries = 3;
-  for (std::size_t k = 1; k <= k_tries && proposed.empty(); ++k) {
+  for (std::size_t k = 1; k <= k_rounds && proposed.empty(); ++k) {
     const std::array<OrientedPoint, 2> two{near[0], near[k]};
     const std::array<OrientedPoint, 3> three{near[0], near[k], near[k + 1]};
     propose(plane_through(three));

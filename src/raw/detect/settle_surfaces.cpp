@@ -8,12 +8,10 @@
 
 #include "core/base/parallel.hpp"
 #include "raw/detect/propose.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 namespace {
-
-constexpr std::size_t k_equal_sample = 200;  // points that decide whether two surfaces are one
-constexpr double k_nearly_all = 0.9;
 
 bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, const AgreementLimits& limits,
               double share) {
@@ -25,8 +23,8 @@ std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b,
                                    const AgreementLimits& all_limits) {
   const AgreementLimits limits = all_limits.within(std::max(a.reach, b.reach));
   if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
-  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_equal_sample);
-  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_equal_sample);
+  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_sample);
+  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_sample);
   // A fit is reliable only near its own points, so this test is loose. The common fit must explain nearly all points.
   AgreementLimits wide = limits;
   wide.distance *= 3;
@@ -98,7 +96,7 @@ std::vector<double> costs_of(const Surface& surface, const std::vector<OrientedP
 /// Logarithm of the ratio of the likelihoods of a surface's points: all on it, or each on the nearest of the others.
 /// Two standard errors less if a sample must do. O(surfaces)
 double evidence_for(std::size_t k, const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud) {
-  const std::vector<OrientedPoint> sample = cloud.some_of(surfaces[k].points, k_equal_sample);
+  const std::vector<OrientedPoint> sample = cloud.some_of(surfaces[k].points, k_sample);
   if (sample.empty()) return 0;
   const double noise = surfaces[k].reach / k_deviations;
   std::vector<double> without(sample.size(), cost_of(k_deviations, 1));

@@ -11,6 +11,7 @@
 
 #include "core/base/robust_deviation.hpp"
 #include "raw/detect/propose.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/neighbours.hpp"
 
 namespace cloud2csg {
@@ -18,32 +19,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Neighbours that say on which side of the step a point is; those of the point's own half of the points vote.
-constexpr std::size_t k_around = 16;
-/// Neighbours whose average a surface must match. The average of 8 points with noise is an eighth of the variance
-/// worse than the true surface, and adapts to form errors that are larger.
-constexpr std::size_t k_averaged = 8;
-/// Share of neighbours on the same side, for points that determine the two surfaces.
-constexpr double k_clear_share = 0.75;
-/// Distance of the two surfaces where their points meet, over that of the smaller one's points.
-constexpr double k_least_gap = 0.7;
-constexpr int k_rounds = 6;
-constexpr std::size_t k_least_window = 16;  // successive points that hint at a step
-constexpr std::size_t k_patch = 32;         // points for an estimate of the noise
-
 /// Standard deviation of the points around the mean of their patch, of the median patch. Successive points are near
 /// each other.
 double noise_of(const std::vector<double>& distances, double least) {
   std::vector<double> variances;
-  for (std::size_t first = 0; first + k_patch <= distances.size(); first += k_patch) {
-    const auto patch = std::span(distances).subspan(first, k_patch);
+  for (std::size_t first = 0; first + k_around <= distances.size(); first += k_around) {
+    const auto patch = std::span(distances).subspan(first, k_around);
     double sum = 0;
     double squares = 0;
     for (const double d : patch) {
       sum += d;
       squares += d * d;
     }
-    variances.push_back((squares - sum * sum / k_patch) / (k_patch - 1));
+    variances.push_back((squares - sum * sum / k_around) / (k_around - 1));
   }
   return variances.empty() ? least : std::max(least, std::sqrt(median_of(variances)));
 }
@@ -56,7 +44,7 @@ double strongest_offset(const std::vector<double>& distances, double noise) {
   for (const double d : distances) sums.push_back(sums.back() + std::clamp(d, -most, most));
   double best = k_evidence * noise * noise;
   std::span<const double> strongest;
-  for (std::size_t width = k_least_window; width <= distances.size(); width *= 2) {
+  for (std::size_t width = 2 * k_nearest; width <= distances.size(); width *= 2) {
     for (std::size_t first = 0; first + width <= distances.size(); first += width / 2) {
       const double sum = sums[first + width] - sums[first];
       if (sum * sum / static_cast<double>(width) <= best) continue;
@@ -71,7 +59,6 @@ double strongest_offset(const std::vector<double>& distances, double noise) {
 /// The least cost of points whose distances are a quadratic function of their places, found by iterated trimming.
 double smooth_cost(std::span<const double> distances, std::span<const Vector3d> places, double noise) {
   constexpr int k_terms = 10;
-  constexpr int k_trims = 5;
   using Terms = Eigen::Matrix<double, k_terms, 1>;
   Vector3d middle = Vector3d::Zero();
   for (const Vector3d& p : places) middle += p / static_cast<double>(places.size());
@@ -85,7 +72,7 @@ double smooth_cost(std::span<const double> distances, std::span<const Vector3d> 
   };
   Terms factors = Terms::Zero();
   double least = 0;
-  for (int trim = 0; trim <= k_trims; ++trim) {
+  for (int trim = 0; trim <= k_rounds; ++trim) {
     Eigen::Matrix<double, k_terms, k_terms> squares = Eigen::Matrix<double, k_terms, k_terms>::Zero();
     Terms products = Terms::Zero();
     double cost = 0;
@@ -98,7 +85,7 @@ double smooth_cost(std::span<const double> distances, std::span<const Vector3d> 
       products += distances[k] * terms;
     }
     least = trim == 0 ? cost : std::min(least, cost);
-    if (trim == k_trims) break;
+    if (trim == k_rounds) break;
     // On a plane or sphere, the terms depend on each other.
     constexpr double k_ridge = 1e-9;
     squares.diagonal().array() += k_ridge * static_cast<double>(places.size());
@@ -215,9 +202,8 @@ bool matches_averages(const TwoSurfaces& two, const NearPoints& near, std::size_
   for (std::size_t k = 0; k < near.points.size(); ++k) {
     if (two.side[k] != smaller || share_on_own_side(two, near, k) < 1) continue;
     double sum = 0;
-    for (const std::uint32_t j : near.neighbours.of(k).first(k_averaged)) sum += near.distances[j];
-    const double more =
-        cost_of(two.distance(k), near.noise) - cost_of(near.distances[k] - sum / k_averaged, near.noise);
+    for (const std::uint32_t j : near.neighbours.of(k).first(k_nearest)) sum += near.distances[j];
+    const double more = cost_of(two.distance(k), near.noise) - cost_of(near.distances[k] - sum / k_nearest, near.noise);
     excess += more;
     squares += more * more;
     ++count;
@@ -237,7 +223,7 @@ bool are_apart(const TwoSurfaces& two, const NearPoints& near) {
     ++counts[is_clear];
   }
   if (counts[0] == 0 || counts[1] == 0) return true;
-  return gaps[0] / static_cast<double>(counts[0]) >= k_least_gap * gaps[1] / static_cast<double>(counts[1]);
+  return gaps[0] / static_cast<double>(counts[0]) >= k_clear_share * gaps[1] / static_cast<double>(counts[1]);
 }
 
 /// The surfaces with the points within their reach. A point beyond that of its own side may be on the other.

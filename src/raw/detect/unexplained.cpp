@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/geometry/neighbour_tree.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/orientation.hpp"
@@ -12,21 +13,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Few enough for a band of three rows. At 6 and at 24, one more of 248 cylinders of Fit4CAD is lost.
-constexpr std::size_t k_near = 12;
 /// Free points among the nearest of a free point, without which it strayed from a surface. At 1, points that the noise
 /// carried off their surfaces take time; at 4, one more cylinder is lost.
 constexpr std::size_t k_least_free = 2;
 /// Tolerance of a local plane, relative to its radius. Bands are often as narrow as their curvature is sharp.
 constexpr double k_bend = 0.25;
-/// The second sweep orients points whose neighbours were all free.
-constexpr int k_sweeps = 2;
 
 /// The free points that lie together, and all nearest points of these. Ascending.
 std::vector<std::uint32_t> points_together(const FreePoints& points, const Points& all, const NeighbourTree& tree,
                                            const RunContext& run) {
   const std::vector<std::uint32_t>& free = points.list();
-  const NeighbourTable table = find_neighbours_of(free, all, tree, k_near, run);
+  const NeighbourTable table = find_neighbours_of(free, all, tree, k_voters, run);
   std::vector<std::uint32_t> together;
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto is_free = [&](std::uint32_t i) { return points.is_free(i); };
@@ -43,7 +40,7 @@ std::vector<std::uint32_t> points_together(const FreePoints& points, const Point
 /// Fits normals to the points alone, on the side of their old ones.
 void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& positions, double noise,
                             const RunContext& run) {
-  const NeighbourTable near = find_neighbours(positions, NeighbourTree(positions), k_near, run);
+  const NeighbourTable near = find_neighbours(positions, NeighbourTree(positions), k_voters, run);
   if (near.width < 3) return;
   const std::vector<LocalPlane> planes = fit_local_planes(positions, near, noise, k_bend, run);
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -55,12 +52,12 @@ void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& po
 /// Turns the normals of the part so that they agree with those of the explained points around it, across its edges.
 void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, const NeighbourTree& tree,
                  const RunContext& run) {
-  const NeighbourTable near = find_neighbours_of(part.index, all, tree, k_near, run);
+  const NeighbourTable near = find_neighbours_of(part.index, all, tree, k_voters, run);
   std::vector<Vector3d> normals(all.size(), Vector3d::Zero());  // zero: not known yet
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (!points.is_free(i)) normals[i] = points[i].normal;
   }
-  for (int sweep = 0; sweep < k_sweeps; ++sweep) {
+  for (int sweep = 0; sweep < k_rounds; ++sweep) {
     for (std::size_t k = 0; k < part.size(); ++k) {
       OrientedPoint& point = part.points[k];
       double votes = 0;

@@ -5,6 +5,7 @@
 
 #include "core/geometry/spatial_order.hpp"
 #include "core/geometry/subset.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 
@@ -56,11 +57,10 @@ WorkCloud make_work_cloud(const PointCloud& cloud) {
 }
 
 std::vector<PointRun> runs_of(std::span<const OrientedPoint> points) {
-  constexpr std::size_t k_run = 64;
   constexpr double k_rounding = 1e-12;  // of distances, in a cloud of diagonal 1
   std::vector<PointRun> runs;
-  for (std::size_t first = 0; first < points.size(); first += k_run) {
-    const std::size_t last = std::min(first + k_run, points.size());
+  for (std::size_t first = 0; first < points.size(); first += k_chunk_points) {
+    const std::size_t last = std::min(first + k_chunk_points, points.size());
     AlignedBox box;
     for (const OrientedPoint& p : points.subspan(first, last - first)) box.extend(p.position);
     runs.push_back({.first = static_cast<std::uint32_t>(first),

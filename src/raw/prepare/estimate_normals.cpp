@@ -12,6 +12,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/robust_deviation.hpp"
 #include "core/geometry/subset.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/orientation.hpp"
@@ -22,21 +23,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_doubt_links = 12;
-constexpr double k_check_angle_deg = 35.0;
 constexpr double k_check_agreement = 0.8;   ///< at places that are flat
 constexpr double k_rough_agreement = 0.65;  ///< at all places: true normals of thin parts in noise keep to 0.73
 constexpr double k_flat_spacings = 0.01;    ///< deviation of a flat place; less is rounding
-constexpr std::size_t k_check_sample = 2048;
-constexpr std::size_t k_check_field = 16'384;  ///< points whose winding numbers separate inside from outside
 constexpr std::uint64_t k_field_stage = 0x6669'656c'64;
 constexpr double k_sure_error = 0.1;  ///< mean error of winding numbers on a closed surface; noise leaves less
-/// Normals estimated anew must leave less than this share of the error. Those of a third to a half of a closed part
-/// left 0.91 or more of the error of right ones, in all but one of 48 clouds, and 0.65 or less where three tenths of
-/// the surface were flipped. Twice as much would replace right normals, half as much would keep flipped ones.
-constexpr double k_clear_share = 0.7;
-constexpr double k_wall_cosine = 0.7;  ///< least, between normals on the two sides of a wall
-constexpr double k_wall_rise = 0.35;   ///< least sine of the step across a wall
+constexpr double k_wall_rise = 0.35;  ///< least sine of the step across a wall
 constexpr std::uint64_t k_check_stage = 0x6e6f'726d;
 
 /// Whether the normals of most neighbours are on the same side. A neighbour across a thin wall, above or below the
@@ -48,11 +40,11 @@ bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::
     const double cosine = cloud.normals[i].dot(cloud.normals[j]);
     const Eigen::Vector3d step = places[j] - places[i];
     const double rise = std::abs(step.dot(cloud.normals[i]));
-    const bool is_across = std::abs(cosine) > k_wall_cosine && rise > k_wall_rise * step.norm();
+    const bool is_across = std::abs(cosine) > k_alike_cosine && rise > k_wall_rise * step.norm();
     if (!is_across) {
       votes += cosine > 0.0 ? 1.0 : -1.0;
     } else if (cosine > 0.0) {
-      votes += rise > k_noise_tolerance * noise ? -1.0 : 1.0;
+      votes += rise > k_deviations * noise ? -1.0 : 1.0;
     }
   }
   return votes >= 0.0;
@@ -76,7 +68,7 @@ std::vector<std::uint32_t> contradicted(const Points& places, const Points& norm
                                         const std::vector<char>& is_doubtful) {
   std::vector<std::uint32_t> doubtful;
   for (std::uint32_t i = 0; i < places.size(); ++i) {
-    const std::span<const std::uint32_t> near = neighbours.of(i).first(std::min(k_doubt_links, neighbours.width));
+    const std::span<const std::uint32_t> near = neighbours.of(i).first(std::min(k_voters, neighbours.width));
     const bool is_contradicted = !is_doubtful.empty() && is_doubtful[i] != 0;
     if (is_contradicted || mean_agreement(places, normals, i, near) < 0.0) doubtful.push_back(i);
   }
@@ -155,7 +147,7 @@ namespace {
 /// Judges consistent normals by the winding numbers of some places on the surface.
 NormalsVerdict check_by_winding(const PointCloud& cloud, const Points& places, const RunContext& run) {
   PointCloud field =
-      select_points(cloud, one_of_every_few(cloud.size(), k_check_field, RandomStream(0, k_field_stage)));
+      select_points(cloud, one_of_every_few(cloud.size(), 4 * k_large_sample, RandomStream(0, k_field_stage)));
   const LevelErrors given = level_errors(field, places, run);
   if (given.outward <= k_sure_error) return NormalsVerdict::outward;
   if (given.inward <= k_sure_error) return NormalsVerdict::inward;
@@ -202,21 +194,21 @@ NormalsVerdict check_normals(const PointCloud& cloud, const Scale& scale, const 
   const std::size_t width = std::min(plane_neighbours(scale) + 1, cloud.size());
   std::vector<std::uint32_t> indices(width);
   std::vector<double> squares(width);
-  std::vector<std::uint32_t> sample(std::min(k_check_sample, cloud.size()));
+  std::vector<std::uint32_t> sample(std::min(k_sample, cloud.size()));
   const double flat = k_flat_spacings * scale.spacing;
-  constexpr double k_no_plane = std::numeric_limits<double>::infinity();
   std::vector<CheckedNormal> checks;
   for (std::uint32_t& i : sample) {
     i = random.below(cloud.size());
     const std::size_t found = tree.find(local.points[i], indices, squares);
     const std::span<const std::uint32_t> near = std::span(indices).first(found).subspan(1);
     const double radius = std::sqrt(squares[found - 1]);
-    const double tolerance = std::max(k_noise_tolerance * scale.noise, k_bend_tolerance * radius);
+    const double tolerance = std::max(k_deviations * scale.noise, k_bend_tolerance * radius);
     const LocalPlane plane = fit_local_plane(local.points, i, near, tolerance);
     const double cosine = std::abs(plane.normal.dot(cloud.normals[i]));
-    checks.push_back({.roughness = radius > 0.0 ? std::max(plane.deviation, flat) : k_no_plane,
-                      .is_across = cosine >= std::cos(k_check_angle_deg * std::numbers::pi / 180.0),
-                      .is_alike = agrees_with_neighbours(cloud, local.points, i, near, scale.noise)});
+    checks.push_back(
+        {.roughness = radius > 0.0 ? std::max(plane.deviation, flat) : std::numeric_limits<double>::infinity(),
+         .is_across = cosine >= k_alike_cosine,
+         .is_alike = agrees_with_neighbours(cloud, local.points, i, near, scale.noise)});
   }
   run.throw_if_stopped();
   if (!agree(checks, k_rough_agreement) || !agree(flatter_half(checks), k_check_agreement)) {

@@ -11,6 +11,7 @@
 #include "cloud2csg/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/geometry/subset.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/neighbours.hpp"
 
@@ -20,23 +21,12 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t k_least_points = 10;
-constexpr std::size_t k_sample = 512;
-constexpr std::size_t k_sample_chunk = 64;
-constexpr std::size_t k_spacing_neighbours = 8;
 constexpr std::array<std::size_t, 5> k_sizes{24, 48, 96, 192, 384};  ///< neighbourhoods for fitting quadrics
 /// A neighbourhood with fewer deviations in its radius is a ball of noise, and its plane is chance. Half as much is
 /// such a ball, twice as much takes neighbourhoods that reach around edges and across walls.
 constexpr double k_least_radius = 4.0;
-/// Small balls of noise have up to 3.3 deviations in their radius by chance.
-constexpr double k_chance_radius = 3.5;
-/// Ratio of wide to narrow radii of equally many neighbours. Clouds without outliers are below.
-constexpr double k_uneven_density = 1.45;
 /// Quantile of the sample's deviations; edges and details are above.
 constexpr double k_smooth_share = 0.35;
-/// Points beyond these quantiles along an axis count only if other points are near.
-constexpr double k_core_share = 0.005;
-constexpr double k_stray_spacings = 6.0;
-constexpr std::size_t k_stray_neighbours = 4;
 constexpr std::uint64_t k_sampling_stage = 0x7363'616c'65;
 
 double quantile(std::vector<double> values, double share) {
@@ -57,13 +47,13 @@ Neighbourhoods measure(const Points& points, const NeighbourTree& tree, std::spa
   for (std::vector<double>* values : {&result.spacings, &result.radii, &result.deviations}) {
     values->resize(sample.size());
   }
-  for_each_index((sample.size() + k_sample_chunk - 1) / k_sample_chunk, run, [&](std::size_t chunk) {
+  for_each_index((sample.size() + k_chunk_points - 1) / k_chunk_points, run, [&](std::size_t chunk) {
     std::vector<std::uint32_t> indices(std::min(size, points.size()));
     std::vector<double> squares(indices.size());
-    const std::size_t end = std::min(sample.size(), (chunk + 1) * k_sample_chunk);
-    for (std::size_t s = chunk * k_sample_chunk; s < end; ++s) {
+    const std::size_t end = std::min(sample.size(), (chunk + 1) * k_chunk_points);
+    for (std::size_t s = chunk * k_chunk_points; s < end; ++s) {
       tree.find(points[sample[s]], indices, squares);
-      const std::size_t near = std::min(k_spacing_neighbours, indices.size() - 1);
+      const std::size_t near = std::min(k_nearest, indices.size() - 1);
       result.spacings[s] = std::sqrt(std::numbers::pi * squares[near] / static_cast<double>(near));
       result.radii[s] = std::sqrt(squares.back());
       result.deviations[s] = indices.size() < 12 ? 0.0 : quadric_deviation(points, indices);
@@ -74,7 +64,7 @@ Neighbourhoods measure(const Points& points, const NeighbourTree& tree, std::spa
 
 /// At very uneven density, only the denser half: even many outliers are mostly elsewhere.
 Neighbourhoods credible(const Neighbourhoods& found) {
-  if (quantile(found.radii, 0.8) < k_uneven_density * quantile(found.radii, 0.2)) return found;
+  if (quantile(found.radii, 0.8) < k_wide_gap * quantile(found.radii, 0.2)) return found;
   const double limit = quantile(found.radii, 0.5);
   Neighbourhoods dense;
   for (std::size_t s = 0; s < found.radii.size(); ++s) {
@@ -95,11 +85,10 @@ double seen_share(double radius_ratio) {
 }
 
 /// Uses the smallest neighbourhoods that the noise allows. Larger ones have more edges and take longer. If noise fills
-/// all of them, the flattest count, or the largest if all look like balls of noise.
+/// all of them, the largest counts.
 void measure_spacing_and_noise(Scale& scale, const Points& points, const NeighbourTree& tree, const RunContext& run) {
   const std::vector<std::uint32_t> sample =
       one_of_every_few(points.size(), k_sample, RandomStream(0, k_sampling_stage));
-  double flattest = 0.0;
   for (const std::size_t size : k_sizes) {
     if (size > k_sizes.front() && size > points.size() / 4) break;
     const Neighbourhoods found = measure(points, tree, sample, size, run);
@@ -107,8 +96,7 @@ void measure_spacing_and_noise(Scale& scale, const Points& points, const Neighbo
     const Neighbourhoods some = credible(found);
     const double deviation = quantile(some.deviations, k_smooth_share);
     const double ratio = deviation > 0.0 ? quantile(some.radii, 0.5) / deviation : k_least_radius;
-    if (ratio > flattest || flattest < k_chance_radius) scale.noise = deviation / seen_share(ratio);
-    flattest = std::max(flattest, ratio);
+    scale.noise = deviation / seen_share(ratio);
     if (ratio >= k_least_radius) break;
   }
 }
@@ -118,17 +106,17 @@ AlignedBox box_without_strays(const Points& points, const NeighbourTree& tree, d
   Vector3d high;
   const std::array<const std::vector<double>*, 3> axes{&points.x, &points.y, &points.z};
   for (int axis = 0; axis < 3; ++axis) {
-    low[axis] = quantile(*axes[static_cast<std::size_t>(axis)], k_core_share);
-    high[axis] = quantile(*axes[static_cast<std::size_t>(axis)], 1.0 - k_core_share);
+    low[axis] = quantile(*axes[static_cast<std::size_t>(axis)], k_negligible_share);
+    high[axis] = quantile(*axes[static_cast<std::size_t>(axis)], 1.0 - k_negligible_share);
   }
   AlignedBox box(low, high);
   const AlignedBox core = box;
-  std::array<std::uint32_t, k_stray_neighbours + 1> indices{};
-  std::array<double, k_stray_neighbours + 1> squares{};
+  std::array<std::uint32_t, k_nearest + 1> indices{};
+  std::array<double, k_nearest + 1> squares{};
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (core.contains(points[i])) continue;
     const std::size_t found = tree.find(points[i], indices, squares);
-    if (std::sqrt(squares[found - 1]) <= k_stray_spacings * spacing) box.extend(points[i]);
+    if (std::sqrt(squares[found - 1]) <= k_isolated_spacings * spacing) box.extend(points[i]);
   }
   return box;
 }

@@ -10,6 +10,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/base/robust_deviation.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -17,12 +18,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Neighbours for an angle error, about 2 noise / (radius sqrt(neighbours)), of three degrees; more at high noise.
-constexpr double k_least_neighbours = 20.0;
-constexpr double k_most_neighbours = 96.0;
 constexpr double k_neighbours_a_noise = 60.0;
 constexpr int k_trials = 16;
-constexpr int k_refinements = 3;
 constexpr double k_tukey = 4.685;  // deviations beyond which the biweight is zero: 95 % efficient for normal noise
 /// In tolerances: with less deviation there is only one plane.
 constexpr double k_flat = 0.5;
@@ -135,7 +132,7 @@ double deviation_of(const Places& places, const Plane& plane) {
 }
 
 Plane refined(const Places& places, Plane plane, double tolerance) {
-  for (int step = 0; step < k_refinements; ++step) {
+  for (int step = 0; step < k_rounds; ++step) {
     Moments moments;
     for (const Vector3d& place : places) {
       const double ratio = plane.height(place) / (1.5 * tolerance);
@@ -194,14 +191,14 @@ std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTa
   if (neighbours.width < 3) return planes;
   for_each_index_by_chunks(points.size(), k_chunk_points, run, share, [&](std::size_t i) {
     const double radius = neighbours.distances_of(i).back();
-    planes[i] = fit_local_plane(points, i, neighbours.of(i), std::max(k_noise_tolerance * noise, bend * radius));
+    planes[i] = fit_local_plane(points, i, neighbours.of(i), std::max(k_deviations * noise, bend * radius));
   });
   return planes;
 }
 
 std::size_t plane_neighbours(const Scale& scale) {
-  const double wanted = k_least_neighbours + k_neighbours_a_noise * std::max(0.0, scale.noise / scale.spacing - 0.1);
-  return static_cast<std::size_t>(std::min(wanted, k_most_neighbours));
+  const double more = k_neighbours_a_noise * std::max(0.0, scale.noise / scale.spacing - 0.1);
+  return k_around + static_cast<std::size_t>(std::min(more, 3.0 * k_around));
 }
 
 LocalFits fit_locally(const PointCloud& cloud, std::size_t width, double noise, const RunContext& run,
@@ -237,7 +234,7 @@ double quadric_deviation(const Points& points, std::span<const std::uint32_t> in
   Vector6d quadric = Vector6d::Zero();
   double reach = std::max(k_tukey * start / radius, 1e-14);
   double deviation = 0.0;
-  for (int step = 0; step <= k_refinements; ++step) {
+  for (int step = 0; step <= k_rounds; ++step) {
     Matrix6d normal_matrix = 1e-12 * Matrix6d::Identity();
     Vector6d right = Vector6d::Zero();
     for (const Vector3d& place : places) {

@@ -9,8 +9,6 @@
 
 namespace cloud2csg {
 
-/// Tolerance of a local plane in multiples of the noise.
-constexpr double k_noise_tolerance = 3.0;
 /// Tolerance relative to distance: the bend of a sphere ten times as large as the neighbourhood.
 constexpr double k_bend_tolerance = 0.05;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/parallel.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 

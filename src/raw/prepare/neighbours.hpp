@@ -12,9 +12,6 @@
 
 namespace cloud2csg {
 
-/// Points a task in parallel loops.
-constexpr std::size_t k_chunk_points = 512;
-
 /// Points relative to the middle of their box, to avoid cancellation in products of coordinates far from the origin.
 struct CentredPoints {
   Points points;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/patches.hpp"
 
@@ -17,20 +18,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_links = 12;  ///< neighbours that a point votes with
-/// Patches are smaller than details, and few enough to consider all pairs.
-constexpr std::size_t k_wanted_patches = 2000;
-constexpr std::size_t k_least_patch = 5;
-constexpr std::size_t k_smallest_largest_patch = 16;
 constexpr std::size_t k_most_patches = 4096;
-/// In radii: beyond, a single dipole approximates a patch.
-constexpr double k_far = 3.0;
-/// Share of the points below which a body does not count.
-constexpr double k_body_share = 0.002;
 /// A winding number this far from one half contradicts the orientation.
 constexpr double k_doubt = 0.35;
-constexpr int k_spreads = 8;
-constexpr int k_sweeps = 3;
 
 struct Cloud {
   const Points& places;
@@ -40,7 +30,7 @@ struct Cloud {
 
   [[nodiscard]] std::size_t size() const { return places.size(); }
   [[nodiscard]] std::span<const std::uint32_t> linked(std::size_t i) const {
-    return neighbours.of(i).first(std::min(k_links, neighbours.width));
+    return neighbours.of(i).first(std::min(k_voters, neighbours.width));
   }
   /// Cubed, so that certain votes outweigh many vague ones.
   [[nodiscard]] double vote(std::size_t i, std::size_t j) const {
@@ -110,7 +100,8 @@ PatchSource source_of(const Cloud& cloud, const Patches& patches, std::span<cons
     source.all.strength += source.dipoles.back().strength;
   }
   for (const Dipole& dipole : source.dipoles) {
-    source.near_square = std::max(source.near_square, k_far * k_far * (dipole.place - source.all.place).squaredNorm());
+    source.near_square =
+        std::max(source.near_square, k_far_radii * k_far_radii * (dipole.place - source.all.place).squaredNorm());
   }
   return source;
 }
@@ -153,9 +144,9 @@ double neighbours_votes(const Cloud& cloud, std::uint32_t i, const std::vector<c
   return votes;
 }
 
-/// Points outside all patches follow their neighbours, the closest to a patch first.
+/// Points outside all patches follow their neighbours, the closest to a patch first. Each round reaches further.
 void spread(const Cloud& cloud, std::vector<char>& flipped, std::vector<char>& is_known) {
-  for (int round = 0; round < k_spreads; ++round) {
+  while (true) {
     std::vector<char> next = flipped;
     std::vector<char> known_next = is_known;
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
@@ -174,7 +165,7 @@ void spread(const Cloud& cloud, std::vector<char>& flipped, std::vector<char>& i
 /// Flips points whose neighbours outvote them, such as single points at edges without a local plane.
 void sweep(const Cloud& cloud, std::vector<char>& flipped) {
   const std::vector<char> all(cloud.size(), 1);
-  for (int round = 0; round < k_sweeps; ++round) {
+  for (int round = 0; round < k_rounds; ++round) {
     std::vector<char> next = flipped;
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
       if (neighbours_votes(cloud, i, flipped, all) < 0.0) next[i] ^= 1;
@@ -189,21 +180,15 @@ std::size_t count_bodies(const Patches& patches, const PatchSigns& signs, std::s
   for (std::size_t patch = 0; patch < patches.points.size(); ++patch) {
     sizes[signs.body_of[patch]] += patches.points[patch].size();
   }
-  const double least = k_body_share * static_cast<double>(points);
+  const double least = k_negligible_share * static_cast<double>(points);
   return static_cast<std::size_t>(std::count_if(
       sizes.begin(), sizes.end(), [&](const auto& body) { return static_cast<double>(body.second) >= least; }));
 }
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_asked = 12;  ///< neighbours that a point asks
 /// Cosine of normal and line of sight. Below it, an error of the normal may flip its sign (11 degrees).
 constexpr double k_grazing_cosine = 0.2;
-/// Majorities of the neighbours' weight. With less, neighbours are on both sides of a wall and tell nothing.
-constexpr double k_grazing_majority = 0.6;
-/// At an edge the plane may belong to the adjacent face, which the sensor saw from behind or not at all.
-constexpr double k_clear_majority = 0.9;
-constexpr int k_rounds = 3;
 
 /// Cosine between a normal and the direction to the sensor; 0 if sensor and place coincide.
 double sight_cosine(const Vector3d& place, const Vector3d& normal, const Vector3d& sensor) {
@@ -225,8 +210,8 @@ Orientation find_orientation(const Points& places, const Points& normals, const 
                              const std::vector<double>& areas, double noise, const RunContext& run,
                              const StageShare& share) {
   const Cloud cloud{places, normals, neighbours, areas};
-  const std::size_t most = std::max(k_smallest_largest_patch, cloud.size() / k_wanted_patches);
-  const Patches patches = largest_of(grow_patches(places, normals, neighbours, noise, k_least_patch, most));
+  const std::size_t most = std::max(2 * k_nearest, cloud.size() / (k_most_patches / 2));
+  const Patches patches = largest_of(grow_patches(places, normals, neighbours, noise, k_nearest, most));
   run.throw_if_stopped();
   std::vector<double> weights;
   for (const std::vector<std::uint32_t>& points : patches.points) {
@@ -260,7 +245,7 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
     signs[i] = sight_cosine(places[i], normals[i], sensors[i]);
     is_grazing[i] = std::abs(signs[i]) < k_grazing_cosine ? 1 : 0;
   }
-  const std::size_t links = std::min(k_asked, neighbours.width);
+  const std::size_t links = std::min(k_voters, neighbours.width);
   for (int round = 0; round < k_rounds; ++round) {
     std::vector<double> next = signs;
     for_each_index_by_chunks(places.size(), k_chunk_points, run, [&](std::size_t i) {
@@ -271,7 +256,7 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
         votes += vote * vote * vote * signs[j];
         weight += std::abs(vote * vote * vote * signs[j]);
       }
-      const double majority = is_grazing[i] != 0 ? k_grazing_majority : k_clear_majority;
+      const double majority = is_grazing[i] != 0 ? k_clear_share : k_nearly_all;
       if (std::abs(votes) > majority * weight) next[i] = votes / static_cast<double>(links);
     });
     signs = std::move(next);

@@ -13,6 +13,7 @@
 
 #include "cloud2csg/advanced/prepare.hpp"
 #include "core/base/parallel.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/neighbours.hpp"
 
 namespace cloud2csg {
@@ -20,21 +21,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double k_isolated_spacings = 6.0;
 /// Least inlier share of a credible neighbour's plane.
 constexpr double k_planar_support = 0.4;
 /// For a cloud with outliers: least inlier share above that of a random plane.
 constexpr double k_beyond_chance = 0.25;
-constexpr double k_most_support = 0.8;
 /// Share of the credible neighbours whose planes keep a point. At a corner of three faces it is about a third.
 constexpr double k_least_agreement = 0.17;
-/// The same for a suspected outlier, which lies on some planes by chance.
-constexpr double k_suspect_agreement = 0.4;
-/// A point with a gap this much larger than its neighbours' gaps is suspect.
-constexpr double k_suspect_gap = 1.4;
-constexpr std::size_t k_gap_neighbours = 8;
-/// Fewer credible neighbours are no evidence: a wire or a speck has no planes.
-constexpr std::size_t k_least_witnesses = 6;
 
 using Indices = std::vector<std::uint32_t>;
 
@@ -46,7 +38,7 @@ struct Witnesses {
 };
 
 double gap_of(const LocalFits& fits, std::size_t point) {
-  return fits.neighbours.distances_of(point)[std::min(k_gap_neighbours, fits.neighbours.width) - 1];
+  return fits.neighbours.distances_of(point)[std::min(k_nearest, fits.neighbours.width) - 1];
 }
 
 /// Whether the plane of a point is better than chance.
@@ -54,22 +46,22 @@ bool has_plane(const LocalFits& fits, std::size_t point, double noise, Strictnes
   if (strictness == Strictness::trusting) return fits.planes[point].support >= k_planar_support;
   // The share of a uniformly filled ball that a slab through its middle holds.
   const double reach = fits.neighbours.distances_of(point).back();
-  const double half = std::clamp(k_noise_tolerance * noise / reach, k_bend_tolerance, 1.0);
+  const double half = std::clamp(k_deviations * noise / reach, k_bend_tolerance, 1.0);
   const double by_chance = half * (1.5 - 0.5 * half * half);
-  return fits.planes[point].support >= std::clamp(by_chance + k_beyond_chance, k_planar_support, k_most_support);
+  return fits.planes[point].support >= std::clamp(by_chance + k_beyond_chance, k_planar_support, k_clear_share);
 }
 
 Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, Strictness strictness,
                         std::span<const PointFate> fates) {
   Witnesses witnesses;
-  std::array<double, k_judges> gaps{};
-  for (const std::uint32_t neighbour : fits.neighbours.of(point).first(std::min(k_judges, fits.neighbours.width))) {
+  std::array<double, k_around> gaps{};
+  for (const std::uint32_t neighbour : fits.neighbours.of(point).first(std::min(k_around, fits.neighbours.width))) {
     const LocalPlane& plane = fits.planes[neighbour];
     if (fates[neighbour] == PointFate::isolated || !has_plane(fits, neighbour, noise, strictness)) continue;
     gaps[witnesses.count++] = gap_of(fits, neighbour);
     const Vector3d to = fits.points[point] - fits.points[neighbour];
     const double height = std::abs(plane.normal.dot(to) + plane.offset);
-    witnesses.agreeing += height <= k_noise_tolerance * noise + k_bend_tolerance * to.norm() ? 1 : 0;
+    witnesses.agreeing += height <= k_deviations * noise + k_bend_tolerance * to.norm() ? 1 : 0;
   }
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(witnesses.count / 2);
   std::nth_element(gaps.begin(), middle, gaps.begin() + static_cast<std::ptrdiff_t>(witnesses.count));
@@ -79,16 +71,16 @@ Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, 
 
 bool are_enough(const Witnesses& witnesses, const LocalFits& fits, std::size_t point, Strictness strictness) {
   const bool is_suspect =
-      strictness == Strictness::suspicious && (gap_of(fits, point) > k_suspect_gap * witnesses.usual_gap ||
-                                               2 * witnesses.count < std::min(k_judges, fits.neighbours.width));
-  const double least = is_suspect ? k_suspect_agreement : k_least_agreement;
+      strictness == Strictness::suspicious && (gap_of(fits, point) > k_wide_gap * witnesses.usual_gap ||
+                                               2 * witnesses.count < std::min(k_around, fits.neighbours.width));
+  const double least = is_suspect ? 2 * k_least_agreement : k_least_agreement;
   return static_cast<double>(witnesses.agreeing) >= least * static_cast<double>(witnesses.count);
 }
 
 bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Strictness strictness,
                    std::span<const PointFate> fates) {
   const Witnesses witnesses = ask_witnesses(fits, point, noise, strictness, fates);
-  if (witnesses.count < k_least_witnesses) return has_plane(fits, point, noise, strictness);
+  if (witnesses.count < k_nearest) return has_plane(fits, point, noise, strictness);
   return are_enough(witnesses, fits, point, strictness);
 }
 
@@ -104,19 +96,16 @@ void isolate_without_witnesses(const LocalFits& fits, const Indices& far, double
       const auto is_isolated = [&](std::uint32_t j) { return fates[j] == PointFate::isolated; };
       if (is_isolated(i) || std::ranges::none_of(near, is_isolated)) continue;
       const Witnesses witnesses = ask_witnesses(fits, i, noise, strictness, fates);
-      if (witnesses.count < k_least_witnesses || !are_enough(witnesses, fits, i, strictness)) isolated.push_back(i);
+      if (witnesses.count < k_nearest || !are_enough(witnesses, fits, i, strictness)) isolated.push_back(i);
     }
     for (const std::uint32_t i : isolated) fates[i] = PointFate::isolated;
   } while (!isolated.empty());
 }
 
-/// Neighbours a plane among many outliers. With fewer, noise and chance look alike.
-constexpr std::size_t k_suspicious_neighbours = 48;
 /// A pass that removes this share indicates many outliers. Clean scans lose less, and have sparse parts that must stay.
 constexpr double k_many = 0.06;
-constexpr int k_passes = 4;
-constexpr double k_widest_voxel_spacings = 3.0;
-constexpr double k_widest_voxel_noise = 4.0;
+/// Width of voxels in spacings or deviations of the noise; wider ones would lose details.
+constexpr double k_widest_voxel = 3.0;
 
 Indices without_duplicates(const Points& points) {
   Indices order(points.size());
@@ -131,9 +120,6 @@ Indices without_duplicates(const Points& points) {
   return order;
 }
 
-/// Share of a pass's time for fitting planes.
-constexpr double k_fitting = 0.9;
-
 /// Several passes, because many outliers bend the planes that judge them.
 KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, const RunContext& run) {
   KeptPoints result;
@@ -144,15 +130,15 @@ KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, con
   };
   Strictness strictness = Strictness::trusting;
   const StageShare cleaning("clean", points.size(), "points");
-  for (int pass = 0; pass < k_passes && kept.size() > k_judges; ++pass) {
+  for (int pass = 0; pass < k_rounds && kept.size() > k_around; ++pass) {
     PointCloud remaining{.positions = Points(kept.size())};
     for (std::size_t i = 0; i < kept.size(); ++i) remaining.positions.set(i, points[kept[i]]);
     // Outliers raise the noise estimate, so each pass measures it again.
     if (pass > 0) scale = estimate_scale(remaining, run);
-    const StageShare of_pass = cleaning.part(pass / double{k_passes}, (pass + 1) / double{k_passes});
-    const std::size_t width = strictness == Strictness::trusting ? k_judges : k_suspicious_neighbours;
-    const LocalFits fits = fit_locally(remaining, width, scale.noise, run, of_pass.part(0, k_fitting));
-    const std::vector<PointFate> fates = judge_points(fits, scale, strictness, run, of_pass.part(k_fitting, 1));
+    const StageShare of_pass = cleaning.part(pass / double{k_rounds}, (pass + 1) / double{k_rounds});
+    const std::size_t width = strictness == Strictness::trusting ? k_around : 2 * k_around;
+    const LocalFits fits = fit_locally(remaining, width, scale.noise, run, of_pass.part(0, 0.9));
+    const std::vector<PointFate> fates = judge_points(fits, scale, strictness, run, of_pass.part(0.9, 1));
     if (pass == 0) {
       const std::vector<bool> dense = dense_points(fits, scale);
       for (std::size_t i = 0; i < kept.size(); ++i) is_dense[kept[i]] = dense[i];
@@ -164,7 +150,7 @@ KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, con
     result.doubted.insert(result.doubted.end(), doubted.begin(), doubted.end());
     const std::size_t gone = kept.size() - now.sure.size();
     if (static_cast<double>(gone) >= k_many * static_cast<double>(kept.size())) strictness = Strictness::suspicious;
-    const bool is_settled = static_cast<double>(gone) < k_settled * static_cast<double>(kept.size());
+    const bool is_settled = static_cast<double>(gone) < k_negligible_share * static_cast<double>(kept.size());
     kept = in_the_cloud(now.sure);
     if (is_settled) break;
   }
@@ -206,7 +192,7 @@ KeptPoints one_a_voxel(const Points& points, const KeptPoints& kept, double widt
 KeptPoints thinned(const Points& points, KeptPoints kept, const Scale& scale, std::size_t budget,
                    const RunContext& run) {
   if (kept.sure.size() <= budget) return kept;
-  const double widest = std::max(k_widest_voxel_spacings * scale.spacing, k_widest_voxel_noise * scale.noise);
+  const double widest = k_widest_voxel * std::max(scale.spacing, scale.noise);
   double width = scale.spacing * std::sqrt(static_cast<double>(kept.sure.size()) / static_cast<double>(budget));
   while (true) {
     run.throw_if_stopped();
@@ -223,10 +209,10 @@ std::vector<PointFate> judge_points(const LocalFits& fits, const Scale& scale, S
                                     const RunContext& run, const StageShare& share) {
   const std::size_t count = fits.points.size();
   std::vector<PointFate> fates(count, PointFate::stays);
-  if (fits.neighbours.width < k_least_witnesses) return fates;
+  if (fits.neighbours.width < k_nearest) return fates;
   const std::vector<PointFate> initial = fates;  // others write the new ones
   const auto is_far = [&](std::size_t i) {
-    return fits.neighbours.distances_of(i)[k_least_witnesses - 1] > k_isolated_spacings * scale.spacing;
+    return fits.neighbours.distances_of(i)[k_nearest - 1] > k_isolated_spacings * scale.spacing;
   };
   for_each_index_by_chunks(count, k_chunk_points, run, share, [&](std::size_t i) {
     if (is_on_surface(fits, i, scale.noise, strictness, initial)) return;
@@ -241,10 +227,10 @@ std::vector<PointFate> judge_points(const LocalFits& fits, const Scale& scale, S
 }
 
 std::vector<bool> dense_points(const LocalFits& fits, const Scale& scale) {
-  const double usual_gap = scale.spacing * std::sqrt(k_gap_neighbours / std::numbers::pi);
+  const double usual_gap = scale.spacing * std::sqrt(k_nearest / std::numbers::pi);
   std::vector<bool> is_dense(fits.order.size());
   for (std::size_t i = 0; i < fits.order.size(); ++i) {
-    is_dense[fits.order[i]] = gap_of(fits, i) <= k_suspect_gap * usual_gap;
+    is_dense[fits.order[i]] = gap_of(fits, i) <= k_wide_gap * usual_gap;
   }
   return is_dense;
 }

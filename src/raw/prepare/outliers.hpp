@@ -39,9 +39,4 @@ struct KeptPoints {
 [[nodiscard]] std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> all,
                                                    std::span<const std::uint32_t> some);
 
-/// Neighbours whose planes judge a point.
-constexpr std::size_t k_judges = 24;
-/// A cleaning pass that removes a smaller share of the points is negligible.
-constexpr double k_settled = 0.005;
-
 }  // namespace cloud2csg

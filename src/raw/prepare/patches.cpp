@@ -8,26 +8,16 @@
 #include <queue>
 #include <tuple>
 
+#include "raw/prepare/constants.hpp"
+
 namespace cloud2csg {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t k_links_a_point = 12;
-constexpr std::size_t k_least_near = 8;  ///< neighbours for estimating a point's area
-constexpr double k_least_cosine = 0.9;
-/// Allowed slope of the step beyond the bend: error of the normals.
-constexpr double k_slope = 0.06;
-/// In multiples of the noise: error of places projected onto their planes.
-constexpr double k_height_noise = 0.5;
-
 /// Weight of a vote of two neighbours, relative to a winding number that is wrong by one at one point.
 constexpr double k_vote_weight = 0.1;
-constexpr int k_best_turns = 32;
 constexpr std::size_t k_tried_at_once = 12;
-/// Skips a group whose gain fell below this share in the same round.
-constexpr double k_still_best = 0.7;
-constexpr int k_patch_sweeps = 12;
 /// Share of the total weight below which a gain is rounding.
 constexpr double k_least_gain = 1e-7;
 constexpr std::uint32_t k_none = UINT32_MAX;
@@ -151,7 +141,7 @@ class SignSearch {
       for (std::uint32_t place = begins_[group]; place < ends_[group]; ++place) {
         add(column, fields_.of(leaves_[place]), signs_[leaves_[place]]);
       }
-      if (gain_of(group, column) < k_still_best * gain) continue;
+      if (gain_of(group, column) < k_clear_share * gain) continue;
       turn(group);
       add(rest_, column, -2.0F);
     }
@@ -270,11 +260,11 @@ class SignSearch {
 /// must lie in the surface within the angle between them. Rejects the other side of a wall.
 bool on_one_surface(const Vector3d& step, const Vector3d& normal, const Vector3d& other, double noise) {
   const double cosine = std::abs(normal.dot(other));
-  if (cosine < k_least_cosine) return false;
+  if (cosine < k_alike_cosine) return false;
   // The angle between a chord and its tangents is half of the angle between the tangents.
   const double half_tangent = std::sqrt(std::max(0.0, 1.0 - cosine) / (1.0 + cosine));
   const double rise = std::max(std::abs(step.dot(normal)), std::abs(step.dot(other)));
-  return rise <= (k_slope + 1.25 * half_tangent) * step.norm() + k_height_noise * noise;
+  return rise <= (k_bend_tolerance + 1.25 * half_tangent) * step.norm() + noise;
 }
 
 }  // namespace
@@ -282,13 +272,13 @@ bool on_one_surface(const Vector3d& step, const Vector3d& normal, const Vector3d
 std::vector<double> surface_areas(const Points& places, const Points& normals, const NeighbourTable& neighbours,
                                   double noise) {
   std::vector<double> areas(places.size(), 0.0);
-  const std::size_t near = std::max(std::min(k_least_near, neighbours.width), neighbours.width / 2);
+  const std::size_t near = std::max(std::min(k_nearest, neighbours.width), neighbours.width / 2);
   if (near == 0) return areas;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double radius = neighbours.distances_of(i)[near - 1];
     std::size_t count = 0;
     for (const std::uint32_t j : neighbours.of(i).first(near)) {
-      const bool is_opposite = std::abs(normals[i].dot(normals[j])) >= k_least_cosine &&
+      const bool is_opposite = std::abs(normals[i].dot(normals[j])) >= k_alike_cosine &&
                                !on_one_surface(places[j] - places[i], normals[i], normals[j], noise);
       count += is_opposite ? 0 : 1;
     }
@@ -303,7 +293,7 @@ Patches grow_patches(const Points& places, const Points& normals, const Neighbou
                   .flipped = std::vector<char>(places.size(), 0),
                   .points = {}};
   std::vector<char> is_done(places.size(), 0);
-  const std::size_t links = std::min(k_links_a_point, neighbours.width);
+  const std::size_t links = std::min(k_voters, neighbours.width);
   std::vector<std::uint32_t> patch;
   for (std::uint32_t seed = 0; seed < places.size(); ++seed) {
     if (is_done[seed] != 0) continue;
@@ -339,8 +329,8 @@ PatchSigns find_patch_signs(const PatchFields& fields, std::span<const double> w
                             std::span<const PatchVote> votes, const RunContext& run) {
   Groups groups = GroupBuilder(fields.count, votes).build();
   SignSearch search(fields, weights, votes, groups);
-  for (int turn = 0; turn < k_best_turns && search.turn_best(); ++turn) run.throw_if_stopped();
-  for (int sweep = 0; sweep < k_patch_sweeps && search.sweep(); ++sweep) run.throw_if_stopped();
+  while (search.turn_best()) run.throw_if_stopped();
+  while (search.sweep()) run.throw_if_stopped();
   return {.flipped = search.flipped(), .windings = search.windings(), .body_of = std::move(groups.body_of)};
 }
 

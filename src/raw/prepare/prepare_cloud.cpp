@@ -10,6 +10,7 @@
 #include "cloud2csg/advanced/prepare.hpp"
 #include "core/base/run.hpp"
 #include "core/geometry/subset.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/orientation.hpp"
 #include "raw/prepare/outliers.hpp"
 
@@ -35,7 +36,7 @@ void turn(Points& normals) {
 
 /// Whether removing so many points changes the rest noticeably.
 bool is_much(std::size_t left_out, std::size_t points) {
-  return static_cast<double>(left_out) >= k_settled * static_cast<double>(points);
+  return static_cast<double>(left_out) >= k_negligible_share * static_cast<double>(points);
 }
 
 /// Cleans the cloud. Its normals play no part.

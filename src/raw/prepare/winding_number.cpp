@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/parallel.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/prepare/neighbours.hpp"
 
 namespace cloud2csg {
@@ -15,18 +16,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t k_chunk_places = 256;
-constexpr std::size_t k_area_neighbours = 8;
-constexpr std::size_t k_leaf_points = 8;
-/// In group radii: beyond, moments approximate a group. Above the paper's 2, as there are no third moments.
-constexpr double k_far_radii = 2.5;
-
 }  // namespace
 
 std::vector<double> point_areas(const PointCloud& cloud, const RunContext& run) {
   const CentredPoints local = centred(cloud.positions);
   const NeighbourTree tree(local.points);
-  const NeighbourTable neighbours = find_neighbours(local.points, tree, k_area_neighbours, run);
+  const NeighbourTable neighbours = find_neighbours(local.points, tree, k_nearest, run);
   std::vector<double> areas(cloud.size(), 0.0);
   if (neighbours.width == 0) return areas;
   for (std::size_t i = 0; i < areas.size(); ++i) {
@@ -70,7 +65,7 @@ void WindingField::build(std::size_t first, std::size_t count) {
             .first = static_cast<std::uint32_t>(first),
             .count = static_cast<std::uint32_t>(count),
             .skip = 0,
-            .is_leaf = count <= k_leaf_points};
+            .is_leaf = count <= k_nearest};
   for (const Dipole& dipole : group) {
     node.strength += dipole.strength;
     node.moment += (dipole.position - middle) * dipole.strength.transpose();
@@ -128,7 +123,7 @@ std::vector<double> winding_numbers(const PointCloud& cloud, PointsView places, 
   assert(cloud.has_normals());
   const WindingField field(cloud.positions, cloud.normals, point_areas(cloud, run));
   std::vector<double> numbers(places.size());
-  for_each_index_by_chunks(places.size(), k_chunk_places, run,
+  for_each_index_by_chunks(places.size(), k_chunk_points, run,
                            [&](std::size_t i) { numbers[i] = field.at(places[i]); });
   return numbers;
 }
