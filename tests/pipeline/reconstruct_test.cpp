@@ -205,7 +205,7 @@ TEST(Reconstruct, RefusesAFogOrSaysThatItIsDoubtful) {
 /// Also where the tree of the choice of solids is taken, as of a free form.
 TEST(Reconstruct, MeasuresTheFitOfTheTreeThatItGives) {
   Model wavy{.primitives = {test::placed("ball", Sphere{.radius = 4}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
-  wavy.primitives[0].displacement = Displacement{.frequency = 0.6};
+  wavy.primitives[0].displacement = Displacement{.frequency = 1.5};
   for (const bool is_wavy : {false, true}) {
     const Extraction result = reconstruct(is_wavy ? raw_cloud(wavy, 0.0, 3000) : raw_cloud(plate(), 0.005));
     EXPECT_EQ(result.statistics.cells.has_value(), !is_wavy);

@@ -22,16 +22,17 @@ using Eigen::Vector3d;
 /// Standard deviation of the points around the mean of their patch, of the median patch. Successive points are near
 /// each other.
 double noise_of(const std::vector<double>& distances, double least) {
+  constexpr std::size_t k_patch = 2 * k_around;
   std::vector<double> variances;
-  for (std::size_t first = 0; first + k_around <= distances.size(); first += k_around) {
-    const auto patch = std::span(distances).subspan(first, k_around);
+  for (std::size_t first = 0; first + k_patch <= distances.size(); first += k_patch) {
+    const auto patch = std::span(distances).subspan(first, k_patch);
     double sum = 0;
     double squares = 0;
     for (const double d : patch) {
       sum += d;
       squares += d * d;
     }
-    variances.push_back((squares - sum * sum / k_around) / (k_around - 1));
+    variances.push_back((squares - sum * sum / k_patch) / (k_patch - 1));
   }
   return variances.empty() ? least : std::max(least, std::sqrt(median_of(variances)));
 }
@@ -164,7 +165,9 @@ std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near) {
                   .side = std::vector<std::uint8_t>(near.points.size(), 0)};
   for (double& d : two.distances[1]) d -= near.offset;
   double prior = 0;
-  for (int round = 0; round < k_rounds; ++round) {
+  std::vector<std::uint8_t> before;
+  for (int round = 0; round < 2 * k_rounds && two.side != before; ++round) {
+    before = two.side;
     choose_sides(two, near, prior);
     const auto clear = clear_points(two, near, NearPoints::is_for_fit);
     if (clear[0].empty() || clear[1].empty() || !refit(two, clear, near)) return std::nullopt;
