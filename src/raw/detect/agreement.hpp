@@ -32,12 +32,15 @@ inline double cost_of(double distance, double noise) {
   return off * off / 2;
 }
 
+/// In a cloud of diagonal 1; a larger surface counts as flat.
+constexpr double k_flat_radius = 3;
+
 /// Limits within which a point lies on a surface.
 struct AgreementLimits {
-  double distance;         ///< greatest absolute value, for the noise and a form error, such as that of facets
-  double noise;            ///< standard deviation of the points of an exact surface; at most `distance`
-  double cosine;           ///< least value
-  double most_radius = 3;  ///< in a cloud of diagonal 1; a larger surface counts as flat
+  double distance;  ///< greatest absolute value, for the noise and a form error, such as that of facets
+  double noise;     ///< standard deviation of the points of an exact surface; at most `distance`
+  double cosine;    ///< least value
+  double most_radius = k_flat_radius;
 
   /// Weight of the point: 1 on the surface with its normal, falling to 0 at either limit. Over the distance it is the
   /// logarithm of a density whose scale is unknown between noise and form error (Jeffreys' prior): a surface that

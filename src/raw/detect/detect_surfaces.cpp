@@ -42,7 +42,6 @@ std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimit
   for_each_index(candidates.size(), run, [&](std::size_t i) {
     scores[i] = preference(candidates[i].type) * support_of(candidates[i], subset, limits.agreement);
   });
-  constexpr std::size_t k_best = 6;
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
@@ -65,28 +64,28 @@ std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimit
   return with_simplest_type(with_best_round_type(std::move(**best), points, limits), points, limits);
 }
 
-/// Finds one surface after another until many draws in a row find none. Evidence for a surface are only its points
-/// for which `is_evidence(point)` holds; of a surface without enough evidence, the other points count as taken.
+/// Finds one surface after another until several rounds in a row find none, each with twice as many draws. Evidence for
+/// a surface are only its points for which `is_evidence(point)` holds; of a surface without enough evidence, the other
+/// points count as taken.
 template <typename IsEvidence>
 std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limits, std::uint64_t seed,
                                    const IsEvidence& is_evidence, const RunContext& run, const StageShare& share) {
   constexpr std::size_t k_draws = 64;
-  constexpr std::size_t k_most_draws = 512;
   const auto count = static_cast<double>(points.cloud().size());
   std::vector<GrownSurface> found;
-  std::size_t draws = k_draws;
-  for (std::uint64_t round = 0; draws <= k_most_draws && points.list().size() >= limits.least_points; ++round) {
+  int in_vain = 0;
+  for (std::uint64_t round = 0; in_vain < k_rounds && points.list().size() >= limits.least_points; ++round) {
     run.throw_if_stopped();
     share.report(run, 1 - static_cast<double>(points.list().size()) / count);
-    std::optional<GrownSurface> surface = find_one(points, limits, draws, seed, round, run);
-    draws *= 2;
+    std::optional<GrownSurface> surface = find_one(points, limits, k_draws << in_vain, seed, round, run);
+    ++in_vain;
     if (!surface) continue;
     const auto evidence = std::count_if(surface->points.begin(), surface->points.end(), is_evidence);
     const bool is_enough = static_cast<std::size_t>(evidence) >= limits.least_points;
     if (!is_enough) std::erase_if(surface->points, is_evidence);
     points.take(surface->points);
     if (!is_enough) continue;
-    draws = k_draws;
+    in_vain = 0;
     found.push_back(std::move(*surface));
   }
   return found;
@@ -172,8 +171,7 @@ std::size_t least_points_of(const DetectOptions& options, const Scale& scale, st
 
 /// In a cloud of diagonal 1: the option's value, up to the radius that counts as flat.
 double most_radius_of(const DetectOptions& options, double diagonal) {
-  const double flat = AgreementLimits{.distance = 0, .noise = 0, .cosine = 0}.most_radius;
-  return options.most_size ? std::min(flat, *options.most_size / diagonal) : flat;
+  return options.most_size ? std::min(k_flat_radius, *options.most_size / diagonal) : k_flat_radius;
 }
 
 /// Whether a surface's size is within the options' limits. Surfaces outside are dropped only after detection, so that

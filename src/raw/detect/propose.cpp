@@ -45,7 +45,6 @@ Columns columns_of(std::span<const OrientedPoint> points) {
 /// Whether points of a cloud of diagonal 1 can tell the surface from a simpler one.
 bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
   if (!surface.position.allFinite() || !surface.axis.allFinite()) return false;
-  constexpr double k_most_apex = 3;                  // from the middle of the cloud
   const double least = k_deviations * limits.noise;  // detectable radius
   switch (surface.type) {
     case SurfaceType::plane:
@@ -55,7 +54,7 @@ bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
       return surface.radius > least && surface.radius < limits.most_radius;
     case SurfaceType::cone:
       // Points cannot tell sharper cones from cylinders or blunter ones from planes.
-      return surface.half_angle > 0.035 && surface.half_angle < 1.5 && surface.position.norm() < k_most_apex;
+      return surface.half_angle > 0.035 && surface.half_angle < 1.5 && surface.position.norm() < k_flat_radius;
     case SurfaceType::torus:
       return surface.minor_radius > least && surface.radius > surface.minor_radius &&
              surface.radius < limits.most_radius;

@@ -18,6 +18,8 @@ constexpr std::size_t k_around = 16;
 constexpr std::size_t k_sample = 512;
 /// The same where more precision is worth its time.
 constexpr std::size_t k_large_sample = 4096;
+/// Best candidates that are looked at thoroughly.
+constexpr std::size_t k_best = 8;
 /// Repetitions of a step that settles quickly.
 constexpr int k_rounds = 4;
 /// Of normally distributed points, 1 in 370 is more standard deviations off its surface.
@@ -31,6 +33,8 @@ constexpr double k_wide_gap = 1.4;
 constexpr double k_far_radii = 2.5;
 /// Cosine of two normals of one smooth surface.
 constexpr double k_alike_cosine = 0.8;
+/// Sine of a line's angle to a surface (14 degrees) that is no error of the surface's normal.
+constexpr double k_steep_sine = 0.25;
 /// A clear majority; and a figure below this share of another is clearly less.
 constexpr double k_clear_share = 0.7;
 constexpr double k_nearly_all = 0.9;

@@ -28,7 +28,6 @@ constexpr double k_rough_agreement = 0.65;  ///< at all places: true normals of 
 constexpr double k_flat_spacings = 0.01;    ///< deviation of a flat place; less is rounding
 constexpr std::uint64_t k_field_stage = 0x6669'656c'64;
 constexpr double k_sure_error = 0.1;  ///< mean error of winding numbers on a closed surface; noise leaves less
-constexpr double k_wall_rise = 0.35;  ///< least sine of the step across a wall
 constexpr std::uint64_t k_check_stage = 0x6e6f'726d;
 
 /// Whether the normals of most neighbours are on the same side. A neighbour across a thin wall, above or below the
@@ -40,7 +39,7 @@ bool agrees_with_neighbours(const PointCloud& cloud, const Points& places, std::
     const double cosine = cloud.normals[i].dot(cloud.normals[j]);
     const Eigen::Vector3d step = places[j] - places[i];
     const double rise = std::abs(step.dot(cloud.normals[i]));
-    const bool is_across = std::abs(cosine) > k_alike_cosine && rise > k_wall_rise * step.norm();
+    const bool is_across = std::abs(cosine) > k_alike_cosine && rise > k_steep_sine * step.norm();
     if (!is_across) {
       votes += cosine > 0.0 ? 1.0 : -1.0;
     } else if (cosine > 0.0) {

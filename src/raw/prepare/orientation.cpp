@@ -187,9 +187,6 @@ std::size_t count_bodies(const Patches& patches, const PatchSigns& signs, std::s
 
 using Eigen::Vector3d;
 
-/// Cosine of normal and line of sight. Below it, an error of the normal may flip its sign (11 degrees).
-constexpr double k_grazing_cosine = 0.2;
-
 /// Cosine between a normal and the direction to the sensor; 0 if sensor and place coincide.
 double sight_cosine(const Vector3d& place, const Vector3d& normal, const Vector3d& sensor) {
   const Vector3d way = sensor - place;
@@ -243,7 +240,7 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
   std::vector<char> is_grazing(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     signs[i] = sight_cosine(places[i], normals[i], sensors[i]);
-    is_grazing[i] = std::abs(signs[i]) < k_grazing_cosine ? 1 : 0;
+    is_grazing[i] = std::abs(signs[i]) < k_steep_sine ? 1 : 0;
   }
   const std::size_t links = std::min(k_voters, neighbours.width);
   for (int round = 0; round < k_rounds; ++round) {

@@ -17,7 +17,6 @@ using Eigen::Vector3d;
 
 /// Weight of a vote of two neighbours, relative to a winding number that is wrong by one at one point.
 constexpr double k_vote_weight = 0.1;
-constexpr std::size_t k_tried_at_once = 12;
 /// Share of the total weight below which a gain is rounding.
 constexpr double k_least_gain = 1e-7;
 constexpr std::uint32_t k_none = UINT32_MAX;
@@ -133,7 +132,7 @@ class SignSearch {
       const double gain = gain_of(group, column);
       if (gain > least_gain_) gains.emplace_back(gain, group);
     });
-    const std::size_t tried = std::min(k_tried_at_once, gains.size());
+    const std::size_t tried = std::min(k_best, gains.size());
     std::partial_sort(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(tried), gains.end(), std::greater<>());
     gains.resize(tried);
     for (const auto& [gain, group] : gains) {
