@@ -28,7 +28,7 @@ DOUBTFUL = 3  # exit status of `extract`; the files are written
 def run(command, seconds=None, accepted=(0,)):
     result = subprocess.run(command, capture_output=True, text=True, timeout=seconds)
     if result.returncode not in accepted:
-        raise RuntimeError((result.stderr.strip().splitlines() or ["failed"])[-1])
+        raise RuntimeError(((result.stderr.strip() or result.stdout.strip()).splitlines() or ["failed"])[-1])
     return result.stdout
 
 

@@ -11,6 +11,7 @@
 
 #include "cloud2csg/error.hpp"
 #include "core/base/text.hpp"
+#include "core/primitive/profile.hpp"
 #include "io/openscad/flat_shapes.hpp"
 #include "io/openscad/join_shapes.hpp"
 #include "io/openscad/path_functions.hpp"

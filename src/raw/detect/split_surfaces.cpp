@@ -22,17 +22,17 @@ using Eigen::Vector3d;
 /// Standard deviation of the points around the mean of their patch, of the median patch. Successive points are near
 /// each other.
 double noise_of(const std::vector<double>& distances, double least) {
-  constexpr std::size_t k_patch = 2 * k_around;
+  const std::size_t patch_size = 2 * k_around;
   std::vector<double> variances;
-  for (std::size_t first = 0; first + k_patch <= distances.size(); first += k_patch) {
-    const auto patch = std::span(distances).subspan(first, k_patch);
+  for (std::size_t first = 0; first + patch_size <= distances.size(); first += patch_size) {
+    const auto patch = std::span(distances).subspan(first, patch_size);
     double sum = 0;
     double squares = 0;
     for (const double d : patch) {
       sum += d;
       squares += d * d;
     }
-    variances.push_back((squares - sum * sum / k_patch) / (k_patch - 1));
+    variances.push_back((squares - sum * sum / patch_size) / (patch_size - 1));
   }
   return variances.empty() ? least : std::max(least, std::sqrt(median_of(variances)));
 }
@@ -59,8 +59,7 @@ double strongest_offset(const std::vector<double>& distances, double noise) {
 
 /// The least cost of points whose distances are a quadratic function of their places, found by iterated trimming.
 double smooth_cost(std::span<const double> distances, std::span<const Vector3d> places, double noise) {
-  constexpr int k_terms = 10;
-  using Terms = Eigen::Matrix<double, k_terms, 1>;
+  using Terms = Eigen::Matrix<double, 10, 1>;
   Vector3d middle = Vector3d::Zero();
   for (const Vector3d& p : places) middle += p / static_cast<double>(places.size());
   double size = 0;
@@ -74,7 +73,7 @@ double smooth_cost(std::span<const double> distances, std::span<const Vector3d> 
   Terms factors = Terms::Zero();
   double least = 0;
   for (int trim = 0; trim <= k_rounds; ++trim) {
-    Eigen::Matrix<double, k_terms, k_terms> squares = Eigen::Matrix<double, k_terms, k_terms>::Zero();
+    Eigen::Matrix<double, 10, 10> squares = Eigen::Matrix<double, 10, 10>::Zero();
     Terms products = Terms::Zero();
     double cost = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {

@@ -24,6 +24,8 @@ constexpr std::size_t k_best = 8;
 constexpr int k_rounds = 4;
 /// Of normally distributed points, 1 in 370 is more standard deviations off its surface.
 constexpr double k_deviations = 3;
+/// Tolerance relative to distance: the bend of a sphere ten times as large as the neighbourhood.
+constexpr double k_bend_tolerance = 0.05;
 /// A point whose neighbours are farther than this many spacings is isolated.
 constexpr double k_isolated_spacings = 6;
 /// Gaps that differ by more are not those of one surface.

@@ -111,8 +111,8 @@ AlignedBox box_without_strays(const Points& points, const NeighbourTree& tree, d
   }
   AlignedBox box(low, high);
   const AlignedBox core = box;
-  std::array<std::uint32_t, k_nearest + 1> indices{};
-  std::array<double, k_nearest + 1> squares{};
+  std::vector<std::uint32_t> indices(k_nearest + 1);
+  std::vector<double> squares(k_nearest + 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (core.contains(points[i])) continue;
     const std::size_t found = tree.find(points[i], indices, squares);

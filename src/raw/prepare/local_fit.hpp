@@ -9,9 +9,6 @@
 
 namespace cloud2csg {
 
-/// Tolerance relative to distance: the bend of a sphere ten times as large as the neighbourhood.
-constexpr double k_bend_tolerance = 0.05;
-
 struct LocalPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit length, arbitrary sign
   double offset = 0.0;                                ///< from the plane to the point, along the normal

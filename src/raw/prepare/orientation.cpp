@@ -257,7 +257,7 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
       if (std::abs(votes) > majority * weight) next[i] = votes / static_cast<double>(links);
     });
     signs = std::move(next);
-    share.report(run, (round + 1) / double{k_rounds});
+    share.report(run, (round + 1.0) / k_rounds);
   }
   std::vector<char> flipped(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) flipped[i] = signs[i] < 0.0 ? 1 : 0;

@@ -54,18 +54,20 @@ bool has_plane(const LocalFits& fits, std::size_t point, double noise, Strictnes
 Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, Strictness strictness,
                         std::span<const PointFate> fates) {
   Witnesses witnesses;
-  std::array<double, k_around> gaps{};
+  thread_local std::vector<double> gaps;
+  gaps.clear();
   for (const std::uint32_t neighbour : fits.neighbours.of(point).first(std::min(k_around, fits.neighbours.width))) {
     const LocalPlane& plane = fits.planes[neighbour];
     if (fates[neighbour] == PointFate::isolated || !has_plane(fits, neighbour, noise, strictness)) continue;
-    gaps[witnesses.count++] = gap_of(fits, neighbour);
+    ++witnesses.count;
+    gaps.push_back(gap_of(fits, neighbour));
     const Vector3d to = fits.points[point] - fits.points[neighbour];
     const double height = std::abs(plane.normal.dot(to) + plane.offset);
     witnesses.agreeing += height <= k_deviations * noise + k_bend_tolerance * to.norm() ? 1 : 0;
   }
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(witnesses.count / 2);
-  std::nth_element(gaps.begin(), middle, gaps.begin() + static_cast<std::ptrdiff_t>(witnesses.count));
-  if (witnesses.count > 0) witnesses.usual_gap = *middle;
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  if (!gaps.empty()) witnesses.usual_gap = *middle;
   return witnesses;
 }
 
@@ -135,7 +137,7 @@ KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, con
     for (std::size_t i = 0; i < kept.size(); ++i) remaining.positions.set(i, points[kept[i]]);
     // Outliers raise the noise estimate, so each pass measures it again.
     if (pass > 0) scale = estimate_scale(remaining, run);
-    const StageShare of_pass = cleaning.part(pass / double{k_rounds}, (pass + 1) / double{k_rounds});
+    const StageShare of_pass = cleaning.part(1.0 * pass / k_rounds, (pass + 1.0) / k_rounds);
     const std::size_t width = strictness == Strictness::trusting ? k_around : 2 * k_around;
     const LocalFits fits = fit_locally(remaining, width, scale.noise, run, of_pass.part(0, 0.9));
     const std::vector<PointFate> fates = judge_points(fits, scale, strictness, run, of_pass.part(0.9, 1));
