@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -112,6 +113,31 @@ std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimit
   return found;
 }
 
+/// Points on none of the surfaces.
+FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces) {
+  FreePoints points(cloud);
+  for (const GrownSurface& surface : surfaces) points.take(surface.points);
+  return points;
+}
+
+/// Finds surfaces and settles them, and then again among the points of surfaces that did not last.
+std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
+                                          const RunContext& run, const StageShare& share) {
+  std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, limits, seed, run, share);
+  std::size_t searched = free_points(cloud, surfaces).list().size();  // in vain
+  for (int round = 0; round < k_rounds; ++round) {
+    surfaces = settle_surfaces(std::move(surfaces), cloud, limits, run);
+    FreePoints points = free_points(cloud, surfaces);
+    if (points.list().size() < searched + limits.least_points) break;
+    const auto always = [](std::uint32_t) { return true; };
+    std::vector<GrownSurface> more = find_all(points, limits, seed, always, run, {});
+    if (more.empty()) break;
+    searched = points.list().size();
+    std::ranges::move(more, std::back_inserter(surfaces));
+  }
+  return surfaces;
+}
+
 Surface in_the_cloud(Surface surface, const WorkCloud& work) {
   surface.position = surface.position * work.diagonal + work.middle;
   surface.radius *= work.diagonal;
@@ -219,8 +245,7 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
 
   const StageShare share("detect", cloud.size(), "points");
   Detection result{.surfaces = {}, .unexplained = cloud.size(), .distance_tolerance = tolerance};
-  std::vector<GrownSurface> surfaces =
-      settle_surfaces(find_in_two_passes(work, limits, options.seed, run, share), work, limits, run);
+  std::vector<GrownSurface> surfaces = find_and_settle(work, limits, options.seed, run, share);
   // A given tolerance says that nearer surfaces are one.
   if (!options.distance_tolerance) surfaces = split_surfaces(std::move(surfaces), work, limits, run);
   for (const GrownSurface& grown : surfaces) {
