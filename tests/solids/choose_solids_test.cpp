@@ -191,6 +191,25 @@ TEST(ChooseSolids, FindsABentPipe) {
   expect_recovered(pipe, 4);
 }
 
+/// Two bends that go over into each other, where nothing is seen of it either.
+TEST(ChooseSolids, FindsAPipeWithTwoBends) {
+  const Part pipe = part_of(
+      {test::placed("one", Torus{3, 1}, {0, 0, 0}), test::placed("bore_of_one", Torus{3, 0.6}, {0, 0, 0}),
+       test::placed("quarter", Box{{6, 6, 4}}, {3, 3, 0}), test::placed("two", Torus{3, 1}, {0, 6, 0}),
+       test::placed("bore_of_two", Torus{3, 0.6}, {0, 6, 0}), test::placed("opposite", Box{{6, 6, 4}}, {-3, 3, 0})},
+      "(one - bore_of_one) & quarter | (two - bore_of_two) & opposite");
+  expect_recovered(pipe, 4);
+}
+
+/// The sector is cut from a full turn if that is the smaller wedge.
+TEST(ChooseSolids, FindsThreeQuartersOfATurnedShell) {
+  const Part shell =
+      part_of({test::placed("cone", Cone{2, 1.2, 1.5}, {0, 0, 0}), test::placed("groove", Torus{1.6, 0.3}, {0, 0, 0}),
+               test::placed("bore", Cylinder{0.7, 3}, {0, 0, 0}), test::placed("gap", Box{{4, 4, 4}}, {2, 2, 0})},
+              "cone - groove - bore - gap");
+  expect_recovered(shell, 2);
+}
+
 TEST(ChooseSolids, DoesNotDependOnScaleOrPlace) {
   const Part part = plate_with_holes();
   Part large = part;

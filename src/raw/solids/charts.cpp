@@ -9,6 +9,7 @@
 #include "core/geometry/subset.hpp"
 #include "raw/solids/curves.hpp"
 #include "raw/solids/edges.hpp"
+#include "raw/solids/sectors.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -195,6 +196,7 @@ class ChartMaker {
       Chart chart;
       std::vector<Curve> curves = {};
       std::vector<Cap> caps = {};
+      std::vector<const DetectedSurface*> revolved = {};
       std::size_t count = 0;
     };
     std::vector<Candidate> candidates;
@@ -206,7 +208,10 @@ class ChartMaker {
         if (!trace.curve) continue;
         trace.curve->points = s.points.empty() ? far_points(*trace.curve) : points_of(candidate.chart, s);
         trace.curve->count = s.points.size();
-        if (!is_turned || s.surface.type != SurfaceType::plane) candidate.count += s.points.size();
+        if (!is_turned || s.surface.type != SurfaceType::plane) {
+          candidate.count += s.points.size();
+          candidate.revolved.push_back(&s);
+        }
         candidate.curves.push_back(std::move(*trace.curve));
       }
       if (static_cast<double>(candidate.count) < k_least_share * static_cast<double>(positions_.size())) continue;
@@ -218,7 +223,11 @@ class ChartMaker {
     charts.reserve(candidates.size());
     for (Candidate& candidate : candidates) {
       Chart chart = drawn(std::move(candidate.chart), merged(std::move(candidate.curves), options_.tolerance));
-      if (!is_turned) chart.caps = ends_in(chart, std::move(candidate.caps));
+      if (is_turned) {
+        open_at_gaps(chart, std::move(candidate.revolved));
+      } else {
+        chart.caps = ends_in(chart, std::move(candidate.caps));
+      }
       charts.push_back(std::move(chart));
     }
     return charts;
@@ -259,13 +268,25 @@ class ChartMaker {
     return chart;
   }
 
+  /// Turns the frame so that sectors may end at the angles of its caps and at pi.
+  void open_at_gaps(Chart& chart, std::vector<const DetectedSurface*> revolved) const {
+    std::vector<double> ends = sector_ends(chart.frame, positions_, std::move(revolved), surfaces_, options_.tolerance);
+    if (ends.empty()) return;
+    const double turn = ends.front() - std::numbers::pi;
+    chart.frame.orientation = chart.frame.orientation * Eigen::AngleAxisd(turn, Vector3d::UnitZ());
+    for (std::size_t k = 1; k < ends.size(); ++k) {
+      chart.caps.push_back(std::remainder(ends[k] - turn, 2 * std::numbers::pi));
+    }
+    std::ranges::sort(chart.caps);
+  }
+
   /// Distinct caps, of two near each other the one with more points, and the ends of the cloud where no cap is.
   [[nodiscard]] std::vector<double> ends_in(const Chart& chart, std::vector<Cap> caps) const {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t i = 0; i < positions_.size(); ++i) {
-      low = std::min(low, chart.height_of(positions_[i]));
-      high = std::max(high, chart.height_of(positions_[i]));
+      low = std::min(low, chart.level_of(positions_[i]));
+      high = std::max(high, chart.level_of(positions_[i]));
     }
     std::erase_if(caps, [&](const Cap& cap) {
       return cap.height < low - options_.tolerance || cap.height > high + options_.tolerance;
@@ -297,6 +318,11 @@ class ChartMaker {
 Vector2d Chart::place_of(const Vector3d& point) const {
   const Vector3d local = frame.to_local(point);
   return is_turned ? Vector2d(local.head<2>().norm(), local.z()) : Vector2d(local.head<2>());
+}
+
+double Chart::level_of(const Vector3d& point) const {
+  const Vector3d local = frame.to_local(point);
+  return is_turned ? std::atan2(local.y(), local.x()) : local.z();
 }
 
 std::vector<Chart> make_charts(const Points& positions, std::span<const DetectedSurface> surfaces,

@@ -13,13 +13,16 @@ namespace cloud2csg {
 /// half-plane (r, z). An extrusion or a revolution is a set of its faces.
 struct Chart {
   bool is_turned = false;
-  Pose frame = {};                ///< local z is the direction or the axis
-  Drawing drawing = {};           ///< price_of_edge: the share of the edge, times its length, where no points are
-  std::vector<double> caps = {};  ///< local z of the ends that an extrusion may have, ascending; none if turned
+  Pose frame = {};       ///< local z is the direction or the axis
+  Drawing drawing = {};  ///< price_of_edge: the share of the edge, times its length, where no points are
+  /// Ends that an extrusion may have: local z, ascending. If turned, angles about local z between -pi and pi at which
+  /// sectors may end; they may also end at pi, which is in a gap. None if there are only full turns.
+  std::vector<double> caps = {};
 
-  /// (x, y) or (r, z), and the height along local z.
+  /// (x, y) or (r, z).
   [[nodiscard]] Eigen::Vector2d place_of(const Eigen::Vector3d& point) const;
-  [[nodiscard]] double height_of(const Eigen::Vector3d& point) const { return frame.to_local(point).z(); }
+  /// The height along local z, or the angle about it.
+  [[nodiscard]] double level_of(const Eigen::Vector3d& point) const;
 };
 
 struct ChartOptions {

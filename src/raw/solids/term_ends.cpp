@@ -17,8 +17,10 @@ std::vector<std::uint8_t> decisions_of(const DecisionList& list, std::size_t pla
   return is_in;
 }
 
-bool has_ends(const TermPart& part) {
-  return part.kind != PartKind::polytope;
+/// A sector ends exactly at planes.
+bool has_ends(const TermSpace& space, const TermPart& part) {
+  return part.kind == PartKind::revolved ||
+         (part.kind == PartKind::profile && !space.profiles[part.family].chart.is_turned);
 }
 
 void set_term(const TermSpace& space, Rule& rule, const Term& term) {
@@ -44,7 +46,7 @@ class DrawnIn {
       : space_(space), list_(std::move(list)), wanted_(decisions_of(list_, space.size())) {}
 
   void draw_in(std::size_t rule, std::size_t part) {
-    if (!has_ends(list_[rule].term.parts[part])) return;
+    if (!has_ends(space_, list_[rule].term.parts[part])) return;
     while (try_shorter(rule, part, 1, 0)) {
     }
     while (try_shorter(rule, part, 0, 1)) {
@@ -91,7 +93,7 @@ class FreeEnds {
       const std::vector<std::uint8_t> is_free = ends.places_that_do_not_depend_on(r);
       std::vector<Overshoots>& of_parts = result.emplace_back(list[r].term.parts.size());
       for (std::size_t p = 0; p < of_parts.size(); ++p) {
-        if (!has_ends(list[r].term.parts[p])) continue;
+        if (!has_ends(space, list[r].term.parts[p])) continue;
         for (std::size_t end = 0; end < 2; ++end) of_parts[p][end] = ends.free(r, p, end, is_free);
       }
     }

@@ -131,17 +131,18 @@ PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains
   for (const PromisingInterval& interval : promising_intervals(family, faces, sums, least + costs.leaf)) {
     if (interval.bound - costs.leaf <= best.net) break;
     const auto [first, last] = interval.range;
-    const double height = family.chart.is_turned ? 1.0 : family.slabs.edges[last + 1] - family.slabs.edges[first];
-    const double unit = height * family.bare_price * costs.leaf;  // gain that one of the drawing's prices costs
+    const double size = family.size_of(interval.range);
+    const double unit = size * family.bare_price * costs.leaf;  // gain that one of the drawing's prices costs
     std::vector<double> face_gains(faces, 0.0);
     for (std::size_t f = 1; f < faces; ++f) {
       face_gains[f] = (sums[(last + std::size_t{1}) * faces + f] - sums[first * faces + f]) / unit;
     }
     TermPart part{.kind = PartKind::profile, .family = index, .range = interval.range};
     part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_price * costs.leaf / unit);
+    part.is_sector = family.is_sector(interval.range);
     part.segments = segments_of(family.chart.drawing, part.faces);
     if (part.segments == 0) continue;
-    part.bare_leaves = height * family.bare_price * border_price(family.chart.drawing, part.faces);
+    part.bare_leaves = size * family.bare_price * border_price(family.chart.drawing, part.faces);
     double gain = 0;
     for (std::size_t f = 1; f < faces; ++f) gain += part.faces[f] != 0 ? unit * face_gains[f] : 0.0;
     PricedTerm found{.term = {.parts = {std::move(part)}}};
@@ -272,6 +273,7 @@ double cost_of(const Term& term, const TermCosts& costs) {
   double leaves = 0;
   for (const TermPart& part : term.parts) {
     leaves += price_of_segments(part.segments) + part.bare_leaves;
+    leaves += part.is_sector ? 1.0 : 0.0;
     leaves += (part.is_known ? costs.known : 1.0) + price_of_planes(part.planes.size());
   }
   return leaves * costs.leaf;

@@ -1,6 +1,7 @@
 #include "raw/solids/term_space.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 
 #include "cloud2csg/advanced/prepare.hpp"
@@ -70,7 +71,7 @@ void bin_places(ProfileFamily& profiles, const Points& positions) {
   profiles.slab_of_place.resize(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     profiles.face_of_place[i] = locator.face_at(profiles.chart.place_of(positions[i]));
-    profiles.slab_of_place[i] = profiles.slabs.bin_of(profiles.chart.height_of(positions[i]));
+    profiles.slab_of_place[i] = profiles.slabs.bin_of(profiles.chart.level_of(positions[i]));
   }
 }
 
@@ -138,7 +139,8 @@ std::vector<ProfileFamily> profile_families(const PointCloud& cloud, std::span<c
   std::vector<ProfileFamily> families;
   for (Chart& chart : make_charts(cloud.positions, surfaces, {.tolerance = tolerance, .spacing = spacing})) {
     ProfileFamily& family = families.emplace_back();
-    family.slabs.edges = {-diagonal, diagonal};
+    const double end = chart.is_turned ? std::numbers::pi : diagonal;
+    family.slabs.edges = {-end, end};
     family.slabs.edges.insert(family.slabs.edges.begin() + 1, chart.caps.begin(), chart.caps.end());
     family.bare_price = k_bare_leaves / area;
     family.chart = std::move(chart);
@@ -189,6 +191,11 @@ std::vector<std::uint8_t> inside_of(const TermSpace& space, const TermPart& part
 }
 
 }  // namespace
+
+double ProfileFamily::size_of(BinRange range) const {
+  const double size = slabs.edges[range.last + 1] - slabs.edges[range.first];
+  return chart.is_turned ? size / (2 * std::numbers::pi) : size;
+}
 
 std::uint16_t Bins::bin_of(double value) const {
   const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);

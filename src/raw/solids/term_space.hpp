@@ -37,13 +37,20 @@ struct PlaneFamily {
   std::vector<std::uint8_t> is_under = {};  ///< by place: normal . x <= offset
 };
 
-/// Extrusions or revolutions: sets of a drawing's faces. Extrusions end at two of the slabs' edges.
+/// Extrusions or revolutions: sets of a drawing's faces. Extrusions and sectors end at two of the slabs' edges.
 struct ProfileFamily {
   Chart chart = {};
-  Bins slabs = {};        ///< one if turned
-  double bare_price = 0;  ///< leaves that a unit of the drawing's prices costs, times the height unless turned
+  Bins slabs = {};        ///< of heights, or of angles
+  double bare_price = 0;  ///< leaves that a unit of the drawing's prices costs, times the height or share of a turn
   std::vector<std::uint32_t> face_of_place = {};
   std::vector<std::uint16_t> slab_of_place = {};
+
+  /// Height, or share of a full turn.
+  [[nodiscard]] double size_of(BinRange range) const;
+  /// Whether revolutions of this range are less than a full turn.
+  [[nodiscard]] bool is_sector(BinRange range) const {
+    return chart.is_turned && range.last - range.first + 1 < slabs.count();
+  }
 };
 
 /// Rounded to a multiple of 2^-40, so that sums are exact in any order. Terms of the same places then gain exactly the
@@ -88,6 +95,7 @@ struct TermPart {
   FaceSet faces = {};        ///< for a profile
   std::size_t segments = 0;  ///< of the profile
   double bare_leaves = 0;    ///< price of a profile's surfaces where no points are
+  bool is_sector = false;    ///< of a revolution
   bool is_inverted = false;  ///< the outside
   bool is_known = false;
   friend bool operator==(const TermPart&, const TermPart&) = default;

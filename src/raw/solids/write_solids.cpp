@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -22,6 +23,7 @@
 namespace cloud2csg {
 namespace {
 
+constexpr double k_same_angle = 1e-9;
 constexpr double k_most_overshoot = 0.01;  // in diagonals of the bounds, which are far out
 
 struct Span {
@@ -64,10 +66,8 @@ Plane world_plane(const TermSpace& space, std::uint32_t side) {
   return {.normal = -plane.normal, .offset = -plane.offset};
 }
 
-/// The planes with at least three corners, relative to the middle of all corners.
-Primitive polytope_solid(const TermSpace& space, const TermPart& part, const AlignedBox& bounds) {
-  Polytope all;
-  for (const std::uint32_t side : part.planes) all.planes.push_back(world_plane(space, side));
+/// The polytope's planes and the bounds' with at least three corners, relative to the middle of all corners.
+Primitive polytope_solid(Polytope all, const AlignedBox& bounds, double tolerance) {
   for (int axis = 0; axis < 3; ++axis) {
     all.planes.push_back({.normal = Eigen::Vector3d::Unit(axis), .offset = bounds.max()[axis]});
     all.planes.push_back({.normal = -Eigen::Vector3d::Unit(axis), .offset = -bounds.min()[axis]});
@@ -75,7 +75,6 @@ Primitive polytope_solid(const TermSpace& space, const TermPart& part, const Ali
   const std::vector<Eigen::Vector3d> points = corners(all);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) middle += point / static_cast<double>(points.size());
-  const double tolerance = 1e-9 * space.bounds.diagonal().norm();
   Polytope needed;
   for (const Plane& plane : all.planes) {
     const auto held = std::ranges::count_if(
@@ -85,6 +84,31 @@ Primitive polytope_solid(const TermSpace& space, const TermPart& part, const Ali
   // Too far from the origin, rounding hides the corners. Keeps all planes, because a solid needs some.
   if (needed.planes.size() < 4) return {.id = {}, .shape = std::move(all), .pose = {}};
   return {.id = {}, .shape = std::move(needed), .pose = {.position = middle}};
+}
+
+Polytope polytope_of(const TermSpace& space, const TermPart& part) {
+  Polytope polytope;
+  for (const std::uint32_t side : part.planes) polytope.planes.push_back(world_plane(space, side));
+  return polytope;
+}
+
+double rounding_in(const TermSpace& space) {
+  return 1e-9 * space.bounds.diagonal().norm();
+}
+
+/// The half-space behind the half-plane at that angle about the frame's axis, as seen with growing angles.
+Plane plane_behind(const Pose& frame, double angle) {
+  const Eigen::Vector3d normal = frame.orientation * Eigen::Vector3d(-std::sin(angle), std::cos(angle), 0);
+  return {.normal = normal, .offset = normal.dot(frame.position)};
+}
+
+/// A wedge about the frame's axis, at most half a turn from angle `low` to `high`.
+Primitive wedge_solid(const TermSpace& space, const Pose& frame, double low, double high) {
+  const Plane start = plane_behind(frame, low);
+  Polytope wedge{.planes = {plane_behind(frame, high)}};
+  const bool is_half = std::abs(high - low - std::numbers::pi) < k_same_angle;
+  if (!is_half) wedge.planes.push_back({.normal = -start.normal, .offset = -start.offset});
+  return simplest(polytope_solid(std::move(wedge), space.bounds, rounding_in(space)));
 }
 
 /// Its local origin is in the middle of the profile.
@@ -106,7 +130,8 @@ Primitive profile_solid(const Chart& chart, const FaceSet& faces, const Span& sp
 /// Solids that add to the part end with it. Solids that subtract reach beyond all those.
 Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
   const AlignedBox& bounds = adds ? space.part_bounds : space.bounds;
-  if (part.kind == PartKind::polytope) return simplest(polytope_solid(space, part, bounds));
+  if (part.kind == PartKind::polytope)
+    return simplest(polytope_solid(polytope_of(space, part), bounds, rounding_in(space)));
   const auto span_along = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
     const double most = k_most_overshoot * space.bounds.diagonal().norm();
     const Span wanted = span_of(bins_of(space, part), part.range, overshoots, most);
@@ -123,6 +148,12 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
   const bool has_ends = surface.type == SurfaceType::cylinder || surface.type == SurfaceType::cone;
   return revolved_solid(surface, has_ends ? span_along(surface.position, surface.axis) : Span{0, 1});
 }
+
+/// A term or part as a tree, and where it may be.
+struct WrittenTerm {
+  CsgTree tree = {};
+  AlignedBox reach = everywhere();
+};
 
 class SolidWriter {
  public:
@@ -147,6 +178,27 @@ class SolidWriter {
     return static_cast<PrimitiveIndex>(solids.size() - 1);
   }
 
+  /// The part as if it was not inverted.
+  WrittenTerm write(const TermSpace& space, TermPart part, const Overshoots& overshoots, bool adds) {
+    if (!part.is_sector) {
+      const PrimitiveIndex solid = add(space, part, overshoots, adds);
+      return {.tree = CsgTree::leaf(solid), .reach = bounds(solids[solid])};
+    }
+    const ProfileFamily& family = space.profiles[part.family];
+    const double low = family.slabs.edges[part.range.first];
+    const double high = family.slabs.edges[part.range.last + 1];
+    part.range = {0, family.slabs.count() - 1};
+    part.is_sector = false;
+    WrittenTerm sector = write(space, part, overshoots, adds);
+    const Pose& frame = family.chart.frame;
+    const bool is_large = high - low > std::numbers::pi + k_same_angle;
+    const Primitive wedge =
+        is_large ? wedge_solid(space, frame, high, low + 2 * std::numbers::pi) : wedge_solid(space, frame, low, high);
+    const CsgTree leaf = CsgTree::leaf(add_wedge(wedge));
+    sector.tree = is_large ? subtract(sector.tree, leaf) : intersect(sector.tree, leaf);
+    return sector;
+  }
+
   /// A box around the part. It is the last solid, because indices are counted from the first one that was added.
   PrimitiveIndex add_part_box(const TermSpace& space) {
     Primitive box{.id = {}, .shape = Box{space.part_bounds.sizes()}, .pose = {.position = space.part_bounds.center()}};
@@ -158,6 +210,13 @@ class SolidWriter {
   PrimitiveSet solids;
 
  private:
+  PrimitiveIndex add_wedge(Primitive wedge) {
+    wedge.id = new_id("wedge");
+    solids.push_back(std::move(wedge));
+    parts_.emplace_back();
+    return static_cast<PrimitiveIndex>(solids.size() - 1);
+  }
+
   /// By type and number, different from the ids of known solids.
   std::string new_id(const std::string& type) {
     std::string id;
@@ -173,26 +232,19 @@ class SolidWriter {
   std::map<std::string, std::size_t> numbers_;
 };
 
-/// A rule's term as a tree, and where it may be.
-struct WrittenTerm {
-  CsgTree tree = {};
-  AlignedBox reach = everywhere();
-};
-
 WrittenTerm write_term(const TermSpace& space, const Rule& rule, const std::vector<Overshoots>& overshoots,
                        SolidWriter& writer) {
   WrittenTerm term;
   if (keeps_one_part(rule)) {
     const TermPart& kept = rule.term.parts[1];
-    const CsgTree leaf = CsgTree::leaf(writer.add(space, kept, overshoots[1], kept.is_inverted));
-    return {.tree = kept.is_inverted ? complement(leaf) : leaf};
+    const CsgTree tree = writer.write(space, kept, overshoots[1], kept.is_inverted).tree;
+    return {.tree = kept.is_inverted ? complement(tree) : tree};
   }
   for (std::size_t p = 0; p < rule.term.parts.size(); ++p) {
     const TermPart& part = rule.term.parts[p];
-    const PrimitiveIndex solid = writer.add(space, part, overshoots[p], rule.is_in != part.is_inverted);
-    const CsgTree leaf = CsgTree::leaf(solid);
-    term.tree = p == 0 ? leaf : part.is_inverted ? subtract(term.tree, leaf) : intersect(term.tree, leaf);
-    if (!part.is_inverted) term.reach = term.reach.intersection(bounds(writer.solids[solid]));
+    const auto [tree, reach] = writer.write(space, part, overshoots[p], rule.is_in != part.is_inverted);
+    term.tree = p == 0 ? tree : part.is_inverted ? subtract(term.tree, tree) : intersect(term.tree, tree);
+    if (!part.is_inverted) term.reach = term.reach.intersection(reach);
   }
   return term;
 }
