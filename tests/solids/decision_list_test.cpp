@@ -61,7 +61,10 @@ TermPart any_profile() {
   const Drawing& drawing = family.chart.drawing;
   TermPart part{.kind = PartKind::profile, .family = index};
   // Extrusions end at caps, not beyond the part.
-  if (!family.chart.is_turned) {
+  if (family.chart.is_turned) {
+    part.range = any_range(family.slabs.count());
+    part.is_sector = family.is_sector(part.range);
+  } else {
     part.range = any_range(family.slabs.count() - 2);
     part.range = {part.range.first + 1, part.range.last + 1};
   }

@@ -120,6 +120,19 @@ FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& 
   return points;
 }
 
+/// By point: whether it is free and off all surfaces. A free point on a surface has a bad normal, as along an edge.
+std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownSurface>& surfaces) {
+  std::vector<bool> is_off(points.cloud().size(), false);
+  for (const std::uint32_t i : points.list()) is_off[i] = true;
+  for (const GrownSurface& surface : surfaces) {
+    const std::vector<double> distances = distances_of(surface.surface, points.cloud(), points.list());
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+      if (std::abs(distances[k]) <= surface.reach) is_off[points.list()[k]] = false;
+    }
+  }
+  return is_off;
+}
+
 /// Finds surfaces and settles them, and then again among the points of surfaces that did not last.
 std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
                                           const RunContext& run, const StageShare& share) {
@@ -129,8 +142,9 @@ std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const SearchLimits& 
     surfaces = settle_surfaces(std::move(surfaces), cloud, limits, run);
     FreePoints points = free_points(cloud, surfaces);
     if (points.list().size() < searched + limits.least_points) break;
-    const auto always = [](std::uint32_t) { return true; };
-    std::vector<GrownSurface> more = find_all(points, limits, seed, always, run, {});
+    const std::vector<bool> is_off = are_off_all(points, surfaces);
+    const auto is_evidence = [&](std::uint32_t i) { return is_off[i]; };
+    std::vector<GrownSurface> more = find_all(points, limits, seed, is_evidence, run, {});
     if (more.empty()) break;
     searched = points.list().size();
     std::ranges::move(more, std::back_inserter(surfaces));

@@ -56,11 +56,13 @@ std::vector<double> angles_of(const Pose& frame, const Points& positions, const 
 
 std::vector<double> ends_of_points(const Pose& frame, const Points& positions, const DetectedSurface& surface) {
   const std::vector<double> angles = angles_of(frame, positions, surface);
+  // The mean distance of angles, or less: no point is exactly at an end.
+  const double step = std::min(k_gap / 4, 2 * std::numbers::pi / static_cast<double>(angles.size() + 1));
   std::vector<double> ends;
   for (std::size_t k = 0; k < angles.size(); ++k) {
     const bool is_last = k + 1 == angles.size();
     const double next = is_last ? angles.front() + 2 * std::numbers::pi : angles[k + 1];
-    if (next - angles[k] > k_gap) ends.insert(ends.end(), {angles[k], wrapped(next)});
+    if (next - angles[k] > k_gap) ends.insert(ends.end(), {wrapped(angles[k] + step), wrapped(next - step)});
   }
   return ends;
 }
