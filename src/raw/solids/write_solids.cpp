@@ -66,8 +66,10 @@ Plane world_plane(const TermSpace& space, std::uint32_t side) {
   return {.normal = -plane.normal, .offset = -plane.offset};
 }
 
-/// The polytope's planes and the bounds' with at least three corners, relative to the middle of all corners.
-Primitive polytope_solid(Polytope all, const AlignedBox& bounds, double tolerance) {
+/// The planes with at least three corners, relative to the middle of all corners.
+Primitive polytope_solid(const TermSpace& space, const TermPart& part, const AlignedBox& bounds) {
+  Polytope all;
+  for (const std::uint32_t side : part.planes) all.planes.push_back(world_plane(space, side));
   for (int axis = 0; axis < 3; ++axis) {
     all.planes.push_back({.normal = Eigen::Vector3d::Unit(axis), .offset = bounds.max()[axis]});
     all.planes.push_back({.normal = -Eigen::Vector3d::Unit(axis), .offset = -bounds.min()[axis]});
@@ -75,6 +77,7 @@ Primitive polytope_solid(Polytope all, const AlignedBox& bounds, double toleranc
   const std::vector<Eigen::Vector3d> points = corners(all);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) middle += point / static_cast<double>(points.size());
+  const double tolerance = 1e-9 * space.bounds.diagonal().norm();
   Polytope needed;
   for (const Plane& plane : all.planes) {
     const auto held = std::ranges::count_if(
@@ -86,52 +89,54 @@ Primitive polytope_solid(Polytope all, const AlignedBox& bounds, double toleranc
   return {.id = {}, .shape = std::move(needed), .pose = {.position = middle}};
 }
 
-Polytope polytope_of(const TermSpace& space, const TermPart& part) {
-  Polytope polytope;
-  for (const std::uint32_t side : part.planes) polytope.planes.push_back(world_plane(space, side));
-  return polytope;
+/// Its local origin is in the middle of the profile.
+Primitive extrusion_solid(const Pose& frame, Profile profile, const Span& span) {
+  const Eigen::Vector2d middle = bounds_of(profile).center();
+  for (ClosedPath& path : profile.paths) {
+    for (PathCorner& corner : path) corner.point -= middle;
+  }
+  const Eigen::Vector3d place(middle.x(), middle.y(), 0.5 * (span.low + span.high));
+  return {.id = {},
+          .shape = Extrusion{std::move(profile), span.high - span.low},
+          .pose = {.position = frame.position + frame.orientation * place, .orientation = frame.orientation}};
 }
 
-double rounding_in(const TermSpace& space) {
-  return 1e-9 * space.bounds.diagonal().norm();
-}
-
-/// The half-space behind the half-plane at that angle about the frame's axis, as seen with growing angles.
-Plane plane_behind(const Pose& frame, double angle) {
-  const Eigen::Vector3d normal = frame.orientation * Eigen::Vector3d(-std::sin(angle), std::cos(angle), 0);
-  return {.normal = normal, .offset = normal.dot(frame.position)};
-}
-
-/// A wedge about the frame's axis, at most half a turn from angle `low` to `high`.
-Primitive wedge_solid(const TermSpace& space, const Pose& frame, double low, double high) {
-  const Plane start = plane_behind(frame, low);
-  Polytope wedge{.planes = {plane_behind(frame, high)}};
-  const bool is_half = std::abs(high - low - std::numbers::pi) < k_same_angle;
-  if (!is_half) wedge.planes.push_back({.normal = -start.normal, .offset = -start.offset});
-  return simplest(polytope_solid(std::move(wedge), space.bounds, rounding_in(space)));
+/// About the frame's axis from angle `low` to `high`, at most half a turn; wide and high enough for the turned outline.
+Primitive wedge_solid(const Pose& frame, const Profile& outline, double low, double high) {
+  constexpr double k_margin = 0.05;  // of the radius
+  const Eigen::AlignedBox2d box = bounds_of(outline);
+  const double radius = (1 + k_margin) * box.max().x();
+  const double step = high - low > std::numbers::pi / 2 + k_same_angle ? 0.5 * (high - low) : high - low;
+  ClosedPath path;
+  const auto add = [&path](double angle, double distance) {
+    path.push_back({.point = distance * Eigen::Vector2d(std::cos(angle), std::sin(angle))});
+  };
+  if (high - low < std::numbers::pi - k_same_angle) add(low, 0);
+  add(low, radius);
+  for (double angle = low + 0.5 * step; angle < high; angle += step) add(angle, radius / std::cos(0.5 * step));
+  add(high, radius);
+  const double more = k_margin * radius;
+  return simplest(extrusion_solid(frame, {.paths = {path}}, {box.min().y() - more, box.max().y() + more}));
 }
 
 /// Its local origin is in the middle of the profile.
 Primitive profile_solid(const Chart& chart, const FaceSet& faces, const Span& span) {
   Profile profile = outline_of(chart.drawing, faces);
-  Eigen::Vector2d middle = bounds_of(profile).center();
-  if (chart.is_turned) middle.x() = 0;
+  if (!chart.is_turned) return extrusion_solid(chart.frame, std::move(profile), span);
+  const double middle = bounds_of(profile).center().y();
   for (ClosedPath& path : profile.paths) {
-    for (PathCorner& corner : path) corner.point -= middle;
+    for (PathCorner& corner : path) corner.point.y() -= middle;
   }
-  const Eigen::Vector3d place = chart.is_turned ? Eigen::Vector3d(0, 0, middle.y())
-                                                : Eigen::Vector3d(middle.x(), middle.y(), 0.5 * (span.low + span.high));
-  const Pose pose{.position = chart.frame.position + chart.frame.orientation * place,
-                  .orientation = chart.frame.orientation};
-  if (chart.is_turned) return {.id = {}, .shape = Revolution{std::move(profile)}, .pose = pose};
-  return {.id = {}, .shape = Extrusion{std::move(profile), span.high - span.low}, .pose = pose};
+  const Eigen::Vector3d up = chart.frame.orientation * Eigen::Vector3d::UnitZ();
+  return {.id = {},
+          .shape = Revolution{std::move(profile)},
+          .pose = {.position = chart.frame.position + middle * up, .orientation = chart.frame.orientation}};
 }
 
 /// Solids that add to the part end with it. Solids that subtract reach beyond all those.
 Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
   const AlignedBox& bounds = adds ? space.part_bounds : space.bounds;
-  if (part.kind == PartKind::polytope)
-    return simplest(polytope_solid(polytope_of(space, part), bounds, rounding_in(space)));
+  if (part.kind == PartKind::polytope) return simplest(polytope_solid(space, part, bounds));
   const auto span_along = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
     const double most = k_most_overshoot * space.bounds.diagonal().norm();
     const Span wanted = span_of(bins_of(space, part), part.range, overshoots, most);
@@ -191,9 +196,10 @@ class SolidWriter {
     part.is_sector = false;
     WrittenTerm sector = write(space, part, overshoots, adds);
     const Pose& frame = family.chart.frame;
+    const Profile outline = outline_of(family.chart.drawing, part.faces);
     const bool is_large = high - low > std::numbers::pi + k_same_angle;
-    const Primitive wedge =
-        is_large ? wedge_solid(space, frame, high, low + 2 * std::numbers::pi) : wedge_solid(space, frame, low, high);
+    const Primitive wedge = is_large ? wedge_solid(frame, outline, high, low + 2 * std::numbers::pi)
+                                     : wedge_solid(frame, outline, low, high);
     const CsgTree leaf = CsgTree::leaf(add_wedge(wedge));
     sector.tree = is_large ? subtract(sector.tree, leaf) : intersect(sector.tree, leaf);
     return sector;
