@@ -146,8 +146,9 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--output", type=pathlib.Path, default=COPY / "table.jsonl")
     arguments = parser.parse_args()
+    folders = [os.path.normpath(folder) for folder in arguments.folders]
     COPY.mkdir(parents=True, exist_ok=True)
-    *programs, digest = build(arguments.folders)
+    *programs, digest = build(folders)
     done = {}
     if arguments.output.exists():
         done = {entry["key"]: entry["figures"] for entry in map(json.loads, arguments.output.read_text().splitlines())}
@@ -163,7 +164,12 @@ def main():
     def row(entry):
         key, text = entry
         values = [scaled(text, factor) for factor in (0.5, 2)]
-        halves = [cells(base, figures_of(f"{key}={value}")) if value else "| |" for value in values]
+        halves = []
+        for value in values:
+            try:
+                halves.append(cells(base, figures_of(f"{key}={value}")) if value else "| |")
+            except RuntimeError as error:
+                halves.append(f"{error} | |")
         file, name = key.split("_k_")
         return f"| `k_{name}` ({file}) = {text} | " + " | ".join(halves) + " |"
 
@@ -174,7 +180,7 @@ def main():
     print("| constant | half: found | IoU | leaves | double: found | IoU | leaves |\n|---|--:|--:|--:|--:|--:|--:|")
     for seed in range(2, arguments.seeds + 1):
         print(f"| other clouds (seed {seed}) | {cells(base, figures_of('', seed))} | | | |", flush=True)
-    swept = [entry for entry in constants_in(arguments.folders) if arguments.only in entry[0]]
+    swept = [entry for entry in constants_in(folders) if arguments.only in entry[0]]
     with ThreadPoolExecutor(arguments.jobs) as pool:
         for line in pool.map(row, swept):
             print(line, flush=True)

@@ -19,7 +19,7 @@ namespace {
 
 constexpr TermCosts k_costs{};
 
-/// A term space over a part of boxes, a cylinder and a sphere, and the places it was made from.
+/// A term space over a part of boxes, a cylinder, a sphere and a quarter of a cone, and the places it was made from.
 struct Scene {
   LabelledPlaces places;
   TermSpace space;
@@ -28,9 +28,10 @@ struct Scene {
 const Scene& scene() {
   static const Scene made = [] {
     const PrimitiveSet solids{
-        test::placed("a", Box{{4, 3, 1}}, {0, 0, 0}), test::placed("b", Box{{1, 1, 2}}, {1, 0, 1}),
-        test::placed("c", Cylinder{0.5, 3}, {-1, 0, 0}), test::placed("d", Sphere{0.6}, {-0.6, 0.3, 0.4})};
-    const CsgTree tree = parse_tree("((a | b) - c) | d", solids);
+        test::placed("a", Box{{4, 3, 1}}, {0, 0, 0}),    test::placed("b", Box{{1, 1, 2}}, {1, 0, 1}),
+        test::placed("c", Cylinder{0.5, 3}, {-1, 0, 0}), test::placed("d", Sphere{0.6}, {-0.6, 0.3, 0.4}),
+        test::placed("e", Cone{1.2, 0.8, 1}, {0, 3, 0}), test::placed("f", Box{{2, 2, 2}}, {1, 4, 0})};
+    const CsgTree tree = parse_tree("((a | b) - c) | d | e & f", solids);
     const PointCloud cloud = sample_surface({.primitives = solids, .tree = tree}, {.count = 3000, .seed = 2});
     Scene result;
     result.places = label_places(cloud, {.noise = 0.0, .volume_places = 3000, .surface_points = 1000});
@@ -159,6 +160,13 @@ TEST(DecisionList, AtItsLimitOfWorkAddsSimpleTermsOnly) {
   const double cost = cost_of(hurried, space.pulls, k_costs);
   EXPECT_LT(cost, cost_of({}, space.pulls, k_costs));
   EXPECT_GE(cost, cost_of(search_list(space, k_costs, {.rules = 20}), space.pulls, k_costs));
+}
+
+/// Else the next test would know no sectors.
+TEST(WriteSolids, TheSceneHasASector) {
+  EXPECT_TRUE(std::ranges::any_of(scene().space.profiles, [](const ProfileFamily& family) {
+    return family.chart.is_turned && family.slabs.count() > 1;
+  }));
 }
 
 RC_GTEST_PROP(WriteSolids, TheTreeDecidesAsTheListDoes, ()) {

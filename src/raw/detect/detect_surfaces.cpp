@@ -116,11 +116,14 @@ std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimit
 /// Points on none of the surfaces.
 FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces) {
   FreePoints points(cloud);
-  for (const GrownSurface& surface : surfaces) points.take(surface.points);
+  std::vector<std::uint32_t> taken;
+  for (const GrownSurface& surface : surfaces) taken.insert(taken.end(), surface.points.begin(), surface.points.end());
+  points.take(taken);
   return points;
 }
 
-/// By point: whether it is free and off all surfaces. A free point on a surface has a bad normal, as along an edge.
+/// By point: whether it is free and beyond the reach of all surfaces. A free point within it has another normal, as
+/// points along an edge may have. O(free points x surfaces)
 std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownSurface>& surfaces) {
   std::vector<bool> is_off(points.cloud().size(), false);
   for (const std::uint32_t i : points.list()) is_off[i] = true;
@@ -133,23 +136,22 @@ std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownS
   return is_off;
 }
 
-/// Finds surfaces and settles them, and then again among the points of surfaces that did not last.
+/// Finds surfaces and settles them. Where surfaces did not last, more points are free than were searched in vain: then
+/// it does so again among the free ones.
 std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
                                           const RunContext& run, const StageShare& share) {
   std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, limits, seed, run, share);
-  std::size_t searched = free_points(cloud, surfaces).list().size();  // in vain
-  for (int round = 0; round < k_rounds; ++round) {
+  for (int round = 1;; ++round) {
+    const std::size_t searched = free_points(cloud, surfaces).list().size();
     surfaces = settle_surfaces(std::move(surfaces), cloud, limits, run);
     FreePoints points = free_points(cloud, surfaces);
-    if (points.list().size() < searched + limits.least_points) break;
+    if (round == k_rounds || points.list().size() < searched + limits.least_points) return surfaces;
     const std::vector<bool> is_off = are_off_all(points, surfaces);
     const auto is_evidence = [&](std::uint32_t i) { return is_off[i]; };
     std::vector<GrownSurface> more = find_all(points, limits, seed, is_evidence, run, {});
-    if (more.empty()) break;
-    searched = points.list().size();
+    if (more.empty()) return surfaces;
     std::ranges::move(more, std::back_inserter(surfaces));
   }
-  return surfaces;
 }
 
 Surface in_the_cloud(Surface surface, const WorkCloud& work) {

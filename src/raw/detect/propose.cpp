@@ -176,7 +176,7 @@ std::vector<Surface> propose_surfaces(const FreePoints& points, const AgreementL
   const auto propose = [&](const std::optional<Surface>& surface) {
     if (const std::optional<Surface> sure = confirmed(surface, near, limits)) proposed.push_back(*sure);
   };
-  for (std::size_t k = 1; k <= k_rounds && proposed.empty(); ++k) {
+  for (std::size_t k = 1; k <= k_rounds && k + 1 < near.size() && proposed.empty(); ++k) {
     const std::array<OrientedPoint, 2> two{near[0], near[k]};
     const std::array<OrientedPoint, 3> three{near[0], near[k], near[k + 1]};
     propose(plane_through(three));

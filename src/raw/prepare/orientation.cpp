@@ -146,7 +146,7 @@ double neighbours_votes(const Cloud& cloud, std::uint32_t i, const std::vector<c
 
 /// Points outside all patches follow their neighbours, the closest to a patch first. Each round reaches further.
 void spread(const Cloud& cloud, std::vector<char>& flipped, std::vector<char>& is_known) {
-  while (true) {
+  for (int round = 0; round < 2 * k_rounds; ++round) {
     std::vector<char> next = flipped;
     std::vector<char> known_next = is_known;
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {

@@ -48,7 +48,8 @@ bool has_plane(const LocalFits& fits, std::size_t point, double noise, Strictnes
   const double reach = fits.neighbours.distances_of(point).back();
   const double half = std::clamp(k_deviations * noise / reach, k_bend_tolerance, 1.0);
   const double by_chance = half * (1.5 - 0.5 * half * half);
-  return fits.planes[point].support >= std::clamp(by_chance + k_beyond_chance, k_planar_support, k_clear_share);
+  const double beyond = std::min(by_chance + k_beyond_chance, k_clear_share);
+  return fits.planes[point].support >= std::max(beyond, k_planar_support);
 }
 
 Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, Strictness strictness,

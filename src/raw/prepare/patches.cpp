@@ -125,7 +125,7 @@ class SignSearch {
     order_groups();
   }
 
-  /// Flips the groups with the largest gains, rechecking each after the previous flips. @returns whether any gained.
+  /// Flips the groups with the largest gains, rechecking each after the previous flips. @returns whether any flipped.
   bool turn_best() {
     std::vector<std::pair<double, std::uint32_t>> gains;
     for_each_group([&](std::uint32_t group, std::vector<float>& column) {
@@ -135,6 +135,7 @@ class SignSearch {
     const std::size_t tried = std::min(k_best, gains.size());
     std::partial_sort(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(tried), gains.end(), std::greater<>());
     gains.resize(tried);
+    bool any = false;
     for (const auto& [gain, group] : gains) {
       std::vector<float> column(groups_.patches, 0.0F);
       for (std::uint32_t place = begins_[group]; place < ends_[group]; ++place) {
@@ -143,8 +144,9 @@ class SignSearch {
       if (gain_of(group, column) < k_clear_share * gain) continue;
       turn(group);
       add(rest_, column, -2.0F);
+      any = true;
     }
-    return !gains.empty();
+    return any;
   }
 
   /// Flips each group that gains, children before parents. @returns whether any gained.
@@ -328,8 +330,8 @@ PatchSigns find_patch_signs(const PatchFields& fields, std::span<const double> w
                             std::span<const PatchVote> votes, const RunContext& run) {
   Groups groups = GroupBuilder(fields.count, votes).build();
   SignSearch search(fields, weights, votes, groups);
-  while (search.turn_best()) run.throw_if_stopped();
-  while (search.sweep()) run.throw_if_stopped();
+  for (int turn = 0; turn < 8 * k_rounds && search.turn_best(); ++turn) run.throw_if_stopped();
+  for (int sweep = 0; sweep < 2 * k_rounds && search.sweep(); ++sweep) run.throw_if_stopped();
   return {.flipped = search.flipped(), .windings = search.windings(), .body_of = std::move(groups.body_of)};
 }
 

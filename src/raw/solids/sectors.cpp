@@ -16,9 +16,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Ten degrees. A narrower gap is a slot, or chance. Ends are as inexact: pieces that continue each other smoothly,
-/// such as two bends of a pipe, share the points where they meet.
+/// Ten degrees: a narrower gap is a slot. Ends are as inexact, because pieces that continue each other smoothly, such
+/// as two bends of a pipe, share the points where they meet.
 constexpr double k_gap = 0.175;
+/// In mean distances of angles. Of n random angles, n e^-10 have a wider gap by chance.
+constexpr double k_chance_gap = 10;
 constexpr std::size_t k_most_points = 2000;  // more tell no better where a surface ends
 constexpr std::size_t k_most_ends = 6;
 constexpr double k_level = 0.0175;  // the sine of a degree
@@ -47,42 +49,72 @@ std::vector<double> angles_of(const Pose& frame, const Points& positions, const 
     return std::min(static_cast<std::size_t>(share * k_bins), k_bins - 1);
   };
   for (const double angle : angles) ++counts[bin_of(angle)];
-  const auto filled = std::ranges::count_if(counts, [](std::size_t count) { return count > 0; });
+  const auto filled = k_bins - static_cast<std::size_t>(std::ranges::count(counts, std::size_t{0}));
   const double least = k_thin * static_cast<double>(angles.size()) / static_cast<double>(filled);
   std::erase_if(angles, [&](double angle) { return static_cast<double>(counts[bin_of(angle)]) < least; });
   std::ranges::sort(angles);
   return angles;
 }
 
-std::vector<double> ends_of_points(const Pose& frame, const Points& positions, const DetectedSurface& surface) {
-  const std::vector<double> angles = angles_of(frame, positions, surface);
-  // The mean distance of angles, or less: no point is exactly at an end.
-  const double step = std::min(k_gap / 4, 2 * std::numbers::pi / static_cast<double>(angles.size() + 1));
+/// Halfway between the last point and where the next would be at most, so that no point is exactly at an end.
+std::vector<double> ends_of(std::span<const double> angles) {
+  const double step = 2 * std::numbers::pi / static_cast<double>(angles.size() + 1);
+  const double least = std::max(k_gap, k_chance_gap * step);
   std::vector<double> ends;
   for (std::size_t k = 0; k < angles.size(); ++k) {
     const bool is_last = k + 1 == angles.size();
     const double next = is_last ? angles.front() + 2 * std::numbers::pi : angles[k + 1];
-    if (next - angles[k] > k_gap) ends.insert(ends.end(), {wrapped(angles[k] + step), wrapped(next - step)});
+    if (next - angles[k] > least) {
+      ends.insert(ends.end(), {wrapped(angles[k] + 0.5 * step), wrapped(next - 0.5 * step)});
+    }
   }
   return ends;
 }
 
-/// Where ends are likely to be: along planes through the axis, and towards the centres of other bends.
-std::vector<double> likely_ends(const Pose& frame, std::span<const DetectedSurface> surfaces, double tolerance) {
+/// Whether a torus goes on at a place on the middle of a bend: both are as thick, and its middle passes there.
+bool goes_on_at(const Surface& torus, const Vector3d& place, double minor_radius) {
+  constexpr double k_share = 0.2;  // of the minor radius
+  const Vector3d way = place - torus.position;
+  const double height = torus.axis.dot(way);
+  const double off = std::hypot((way - height * torus.axis).norm() - torus.radius, height);
+  return off < k_share * minor_radius && std::abs(torus.minor_radius - minor_radius) < k_share * minor_radius;
+}
+
+/// Where a surface is likely to end: along planes through the axis, and where another bend goes on.
+std::vector<double> likely_ends(const Pose& frame, const Surface& surface, std::span<const DetectedSurface> surfaces,
+                                double tolerance) {
   std::vector<double> likely;
-  const auto add = [&](const Vector2d& direction) {
-    likely.insert(likely.end(), {angle_of(direction), angle_of(-direction)});
-  };
   for (const DetectedSurface& s : surfaces) {
     const Vector3d axis = frame.orientation.conjugate() * s.surface.axis;
     const Vector3d place = frame.to_local(s.surface.position);
     if (s.surface.type == SurfaceType::plane && std::abs(axis.z()) < k_level && std::abs(axis.dot(place)) < tolerance) {
-      add(Vector2d(-axis.y(), axis.x()));
-    } else if (s.surface.type == SurfaceType::torus && place.head<2>().norm() > tolerance) {
-      add(place.head<2>());
+      const double angle = angle_of(Vector2d(-axis.y(), axis.x()));
+      likely.insert(likely.end(), {angle, wrapped(angle + std::numbers::pi)});
+    } else if (s.surface.type == SurfaceType::torus && surface.type == SurfaceType::torus &&
+               place.head<2>().norm() > tolerance) {
+      for (const Vector2d& towards :
+           {Vector2d(place.head<2>().normalized()), Vector2d(-place.head<2>().normalized())}) {
+        const Vector3d middle =
+            surface.position + surface.radius * (frame.orientation * Vector3d(towards.x(), towards.y(), 0));
+        if (goes_on_at(s.surface, middle, surface.minor_radius)) likely.push_back(angle_of(towards));
+      }
     }
   }
   return likely;
+}
+
+/// Points within k_gap of an angle, on the side with fewer.
+std::size_t count_across(double end, std::span<const std::vector<double>> angles) {
+  std::size_t before = 0;
+  std::size_t behind = 0;
+  for (const std::vector<double>& of_surface : angles) {
+    for (const double angle : of_surface) {
+      const double off = wrapped(angle - end);
+      before += off < 0 && off > -k_gap ? 1 : 0;
+      behind += off >= 0 && off < k_gap ? 1 : 0;
+    }
+  }
+  return std::min(before, behind);
 }
 
 }  // namespace
@@ -91,10 +123,12 @@ std::vector<double> sector_ends(const Pose& frame, const Points& positions,
                                 std::vector<const DetectedSurface*> revolved, std::span<const DetectedSurface> surfaces,
                                 double tolerance) {
   std::ranges::stable_sort(revolved, std::greater<>(), [](const DetectedSurface* s) { return s->points.size(); });
-  const std::vector<double> likely = likely_ends(frame, surfaces, tolerance);
+  std::vector<std::vector<double>> angles;
   std::vector<double> ends;
-  for (const DetectedSurface* surface : revolved) {
-    for (double end : ends_of_points(frame, positions, *surface)) {
+  for (const DetectedSurface* detected : revolved) {
+    angles.push_back(angles_of(frame, positions, *detected));
+    const std::vector<double> likely = likely_ends(frame, detected->surface, surfaces, tolerance);
+    for (double end : ends_of(angles.back())) {
       const auto distance = [end](double other) { return std::abs(wrapped(other - end)); };
       const auto nearest = std::ranges::min_element(likely, {}, distance);
       if (nearest != likely.end() && distance(*nearest) < k_gap) end = *nearest;
@@ -102,6 +136,7 @@ std::vector<double> sector_ends(const Pose& frame, const Points& positions,
       if (ends.size() < k_most_ends && std::ranges::none_of(ends, is_known)) ends.push_back(end);
     }
   }
+  std::ranges::stable_sort(ends, {}, [&](double end) { return count_across(end, angles); });
   return ends;
 }
 

@@ -103,9 +103,9 @@ Primitive extrusion_solid(const Pose& frame, Profile profile, const Span& span) 
 
 /// About the frame's axis from angle `low` to `high`, at most half a turn; wide and high enough for the turned outline.
 Primitive wedge_solid(const Pose& frame, const Profile& outline, double low, double high) {
-  constexpr double k_margin = 0.05;  // of the radius
+  constexpr double k_more = 0.05;  // of the radius
   const Eigen::AlignedBox2d box = bounds_of(outline);
-  const double radius = (1 + k_margin) * box.max().x();
+  const double radius = (1 + k_more) * box.max().x();
   const double step = high - low > std::numbers::pi / 2 + k_same_angle ? 0.5 * (high - low) : high - low;
   ClosedPath path;
   const auto add = [&path](double angle, double distance) {
@@ -115,7 +115,7 @@ Primitive wedge_solid(const Pose& frame, const Profile& outline, double low, dou
   add(low, radius);
   for (double angle = low + 0.5 * step; angle < high; angle += step) add(angle, radius / std::cos(0.5 * step));
   add(high, radius);
-  const double more = k_margin * radius;
+  const double more = k_more * radius;
   return simplest(extrusion_solid(frame, {.paths = {path}}, {box.min().y() - more, box.max().y() + more}));
 }
 
@@ -154,6 +154,10 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
   return revolved_solid(surface, has_ends ? span_along(surface.position, surface.axis) : Span{0, 1});
 }
 
+Primitive part_box(const TermSpace& space) {
+  return {.id = {}, .shape = Box{space.part_bounds.sizes()}, .pose = {.position = space.part_bounds.center()}};
+}
+
 /// A term or part as a tree, and where it may be.
 struct WrittenTerm {
   CsgTree tree = {};
@@ -162,25 +166,21 @@ struct WrittenTerm {
 
 class SolidWriter {
  public:
-  explicit SolidWriter(PrimitiveSet known) : solids(std::move(known)), known_(solids.size()) {
+  explicit SolidWriter(PrimitiveSet known) : solids(std::move(known)) {
     for (const Primitive& solid : solids) ids_.insert(solid.id);
   }
 
   PrimitiveIndex add(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
     if (part.is_known) return *space.revolved[part.family].known;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const auto& [known, known_overshoots, known_adds] = parts_[i];
+    for (const auto& [known, known_overshoots, known_adds, solid] : parts_) {
       TermPart plain = part;
       plain.is_inverted = known.is_inverted;
-      if (plain == known && overshoots == known_overshoots && adds == known_adds) {
-        return static_cast<PrimitiveIndex>(known_ + i);
-      }
+      if (plain == known && overshoots == known_overshoots && adds == known_adds) return solid;
     }
     Primitive solid = solid_of(space, part, overshoots, adds);
-    solid.id = new_id(std::string(type_name(solid.shape)));
-    solids.push_back(std::move(solid));
-    parts_.emplace_back(part, overshoots, adds);
-    return static_cast<PrimitiveIndex>(solids.size() - 1);
+    const PrimitiveIndex index = add(std::move(solid));
+    parts_.emplace_back(part, overshoots, adds, index);
+    return index;
   }
 
   /// The part as if it was not inverted.
@@ -194,35 +194,28 @@ class SolidWriter {
     const double high = family.slabs.edges[part.range.last + 1];
     part.range = {0, family.slabs.count() - 1};
     part.is_sector = false;
-    WrittenTerm sector = write(space, part, overshoots, adds);
+    part.bare_leaves = 0;  // sectors share the revolution
+    const WrittenTerm sector = write(space, part, overshoots, adds);
     const Pose& frame = family.chart.frame;
     const Profile outline = outline_of(family.chart.drawing, part.faces);
     const bool is_large = high - low > std::numbers::pi + k_same_angle;
     const Primitive wedge = is_large ? wedge_solid(frame, outline, high, low + 2 * std::numbers::pi)
                                      : wedge_solid(frame, outline, low, high);
-    const CsgTree leaf = CsgTree::leaf(add_wedge(wedge));
-    sector.tree = is_large ? subtract(sector.tree, leaf) : intersect(sector.tree, leaf);
-    return sector;
+    const CsgTree leaf = CsgTree::leaf(add(wedge, "wedge"));
+    if (is_large) return {.tree = subtract(sector.tree, leaf), .reach = sector.reach};
+    return {.tree = intersect(sector.tree, leaf), .reach = sector.reach.intersection(bounds(wedge))};
   }
 
-  /// A box around the part. It is the last solid, because indices are counted from the first one that was added.
-  PrimitiveIndex add_part_box(const TermSpace& space) {
-    Primitive box{.id = {}, .shape = Box{space.part_bounds.sizes()}, .pose = {.position = space.part_bounds.center()}};
-    box.id = new_id(std::string(type_name(box.shape)));
-    solids.push_back(std::move(box));
+  /// @returns its index. Its id is the name, or else its type, and a number.
+  PrimitiveIndex add(Primitive solid, const std::string& name = "") {
+    solid.id = new_id(name.empty() ? std::string(type_name(solid.shape)) : name);
+    solids.push_back(std::move(solid));
     return static_cast<PrimitiveIndex>(solids.size() - 1);
   }
 
   PrimitiveSet solids;
 
  private:
-  PrimitiveIndex add_wedge(Primitive wedge) {
-    wedge.id = new_id("wedge");
-    solids.push_back(std::move(wedge));
-    parts_.emplace_back();
-    return static_cast<PrimitiveIndex>(solids.size() - 1);
-  }
-
   /// By type and number, different from the ids of known solids.
   std::string new_id(const std::string& type) {
     std::string id;
@@ -232,9 +225,8 @@ class SolidWriter {
     return id;
   }
 
-  std::size_t known_;
   std::set<std::string> ids_;
-  std::vector<std::tuple<TermPart, Overshoots, bool>> parts_;
+  std::vector<std::tuple<TermPart, Overshoots, bool, PrimitiveIndex>> parts_;
   std::map<std::string, std::size_t> numbers_;
 };
 
@@ -272,8 +264,8 @@ WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
     if (list[r].is_in && !is_given && !space.bounds.contains(term.reach)) endless.push_back(r);
   }
   if (!endless.empty()) {
-    const CsgTree part_box = CsgTree::leaf(writer.add_part_box(space));
-    for (const std::size_t r : endless) terms[r] = intersect(terms[r], part_box);
+    const CsgTree around = CsgTree::leaf(writer.add(part_box(space)));
+    for (const std::size_t r : endless) terms[r] = intersect(terms[r], around);
   }
   CsgTree tree;
   for (std::size_t r = list.size(); r-- > 0;) {
