@@ -86,7 +86,7 @@ def build(folders):
 
 
 def make_clouds(program, seed):
-    """(mesh, cloud) of each part; the unchanged program makes them once for all builds."""
+    """(mesh, cloud) of each part; made once for all runs."""
     folder = COPY / f"clouds_{seed}"
     folder.mkdir(exist_ok=True)
     pairs = []

@@ -194,8 +194,9 @@ std::uint8_t smaller_side(const TwoSurfaces& two) {
   return 2 * std::ranges::count(two.side, std::uint8_t{1}) <= std::ssize(two.side) ? 1 : 0;
 }
 
-/// Whether the surface of the smaller side explains the points away from the step as well as averages do. False if
-/// these are fewer than a surface needs.
+/// Whether the surface of the smaller side explains the points away from the step as well as averages do, which adapt
+/// to form errors. The average of 8 points with noise is an eighth of the variance worse than the true surface. False
+/// if these points are fewer than a surface needs.
 bool matches_averages(const TwoSurfaces& two, const NearPoints& near, std::size_t least_points) {
   const std::uint8_t smaller = smaller_side(two);
   double excess = 0;

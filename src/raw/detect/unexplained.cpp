@@ -37,7 +37,7 @@ std::vector<std::uint32_t> points_together(const FreePoints& points, const Point
   return together;
 }
 
-/// Fits normals to the points alone, on the side of their old ones.
+/// Fits normals to the points alone, on the side of their old ones. k_voters are few enough for a band of three rows.
 void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& positions, double noise,
                             const RunContext& run) {
   const NeighbourTable near = find_neighbours(positions, NeighbourTree(positions), k_voters, run);

@@ -8,19 +8,20 @@ namespace cloud2csg {
 
 /// Points a task in parallel loops, and a box in searches. Only speed depends on it.
 constexpr std::size_t k_chunk_points = 64;
-/// Nearest points that measure spacing and area at a point. Fewer are no evidence of anything.
+/// Nearest points that measure spacing and area at a point. A patch, a leaf of a tree or evidence of any kind has at
+/// least as many points.
 constexpr std::size_t k_nearest = 8;
 /// Neighbours that vote on a point, such as on the sign of its normal.
 constexpr std::size_t k_voters = 12;
 /// Neighbours that a local plane or a proposal is fitted to, and whose planes judge a point.
 constexpr std::size_t k_around = 16;
-/// Random points for a share or a median, whose standard error is 2 % then.
+/// Points for a share, whose standard error is at most 2.2 % then, for a median or for a first fit.
 constexpr std::size_t k_sample = 512;
-/// The same where more precision is worth its time.
+/// The same where more precision is worth its time, as for final fits.
 constexpr std::size_t k_large_sample = 4096;
 /// Best candidates that are looked at thoroughly.
 constexpr std::size_t k_best = 8;
-/// Repetitions of a step that settles quickly.
+/// Repetitions of a step that settles or succeeds quickly, or else will not.
 constexpr int k_rounds = 4;
 /// Of normally distributed points, 1 in 370 is more standard deviations off its surface.
 constexpr double k_deviations = 3;
@@ -31,16 +32,16 @@ constexpr double k_isolated_spacings = 6;
 /// Gaps that differ by more are not those of one surface.
 constexpr double k_wide_gap = 1.4;
 /// Group radii beyond which moments approximate a group of dipoles. Above the 2 of Barill et al. (2018), as there are
-/// no third moments.
+/// no third moments, or only the first ones.
 constexpr double k_far_radii = 2.5;
-/// Cosine of two normals of one smooth surface.
+/// Cosine of two normals that are alike: of one smooth surface, or, with opposite signs, of the sides of a wall.
 constexpr double k_alike_cosine = 0.8;
 /// Sine of a line's angle to a surface (14 degrees) that is no error of the surface's normal.
 constexpr double k_steep_sine = 0.25;
 /// A clear majority; and a figure below this share of another is clearly less.
 constexpr double k_clear_share = 0.7;
 constexpr double k_nearly_all = 0.9;
-/// A share of the points that changes nothing.
+/// A share of the points that does not count.
 constexpr double k_negligible_share = 0.005;
 
 }  // namespace cloud2csg

@@ -155,6 +155,8 @@ NormalsVerdict check_by_winding(const PointCloud& cloud, const Points& places, c
   silent.on_progress = {};
   field.normals = estimate_normals(field, estimate_scale(field), silent).normals;
   const LevelErrors anew = level_errors(field, places, run);
+  // The normals of a third to a half of a closed part, estimated anew, left 0.91 or more of the error of right ones, in
+  // all but one of 48 clouds, and 0.65 or less where three tenths of the surface were flipped.
   if (anew.outward < k_clear_share * std::min(given.outward, given.inward)) return NormalsVerdict::unoriented;
   return given.inward < k_clear_share * given.outward ? NormalsVerdict::inward : NormalsVerdict::outward;
 }

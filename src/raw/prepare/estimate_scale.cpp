@@ -101,6 +101,7 @@ void measure_spacing_and_noise(Scale& scale, const Points& points, const Neighbo
   }
 }
 
+/// Points beyond the outer quantiles along an axis count only if other points are near.
 AlignedBox box_without_strays(const Points& points, const NeighbourTree& tree, double spacing) {
   Vector3d low;
   Vector3d high;

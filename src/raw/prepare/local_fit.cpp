@@ -18,6 +18,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+/// Added to k_around for an angle error, about 2 noise / (radius sqrt(neighbours)), of three degrees.
 constexpr double k_neighbours_a_noise = 60.0;
 constexpr int k_trials = 16;
 constexpr double k_tukey = 4.685;  // deviations beyond which the biweight is zero: 95 % efficient for normal noise

@@ -18,6 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Few enough to consider all pairs. Patches have so many points that there would be half as many of them, and are
+/// smaller than details.
 constexpr std::size_t k_most_patches = 4096;
 /// A winding number this far from one half contradicts the orientation.
 constexpr double k_doubt = 0.35;
@@ -240,6 +242,7 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
   std::vector<char> is_grazing(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     signs[i] = sight_cosine(places[i], normals[i], sensors[i]);
+    // There, an error of the normal may flip its sign.
     is_grazing[i] = std::abs(signs[i]) < k_steep_sine ? 1 : 0;
   }
   const std::size_t links = std::min(k_voters, neighbours.width);
@@ -253,6 +256,8 @@ std::vector<char> orient_to_sensors(const Points& places, const Points& normals,
         votes += vote * vote * vote * signs[j];
         weight += std::abs(vote * vote * vote * signs[j]);
       }
+      // With less, neighbours are on both sides of a wall and tell nothing. At an edge the plane may belong to the
+      // adjacent face, which the sensor saw from behind or not at all.
       const double majority = is_grazing[i] != 0 ? k_clear_share : k_nearly_all;
       if (std::abs(votes) > majority * weight) next[i] = votes / static_cast<double>(links);
     });

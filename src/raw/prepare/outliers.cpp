@@ -72,10 +72,12 @@ Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, 
   return witnesses;
 }
 
+/// A point with a much larger gap than its neighbours' gaps, or with few credible neighbours, is suspect.
 bool are_enough(const Witnesses& witnesses, const LocalFits& fits, std::size_t point, Strictness strictness) {
   const bool is_suspect =
       strictness == Strictness::suspicious && (gap_of(fits, point) > k_wide_gap * witnesses.usual_gap ||
                                                2 * witnesses.count < std::min(k_around, fits.neighbours.width));
+  // A suspected outlier lies on some planes by chance.
   const double least = is_suspect ? 2 * k_least_agreement : k_least_agreement;
   return static_cast<double>(witnesses.agreeing) >= least * static_cast<double>(witnesses.count);
 }
@@ -83,6 +85,7 @@ bool are_enough(const Witnesses& witnesses, const LocalFits& fits, std::size_t p
 bool is_on_surface(const LocalFits& fits, std::size_t point, double noise, Strictness strictness,
                    std::span<const PointFate> fates) {
   const Witnesses witnesses = ask_witnesses(fits, point, noise, strictness, fates);
+  // A wire or a speck has no planes around it.
   if (witnesses.count < k_nearest) return has_plane(fits, point, noise, strictness);
   return are_enough(witnesses, fits, point, strictness);
 }
@@ -139,6 +142,7 @@ KeptPoints without_outliers(const Points& points, Indices kept, Scale scale, con
     // Outliers raise the noise estimate, so each pass measures it again.
     if (pass > 0) scale = estimate_scale(remaining, run);
     const StageShare of_pass = cleaning.part(1.0 * pass / k_rounds, (pass + 1.0) / k_rounds);
+    // With few neighbours, noise and chance look alike among many outliers.
     const std::size_t width = strictness == Strictness::trusting ? k_around : 2 * k_around;
     const LocalFits fits = fit_locally(remaining, width, scale.noise, run, of_pass.part(0, 0.9));
     const std::vector<PointFate> fates = judge_points(fits, scale, strictness, run, of_pass.part(0.9, 1));

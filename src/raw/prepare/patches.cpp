@@ -141,6 +141,7 @@ class SignSearch {
       for (std::uint32_t place = begins_[group]; place < ends_[group]; ++place) {
         add(column, fields_.of(leaves_[place]), signs_[leaves_[place]]);
       }
+      // The flips before this one lessened its gain.
       if (gain_of(group, column) < k_clear_share * gain) continue;
       turn(group);
       add(rest_, column, -2.0F);

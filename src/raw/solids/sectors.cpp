@@ -87,16 +87,18 @@ std::vector<double> likely_ends(const Pose& frame, const Surface& surface, std::
   for (const DetectedSurface& s : surfaces) {
     const Vector3d axis = frame.orientation.conjugate() * s.surface.axis;
     const Vector3d place = frame.to_local(s.surface.position);
-    if (s.surface.type == SurfaceType::plane && std::abs(axis.z()) < k_level && std::abs(axis.dot(place)) < tolerance) {
+    const bool is_through_axis = std::abs(axis.z()) < k_level && std::abs(axis.dot(place)) < tolerance;
+    const bool are_bends = s.surface.type == SurfaceType::torus && surface.type == SurfaceType::torus;
+    if (s.surface.type == SurfaceType::plane && is_through_axis) {
       const double angle = angle_of(Vector2d(-axis.y(), axis.x()));
       likely.insert(likely.end(), {angle, wrapped(angle + std::numbers::pi)});
-    } else if (s.surface.type == SurfaceType::torus && surface.type == SurfaceType::torus &&
-               place.head<2>().norm() > tolerance) {
-      for (const Vector2d& towards :
-           {Vector2d(place.head<2>().normalized()), Vector2d(-place.head<2>().normalized())}) {
-        const Vector3d middle =
-            surface.position + surface.radius * (frame.orientation * Vector3d(towards.x(), towards.y(), 0));
-        if (goes_on_at(s.surface, middle, surface.minor_radius)) likely.push_back(angle_of(towards));
+    } else if (are_bends && place.head<2>().norm() > tolerance) {
+      for (const double side : {1.0, -1.0}) {
+        const Vector2d towards = side * place.head<2>().normalized();
+        const Vector3d way = frame.orientation * Vector3d(towards.x(), towards.y(), 0);
+        if (goes_on_at(s.surface, surface.position + surface.radius * way, surface.minor_radius)) {
+          likely.push_back(angle_of(towards));
+        }
       }
     }
   }
