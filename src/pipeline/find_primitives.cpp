@@ -211,6 +211,7 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   check_any_surface(rest, found.prepared.cloud);
   found.unexplained = points_of_none(lists_of(rest), found.prepared.cloud.size());
   found.detection = std::move(rest.detection);
+  found.prepared.scale.noise = found.detection.noise;  // from whole surfaces, so better than from neighbours
   // Known primitives have ends of their own.
   if (options.close_unseen && known.empty()) found = with_unseen_closed(std::move(found), run);
   found.detect_seconds = watch.lap();
@@ -232,6 +233,7 @@ RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const Pri
   RestDetection result{.known = deal_points(cloud, known, tolerances_of(options, scale), run), .detection = {}};
   const std::vector<std::uint32_t> rest = points_of_none(lists_of(result.known), cloud.size());
   if (rest.empty()) {
+    result.detection.noise = scale.noise;
     result.detection.distance_tolerance = detection_tolerance(options, scale);
     return result;
   }

@@ -75,6 +75,16 @@ TEST(ChooseSolids, FindsAPlateWithHoles) {
   expect_recovered(plate_with_holes(), 1);
 }
 
+/// The points of each side are as near to the other as to their own, but the sides are known much better.
+TEST(ChooseSolids, FindsASheetOfTwoAndAHalfDeviations) {
+  constexpr double k_noise = 0.02;
+  const Part sheet = part_of({test::placed("sheet", Box{{4, 3, 2.5 * k_noise}}, {0, 0, 0})}, "sheet", k_noise);
+  const SolidChoice choice = choose_solids(sheet.cloud, sheet.surfaces, quick());
+  ASSERT_EQ(choice.solids.size(), 1U);
+  const Eigen::Vector3d size = bounds(choice.solids[0]).sizes();
+  EXPECT_NEAR(size.z(), 2.5 * k_noise, 0.2 * k_noise);
+}
+
 /// Bores from the top, the bottom and a side, so that no extrusion has several of them.
 Part block_with_bores() {
   return part_of(

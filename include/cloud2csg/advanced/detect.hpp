@@ -59,7 +59,10 @@ struct DetectedSurface {
 struct Detection {
   std::vector<DetectedSurface> surfaces;
   std::size_t unexplained = 0;
-  double distance_tolerance = 0;
+  /// Standard deviation of the points across planes if any of the largest surfaces is one, else that of the scale. In
+  /// the cloud's units.
+  double noise = 0;
+  double distance_tolerance = 0;  ///< in force
 };
 
 /// The distance tolerance in force: the option or its default. In the cloud's units.

@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/run_context.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/base/robust_deviation.hpp"
 #include "core/base/run.hpp"
 #include "raw/detect/grow.hpp"
 #include "raw/detect/propose.hpp"
@@ -65,17 +68,25 @@ std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimit
   return with_simplest_type(with_best_round_type(std::move(**best), points, limits), points, limits);
 }
 
+/// Surfaces to begin with, and how many are enough.
+struct SearchExtent {
+  std::vector<GrownSurface> found = {};
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+};
+
 /// Finds one surface after another until several rounds in a row find none, each with twice as many draws. Evidence for
 /// a surface are only its points for which `is_evidence(point)` holds; of a surface without enough evidence, the other
 /// points count as taken.
 template <typename IsEvidence>
 std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limits, std::uint64_t seed,
-                                   const IsEvidence& is_evidence, const RunContext& run, const StageShare& share) {
+                                   const IsEvidence& is_evidence, const RunContext& run, const StageShare& share,
+                                   SearchExtent extent = {}) {
   constexpr std::size_t k_draws = 64;
   const auto count = static_cast<double>(points.cloud().size());
-  std::vector<GrownSurface> found;
+  std::vector<GrownSurface> found = std::move(extent.found);
   int in_vain = 0;
-  for (std::uint64_t round = 0; in_vain < k_rounds && points.list().size() >= limits.least_points; ++round) {
+  for (std::uint64_t round = found.size(); in_vain < k_rounds && points.list().size() >= limits.least_points; ++round) {
+    if (found.size() == extent.most) break;
     run.throw_if_stopped();
     share.report(run, 1 - static_cast<double>(points.list().size()) / count);
     std::optional<GrownSurface> surface = find_one(points, limits, k_draws << in_vain, seed, round, run);
@@ -92,14 +103,108 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
   return found;
 }
 
-/// Finds all surfaces, then more among the points that are left, by normals of their own. Points that the first
-/// surfaces explain are no evidence for a later one. Only its other points get the new normals.
-std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
+bool always(std::uint32_t /*point*/) {
+  return true;
+}
+
+/// The noise that tells surfaces apart. Files give at least five digits, so less counts as exact.
+double detection_noise(const DetectOptions& options, const Scale& scale) {
+  constexpr double k_exact_share = 1e-5;
+  if (options.distance_tolerance) return *options.distance_tolerance / k_deviations;
+  return std::max(scale.noise, k_exact_share * scale.diagonal);
+}
+
+/// The option's value, or the fewest points that are no chance. A patch of n points is sqrt(n) spacings wide. A point
+/// at random in it lies within the tolerance of a surface with the chance of the band's share of the width. The
+/// parameters fit some of the points anyway; all others must be as unlikely as one in a million.
+std::size_t least_points_of(const DetectOptions& options, const Scale& scale, std::size_t cloud_points) {
+  // 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 10 do; with
+  // double, 18.
+  constexpr std::size_t k_parameters = 7;  // of a torus
+  if (options.least_points) return *options.least_points;
+  const double band = 2 * detection_tolerance(options, scale);
+  std::size_t points = k_parameters + 1;
+  const auto evidence = [&] {
+    return static_cast<double>(points - k_parameters) *
+           std::log(std::sqrt(static_cast<double>(points)) * scale.spacing / band);
+  };
+  while (points <= cloud_points && !(evidence() >= k_evidence)) ++points;
+  return points;
+}
+
+/// In a cloud of diagonal 1: the option's value, up to the radius that counts as flat.
+double most_radius_of(const DetectOptions& options, double diagonal) {
+  return options.most_size ? std::min(k_flat_radius, *options.most_size / diagonal) : k_flat_radius;
+}
+
+SearchLimits limits_of(const DetectOptions& options, const Scale& scale, const WorkCloud& work) {
+  constexpr double k_link_in_spacings = 4;
+  const double tolerance = detection_tolerance(options, scale);
+  return {.agreement = {.distance = tolerance / work.diagonal,
+                        .noise = detection_noise(options, scale) / work.diagonal,
+                        .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180),
+                        .most_radius = most_radius_of(options, work.diagonal)},
+          .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
+          .least_points = least_points_of(options, scale, work.size())};
+}
+
+/// Noise of the points of the median plane, which is weighted by points; absent without planes. Other surfaces may have
+/// form errors, such as facets. Free points within twice the tolerance count, too, so the noise may be larger than the
+/// limits assume: where neighbours have similar errors, as in smoothed meshes, local fits follow these errors, and only
+/// whole surfaces show them. O(points x planes)
+std::optional<double> noise_of_planes(const std::vector<GrownSurface>& surfaces, const FreePoints& points,
+                                      const AgreementLimits& limits) {
+  AgreementLimits wide = limits;
+  wide.distance *= 2;
+  std::vector<double> noises;  // by point
+  for (const GrownSurface& plane : surfaces) {
+    if (plane.surface.type != SurfaceType::plane) continue;
+    const std::vector<std::uint32_t> near =
+        points_near(plane, points.cloud(), wide, [&](std::uint32_t i) { return points.is_free(i); });
+    const std::optional<double> noise = noise_of(distances_of(plane.surface, points.cloud(), near));
+    if (noise) noises.insert(noises.end(), plane.points.size(), *noise);
+  }
+  return noises.empty() ? std::nullopt : std::optional(median_of(noises));
+}
+
+/// The first few surfaces, and limits by the noise that they show.
+struct LargestSurfaces {
+  Scale scale;
+  SearchLimits limits;
+  std::vector<GrownSurface> surfaces;
+};
+
+/// Measures the noise by the largest surfaces, and finds them again if it is clearly more than assumed.
+LargestSurfaces find_largest(const WorkCloud& cloud, Scale scale, const DetectOptions& options, const RunContext& run) {
+  for (int round = 1;; ++round) {
+    const SearchLimits limits = limits_of(options, scale, cloud);
+    FreePoints points(cloud);
+    std::vector<GrownSurface> found = find_all(points, limits, options.seed, always, run, {}, {.most = k_rounds});
+    const auto noise = options.distance_tolerance ? std::nullopt : noise_of_planes(found, points, limits.agreement);
+    if (noise) scale.noise = *noise * cloud.diagonal;
+    if (noise && limits.agreement.noise < k_clear_share * *noise && round < k_rounds) continue;
+    return {.scale = scale, .limits = limits_of(options, scale, cloud), .surfaces = std::move(found)};
+  }
+}
+
+/// Points on none of the surfaces.
+FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces) {
+  FreePoints points(cloud);
+  std::vector<std::uint32_t> taken;
+  for (const GrownSurface& surface : surfaces) taken.insert(taken.end(), surface.points.begin(), surface.points.end());
+  points.take(taken);
+  return points;
+}
+
+/// Finds all surfaces after the largest, then more among the points that are left, by normals of their own. Points that
+/// the first surfaces explain are no evidence for a later one. Only its other points get the new normals.
+std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, LargestSurfaces largest, std::uint64_t seed,
                                              const RunContext& run, const StageShare& share) {
   const double first_pass = 0.8;  // of the time, roughly
-  FreePoints points(cloud);
-  const auto always = [](std::uint32_t) { return true; };
-  std::vector<GrownSurface> found = find_all(points, limits, seed, always, run, share.part(0, first_pass));
+  const SearchLimits& limits = largest.limits;
+  FreePoints points = free_points(cloud, largest.surfaces);
+  std::vector<GrownSurface> found =
+      find_all(points, limits, seed, always, run, share.part(0, first_pass), {.found = std::move(largest.surfaces)});
   if (points.list().size() < limits.least_points) return found;
   const WorkCloud part = unexplained_part(points, limits.agreement.noise, run);
   FreePoints of_part(part);
@@ -112,15 +217,6 @@ std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const SearchLimit
     found.push_back(std::move(surface));
   }
   return found;
-}
-
-/// Points on none of the surfaces.
-FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces) {
-  FreePoints points(cloud);
-  std::vector<std::uint32_t> taken;
-  for (const GrownSurface& surface : surfaces) taken.insert(taken.end(), surface.points.begin(), surface.points.end());
-  points.take(taken);
-  return points;
 }
 
 /// By point: whether it is free and beyond the reach of all surfaces. A free point within it has another normal, as
@@ -139,9 +235,10 @@ std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownS
 
 /// Finds surfaces and settles them. Where surfaces did not last, more points are free than were searched in vain: then
 /// it does so again among the free ones.
-std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const SearchLimits& limits, std::uint64_t seed,
+std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, LargestSurfaces largest, std::uint64_t seed,
                                           const RunContext& run, const StageShare& share) {
-  std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, limits, seed, run, share);
+  const SearchLimits limits = largest.limits;
+  std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, std::move(largest), seed, run, share);
   for (int round = 1;; ++round) {
     const std::size_t searched = free_points(cloud, surfaces).list().size();
     surfaces = settle_surfaces(std::move(surfaces), cloud, limits, run);
@@ -187,36 +284,6 @@ DetectedSurface detected(const GrownSurface& grown, const WorkCloud& work) {
   return result;
 }
 
-/// The noise that tells surfaces apart. Files give at least five digits, so less counts as exact.
-double detection_noise(const DetectOptions& options, const Scale& scale) {
-  constexpr double k_exact_share = 1e-5;
-  if (options.distance_tolerance) return *options.distance_tolerance / k_deviations;
-  return std::max(scale.noise, k_exact_share * scale.diagonal);
-}
-
-/// The option's value, or the fewest points that are no chance. A patch of n points is sqrt(n) spacings wide. A point
-/// at random in it lies within the tolerance of a surface with the chance of the band's share of the width. The
-/// parameters fit some of the points anyway; all others must be as unlikely as one in a million.
-std::size_t least_points_of(const DetectOptions& options, const Scale& scale, std::size_t cloud_points) {
-  // 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 10 do; with
-  // double, 18.
-  constexpr std::size_t k_parameters = 7;  // of a torus
-  if (options.least_points) return *options.least_points;
-  const double band = 2 * detection_tolerance(options, scale);
-  std::size_t points = k_parameters + 1;
-  const auto evidence = [&] {
-    return static_cast<double>(points - k_parameters) *
-           std::log(std::sqrt(static_cast<double>(points)) * scale.spacing / band);
-  };
-  while (points <= cloud_points && !(evidence() >= k_evidence)) ++points;
-  return points;
-}
-
-/// In a cloud of diagonal 1: the option's value, up to the radius that counts as flat.
-double most_radius_of(const DetectOptions& options, double diagonal) {
-  return options.most_size ? std::min(k_flat_radius, *options.most_size / diagonal) : k_flat_radius;
-}
-
 /// Whether a surface's size is within the options' limits. Surfaces outside are dropped only after detection, so that
 /// no others replace them: no strips of planes for a small bore.
 bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const DetectOptions& options, double link) {
@@ -251,18 +318,14 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
                           const RunContext& run) {
   validate(options);
   WorkCloud work = make_work_cloud(cloud);
-  const double tolerance = detection_tolerance(options, scale);
-  constexpr double k_link_in_spacings = 4;
-  const SearchLimits limits{.agreement = {.distance = tolerance / work.diagonal,
-                                          .noise = detection_noise(options, scale) / work.diagonal,
-                                          .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180),
-                                          .most_radius = most_radius_of(options, work.diagonal)},
-                            .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
-                            .least_points = least_points_of(options, scale, cloud.size())};
-
   const StageShare share("detect", cloud.size(), "points");
-  Detection result{.surfaces = {}, .unexplained = cloud.size(), .distance_tolerance = tolerance};
-  std::vector<GrownSurface> surfaces = find_and_settle(work, limits, options.seed, run, share);
+  LargestSurfaces largest = find_largest(work, scale, options, run);
+  const SearchLimits limits = largest.limits;
+  Detection result{.surfaces = {},
+                   .unexplained = cloud.size(),
+                   .noise = largest.scale.noise,
+                   .distance_tolerance = detection_tolerance(options, largest.scale)};
+  std::vector<GrownSurface> surfaces = find_and_settle(work, std::move(largest), options.seed, run, share);
   // A given tolerance says that nearer surfaces are one.
   if (!options.distance_tolerance) surfaces = split_surfaces(std::move(surfaces), work, limits, run);
   for (const GrownSurface& grown : surfaces) {

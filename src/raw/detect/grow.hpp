@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,22 @@ struct GrownSurface {
 /// limit. A surface with form errors, such as facets, reaches farther than an exact one. O(n)
 [[nodiscard]] double reach_of(const Surface& surface, const WorkCloud& cloud, std::span<const std::uint32_t> points,
                               const AgreementLimits& limits);
+
+/// Standard deviation of the points around the mean of their patch, of the median patch. The distances are those of
+/// successive points, which are near each other. Absent if they are fewer than a patch. O(n)
+[[nodiscard]] std::optional<double> noise_of(std::span<const double> distances);
+
+/// The surface's points and others within the limits, ascending, of those with is_wanted(index).
+template <class IsWanted>
+std::vector<std::uint32_t> points_near(const GrownSurface& grown, const WorkCloud& cloud, const AgreementLimits& limits,
+                                       const IsWanted& is_wanted) {
+  std::vector<std::uint32_t> points;
+  for_each_agreeing(grown.surface, cloud, limits, is_wanted,
+                    [&](std::uint32_t i, const Agreement&) { points.push_back(i); });
+  const auto middle = points.insert(points.end(), grown.points.begin(), grown.points.end());
+  std::inplace_merge(points.begin(), middle, points.end());
+  return points;
+}
 
 /// Weight of a type. A simpler type wins over a more flexible one that explains a few more points.
 [[nodiscard]] double preference(SurfaceType type);

@@ -19,24 +19,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Standard deviation of the points around the mean of their patch, of the median patch. Successive points are near
-/// each other.
-double noise_of(const std::vector<double>& distances, double least) {
-  const std::size_t patch_size = 2 * k_around;
-  std::vector<double> variances;
-  for (std::size_t first = 0; first + patch_size <= distances.size(); first += patch_size) {
-    const auto patch = std::span(distances).subspan(first, patch_size);
-    double sum = 0;
-    double squares = 0;
-    for (const double d : patch) {
-      sum += d;
-      squares += d * d;
-    }
-    variances.push_back((squares - sum * sum / patch_size) / (patch_size - 1));
-  }
-  return variances.empty() ? least : std::max(least, std::sqrt(median_of(variances)));
-}
-
 /// Mean of the successive distances whose mean is least likely by chance, of windows of all powers of two. 0 if none
 /// is off by 3.7 standard errors: this is a cheap first look, and most surfaces end here.
 double strongest_offset(const std::vector<double>& distances, double noise) {
@@ -263,27 +245,16 @@ std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, cons
   return parts;
 }
 
-/// The surface's points, and free ones within a step that could hide in the limits.
-std::vector<std::uint32_t> points_near(const GrownSurface& grown, const WorkCloud& cloud,
-                                       const std::vector<bool>& is_free, const AgreementLimits& limits) {
-  AgreementLimits wide = limits;
-  wide.distance *= 3;
-  std::vector<std::uint32_t> points;
-  for_each_agreeing(
-      grown.surface, cloud, wide, [&](std::uint32_t i) { return is_free[i]; },
-      [&](std::uint32_t i, const Agreement&) { points.push_back(i); });
-  const auto middle = points.insert(points.end(), grown.points.begin(), grown.points.end());
-  std::inplace_merge(points.begin(), middle, points.end());
-  return points;
-}
-
 /// Absent if no run of neighbouring points is off the surface.
 std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
                                       const std::vector<bool>& is_free, const SearchLimits& limits,
                                       const RunContext& run) {
-  std::vector<std::uint32_t> points = points_near(grown, cloud, is_free, limits.agreement);
+  AgreementLimits wide = limits.agreement;
+  wide.distance *= 3;  // a step within could hide in the limits
+  std::vector<std::uint32_t> points = points_near(grown, cloud, wide, [&](std::uint32_t i) { return is_free[i]; });
   if (points.size() < 2 * limits.least_points || points.size() <= k_around) return std::nullopt;
-  const double noise = noise_of(distances_of(grown.surface, cloud, grown.points), limits.agreement.noise);
+  const double least = limits.agreement.noise;
+  const double noise = std::max(least, noise_of(distances_of(grown.surface, cloud, grown.points)).value_or(least));
   std::vector<double> distances = distances_of(grown.surface, cloud, points);
   const double offset = strongest_offset(distances, noise);
   if (offset == 0) return std::nullopt;

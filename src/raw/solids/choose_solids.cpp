@@ -54,6 +54,21 @@ GivenSurfaces made_regular(const PointCloud& cloud, std::span<const DetectedSurf
   return result;
 }
 
+/// The cloud with the points of surfaces moved onto them, and with their normals. A surface is known much better than
+/// one of its points, so the two sides of a wall may be nearer than three standard deviations of the noise.
+PointCloud moved_onto(PointCloud cloud, std::span<const DetectedSurface> surfaces) {
+  if (!cloud.has_normals()) return cloud;  // label_places() refuses it
+  for (const DetectedSurface& detected : surfaces) {
+    for (const std::uint32_t i : detected.points) {
+      const Eigen::Vector3d position = cloud.positions[i];
+      const Eigen::Vector3d outward = normal(detected.surface, position);
+      cloud.positions.set(i, position - signed_distance(detected.surface, position) * outward);
+      cloud.normals.set(i, outward);
+    }
+  }
+  return cloud;
+}
+
 }  // namespace
 
 SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
@@ -75,13 +90,13 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
       std::max(place_options.volume_places, options.volume_places_a_surface * surfaces.size());
   place_options.surface_points =
       std::max(place_options.surface_points, options.surface_points_a_surface * surfaces.size());
-  SolidChoice choice;
-  choice.places = label_places(cloud, place_options, run);
   const double tolerance = tolerance_of(cloud, options, *place_options.noise);
   KnownTerms terms{.solids = {}, .surfaces = surfaces_of_known(cloud, known)};
   for (const KnownSolid& one : known) terms.solids.push_back(one.solid);
   GivenSurfaces regular = made_regular(cloud, surfaces, terms.surfaces, options.regularity, tolerance);
   run.throw_if_stopped();
+  SolidChoice choice;
+  choice.places = label_places(moved_onto(cloud, regular.surfaces), place_options, run);
   const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance, terms);
   const TermCosts costs{.leaf = options.leaf_cost};
   const DecisionList list = search_list(space, costs, {.rules = options.most_rules}, run);

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/advanced/winding_number.hpp"
@@ -12,6 +14,7 @@
 #include "core/geometry/boxes.hpp"
 #include "core/geometry/neighbour_tree.hpp"
 #include "core/geometry/subset.hpp"
+#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -150,11 +153,17 @@ class Labelling {
     return sides;
   }
 
-  /// The side of the nearest point's plane; 0 within the noise.
+  /// The side of the nearest point's plane; 0 within the noise, unless the points around are on the same side.
   [[nodiscard]] int side_by_nearest(const Eigen::Vector3d& place) const {
-    const std::uint32_t point = index_.nearest(place).point;
-    const double height = cloud_.normals[point].dot(place - cloud_.positions[point]);
-    return std::abs(height) <= 1.5 * noise_ ? 0 : height < 0 ? 1 : -1;
+    std::array<std::uint32_t, k_nearest> near{};
+    std::array<double, k_nearest> squares{};
+    const std::size_t found = index_.find(place, near, squares);
+    const auto height = [&](std::uint32_t i) { return cloud_.normals[i].dot(place - cloud_.positions[i]); };
+    const auto side = [&](std::uint32_t i) { return height(i) < 0 ? 1 : -1; };
+    const auto around = std::span(near).first(found);
+    const bool is_clear = std::abs(height(near[0])) > 1.5 * noise_;
+    const auto agrees = [&](std::uint32_t i) { return side(i) == side(near[0]); };
+    return is_clear || std::ranges::all_of(around, agrees) ? side(near[0]) : 0;
   }
 
   /// Distance of the places beside a point; less if another surface is near on either side.
@@ -169,7 +178,7 @@ class Labelling {
       const bool faces = cloud_.normals[other].dot(normal) < -0.5 && height > 0.7 * offset.norm();
       if (faces) least = std::min(least, 0.4 * height);
     }
-    return least > 1.5 * noise_ ? least : 0.0;
+    return least;
   }
 
   const PointCloud& cloud_;
