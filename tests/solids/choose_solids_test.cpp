@@ -85,6 +85,17 @@ TEST(ChooseSolids, FindsASheetOfTwoAndAHalfDeviations) {
   EXPECT_NEAR(size.z(), 2.5 * k_noise, 0.2 * k_noise);
 }
 
+/// A groove around a corner, which is broken off: no surface shows where the plate ends within the groove.
+TEST(ChooseSolids, LeavesOutWhatLiesBehindAGroove) {
+  const Part plate =
+      part_of({turned(test::placed("plate", Box{{10, 10, 2.5}}, {5.16, 5.16, 1.88}), {-1, 1, 0}, 45),
+               test::placed("groove", Torus{.major_radius = 10, .minor_radius = 2}, {0, 0, 0}),
+               turned(test::placed("corner", Box{{12, 40, 40}}, {10.96, 10.96, -1.89}), {0, 0.59, 0.57}, 55.25)},
+              "plate - groove - corner");
+  ASSERT_EQ(plate.surfaces.size(), 7U) << "no point is on the surface of the corner";
+  expect_recovered(plate, 3);
+}
+
 /// Bores from the top, the bottom and a side, so that no extrusion has several of them.
 Part block_with_bores() {
   return part_of(

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/error.hpp"
+#include "raw/prepare/constants.hpp"
 #include "raw/solids/known_parts.hpp"
 #include "raw/solids/list_search.hpp"
+#include "raw/solids/separators.hpp"
 #include "raw/solids/write_solids.hpp"
 
 namespace cloud2csg {
@@ -69,6 +72,34 @@ PointCloud moved_onto(PointCloud cloud, std::span<const DetectedSurface> surface
   return cloud;
 }
 
+struct FoundList {
+  DecisionList list;
+  WrittenSolids written;
+};
+
+/// Searches a list, then improves it with planes between the solid and lumps that are wrongly in it, while that saves
+/// more than a leaf. `space_with(terms)` makes the term space.
+template <typename SpaceWith>
+FoundList found_list(const SpaceWith& space_with, KnownTerms terms, const LabelledPlaces& places,
+                     const TermCosts& costs, const ListLimits& limits, const RunContext& run) {
+  const TermSpace space = space_with(terms);
+  FoundList found{.list = search_list(space, costs, limits, run), .written = {}};
+  found.written = write_solids(space, found.list);
+  double cost = cost_of(found.list, space.pulls, costs);
+  for (int round = 0; round < k_rounds && !run.stop.stop_requested(); ++round) {
+    const std::vector<Surface> planes = separating_planes(found.written, places, 2 * costs.leaf);
+    if (planes.empty()) break;
+    terms.separators.insert(terms.separators.end(), planes.begin(), planes.end());
+    const TermSpace more = space_with(terms);
+    DecisionList list = improve_list(found.list, more, costs, limits, run);
+    const double before = std::exchange(cost, cost_of(list, more.pulls, costs));
+    if (!(cost < before - costs.leaf)) break;
+    found.written = write_solids(more, list);
+    found.list = std::move(list);
+  }
+  return found;
+}
+
 }  // namespace
 
 SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
@@ -97,10 +128,12 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   run.throw_if_stopped();
   SolidChoice choice;
   choice.places = label_places(moved_onto(cloud, regular.surfaces), place_options, run);
-  const TermSpace space = make_term_space(cloud, regular.surfaces, choice.places, tolerance, terms);
-  const TermCosts costs{.leaf = options.leaf_cost};
-  const DecisionList list = search_list(space, costs, {.rules = options.most_rules}, run);
-  WrittenSolids written = write_solids(space, list);
+  const auto space_with = [&](const KnownTerms& given) {
+    return make_term_space(cloud, regular.surfaces, choice.places, tolerance, given);
+  };
+  const ListLimits limits{.rules = options.most_rules};
+  auto [list, written] =
+      found_list(space_with, std::move(terms), choice.places, {.leaf = options.leaf_cost}, limits, run);
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);
   choice.disagreement = wrong_place_share(choice.tree, choice.solids, choice.places);

@@ -68,6 +68,11 @@ class ListSearch {
     return is_large_ ? improved(std::move(best_)) : std::move(best_);
   }
 
+  DecisionList run_from(DecisionList list) {
+    for (Rule& rule : list) rule.members = members_of(space_, rule.term);
+    return improved(pruned(grown(std::move(list), limits_.rules)));
+  }
+
  private:
   [[nodiscard]] bool is_over() const { return run_.stop.stop_requested() || spent_ > limits_.work; }
 
@@ -349,6 +354,11 @@ class ListSearch {
 DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
                          const RunContext& run) {
   return ListSearch(space, costs, limits, run).run();
+}
+
+DecisionList improve_list(DecisionList list, const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
+                          const RunContext& run) {
+  return ListSearch(space, costs, limits, run).run_from(std::move(list));
 }
 
 }  // namespace cloud2csg

@@ -19,4 +19,8 @@ struct ListLimits {
 [[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
                                        const RunContext& run = {});
 
+/// The same from one start: a list over a space to which this one has added planes.
+[[nodiscard]] DecisionList improve_list(DecisionList list, const TermSpace& space, const TermCosts& costs,
+                                        const ListLimits& limits, const RunContext& run = {});
+
 }  // namespace cloud2csg

@@ -77,6 +77,7 @@ struct TermSpace {
 struct KnownTerms {
   PrimitiveSet solids = {};
   std::vector<DetectedSurface> surfaces = {};
+  std::vector<Surface> separators = {};  ///< planes that are no faces
 };
 
 /// O(places x surfaces).
