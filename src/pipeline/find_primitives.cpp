@@ -211,7 +211,8 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   check_any_surface(rest, found.prepared.cloud);
   found.unexplained = points_of_none(lists_of(rest), found.prepared.cloud.size());
   found.detection = std::move(rest.detection);
-  found.prepared.scale.noise = found.detection.noise;  // from whole surfaces, so better than from neighbours
+  // Planes show the noise better than neighbours, unless detection has seen only a part of the cloud.
+  if (known.empty()) found.prepared.scale.noise = found.detection.noise;
   // Known primitives have ends of their own.
   if (options.close_unseen && known.empty()) found = with_unseen_closed(std::move(found), run);
   found.detect_seconds = watch.lap();

@@ -59,13 +59,13 @@ struct DetectedSurface {
 struct Detection {
   std::vector<DetectedSurface> surfaces;
   std::size_t unexplained = 0;
-  /// Standard deviation of the points across planes if any of the largest surfaces is one, else that of the scale. In
-  /// the cloud's units.
+  /// Standard deviation of the points across the planes among the largest surfaces. That of the scale if there are
+  /// none, or if a tolerance is given. In the cloud's units.
   double noise = 0;
-  double distance_tolerance = 0;  ///< in force
+  double distance_tolerance = 0;  ///< the option, or the default by this noise
 };
 
-/// The distance tolerance in force: the option or its default. In the cloud's units.
+/// The distance tolerance: the option, or its default by the noise of the scale. In the cloud's units.
 [[nodiscard]] double detection_tolerance(const DetectOptions& options, const Scale& scale);
 
 /// Finds planes, spheres, cylinders, cones and tori, convex and concave, from random samples of neighbouring points, in

@@ -191,13 +191,13 @@ struct SolidChoice {
   std::vector<std::string> warnings = {};  ///< sentences for the user: given values that the points do not support
 };
 
-/// Chooses few solids bounded by the surfaces, and a tree over them. The tree is a decision list of terms: extrusions
-/// and revolutions of profiles (boxes, cylinders, cones, spheres and tori where they are such), polytopes, and
-/// intersections of a profile with a curved surface's inside or outside. The first term that contains a place says
-/// whether it is in the solid. Terms are not enumerated: the search repeatedly adds the term that gains most, and
-/// removes or exchanges rules while that lowers disagreement plus leaves. A profile's segment beyond the fourth counts
-/// as a tenth of a leaf. The result does not depend on the number of threads. When stopped early, the tree is the best
-/// so far.
+/// Chooses few solids bounded by the surfaces, and where these do not suffice by separating planes, and a tree over
+/// them. The tree is a decision list of terms: extrusions and revolutions of profiles (boxes, cylinders, cones, spheres
+/// and tori where they are such), polytopes, and intersections of a profile with a curved surface's inside or outside.
+/// The first term that contains a place says whether it is in the solid. Terms are not enumerated: the search
+/// repeatedly adds the term that gains most, and removes or exchanges rules while that lowers disagreement plus leaves.
+/// A profile's segment beyond the fourth counts as a tenth of a leaf. The result does not depend on the number of
+/// threads. When stopped early, the tree is the best so far.
 /// @throws Error without normals or surfaces, or for an option out of range; Cancelled when stopped before the search.
 [[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                         const SolidOptions& options = {}, const RunContext& run = {});

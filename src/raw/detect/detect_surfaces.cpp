@@ -69,7 +69,7 @@ std::optional<GrownSurface> find_one(const FreePoints& points, const SearchLimit
 }
 
 /// Surfaces to begin with, and how many are enough.
-struct SearchExtent {
+struct SearchStart {
   std::vector<GrownSurface> found = {};
   std::size_t most = std::numeric_limits<std::size_t>::max();
 };
@@ -80,13 +80,13 @@ struct SearchExtent {
 template <typename IsEvidence>
 std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limits, std::uint64_t seed,
                                    const IsEvidence& is_evidence, const RunContext& run, const StageShare& share,
-                                   SearchExtent extent = {}) {
+                                   SearchStart start = {}) {
   constexpr std::size_t k_draws = 64;
   const auto count = static_cast<double>(points.cloud().size());
-  std::vector<GrownSurface> found = std::move(extent.found);
+  std::vector<GrownSurface> found = std::move(start.found);
   int in_vain = 0;
   for (std::uint64_t round = found.size(); in_vain < k_rounds && points.list().size() >= limits.least_points; ++round) {
-    if (found.size() == extent.most) break;
+    if (found.size() == start.most) break;
     run.throw_if_stopped();
     share.report(run, 1 - static_cast<double>(points.list().size()) / count);
     std::optional<GrownSurface> surface = find_one(points, limits, k_draws << in_vain, seed, round, run);
@@ -148,10 +148,10 @@ SearchLimits limits_of(const DetectOptions& options, const Scale& scale, const W
           .least_points = least_points_of(options, scale, work.size())};
 }
 
-/// Noise of the points of the median plane, which is weighted by points; absent without planes. Other surfaces may have
-/// form errors, such as facets. Free points within twice the tolerance count, too, so the noise may be larger than the
-/// limits assume: where neighbours have similar errors, as in smoothed meshes, local fits follow these errors, and only
-/// whole surfaces show them. O(points x planes)
+/// Noise of the points of the median plane, which is weighted by points; absent if planes have few points. Other
+/// surfaces may have form errors, such as facets. Free points within twice the tolerance count, too, so the noise may
+/// be larger than the limits assume: where neighbours have similar errors, as in smoothed meshes, local fits follow
+/// these errors, and only whole surfaces show them. O(points x planes)
 std::optional<double> noise_of_planes(const std::vector<GrownSurface>& surfaces, const FreePoints& points,
                                       const AgreementLimits& limits) {
   AgreementLimits wide = limits;
@@ -161,10 +161,10 @@ std::optional<double> noise_of_planes(const std::vector<GrownSurface>& surfaces,
     if (plane.surface.type != SurfaceType::plane) continue;
     const std::vector<std::uint32_t> near =
         points_near(plane, points.cloud(), wide, [&](std::uint32_t i) { return points.is_free(i); });
-    const std::optional<double> noise = noise_of(distances_of(plane.surface, points.cloud(), near));
+    const std::optional<double> noise = noise_within_patches(distances_of(plane.surface, points.cloud(), near));
     if (noise) noises.insert(noises.end(), plane.points.size(), *noise);
   }
-  return noises.empty() ? std::nullopt : std::optional(median_of(noises));
+  return noises.size() < k_sample ? std::nullopt : std::optional(median_of(noises));
 }
 
 /// The first few surfaces, and limits by the noise that they show.
@@ -174,12 +174,16 @@ struct LargestSurfaces {
   std::vector<GrownSurface> surfaces;
 };
 
+/// Half of it may miss the planes of a round part; double takes longer where the noise is more than assumed.
+constexpr std::size_t k_first_surfaces = 4;
+
 /// Measures the noise by the largest surfaces, and finds them again if it is clearly more than assumed.
 LargestSurfaces find_largest(const WorkCloud& cloud, Scale scale, const DetectOptions& options, const RunContext& run) {
   for (int round = 1;; ++round) {
     const SearchLimits limits = limits_of(options, scale, cloud);
     FreePoints points(cloud);
-    std::vector<GrownSurface> found = find_all(points, limits, options.seed, always, run, {}, {.most = k_rounds});
+    std::vector<GrownSurface> found =
+        find_all(points, limits, options.seed, always, run, {}, {.most = k_first_surfaces});
     const auto noise = options.distance_tolerance ? std::nullopt : noise_of_planes(found, points, limits.agreement);
     if (noise) scale.noise = *noise * cloud.diagonal;
     if (noise && limits.agreement.noise < k_clear_share * *noise && round < k_rounds) continue;
@@ -290,9 +294,9 @@ bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const De
   if (!options.least_size && !options.most_size) return true;
   const SurfaceType type = grown.surface.type;
   const bool has_radius = type == SurfaceType::sphere || type == SurfaceType::cylinder || type == SurfaceType::torus;
-  const double extent = work.extent_of(connected_groups(work.points, grown.points, link).front());
-  double least = extent;
-  double most = extent;
+  const double start = work.extent_of(connected_groups(work.points, grown.points, link).front());
+  double least = start;
+  double most = start;
   if (has_radius) {
     least = std::min(least, type == SurfaceType::torus ? grown.surface.minor_radius : grown.surface.radius);
     most = std::max(most, grown.surface.radius);

@@ -61,7 +61,7 @@ std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
   });
 }
 
-std::optional<double> noise_of(std::span<const double> distances) {
+std::optional<double> noise_within_patches(std::span<const double> distances) {
   const std::size_t patch_size = 2 * k_around;
   std::vector<double> variances;
   for (std::size_t first = 0; first + patch_size <= distances.size(); first += patch_size) {

@@ -43,9 +43,10 @@ struct GrownSurface {
 
 /// Standard deviation of the points around the mean of their patch, of the median patch. The distances are those of
 /// successive points, which are near each other. Absent if they are fewer than a patch. O(n)
-[[nodiscard]] std::optional<double> noise_of(std::span<const double> distances);
+[[nodiscard]] std::optional<double> noise_within_patches(std::span<const double> distances);
 
-/// The surface's points and others within the limits, ascending, of those with is_wanted(index).
+/// The surface's points and others within the limits, ascending, of those with is_wanted(index). Precondition: its own
+/// points are not wanted.
 template <class IsWanted>
 std::vector<std::uint32_t> points_near(const GrownSurface& grown, const WorkCloud& cloud, const AgreementLimits& limits,
                                        const IsWanted& is_wanted) {

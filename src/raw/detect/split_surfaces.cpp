@@ -9,7 +9,6 @@
 #include <span>
 #include <utility>
 
-#include "core/base/robust_deviation.hpp"
 #include "raw/detect/propose.hpp"
 #include "raw/prepare/constants.hpp"
 #include "raw/prepare/neighbours.hpp"
@@ -254,7 +253,8 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   std::vector<std::uint32_t> points = points_near(grown, cloud, wide, [&](std::uint32_t i) { return is_free[i]; });
   if (points.size() < 2 * limits.least_points || points.size() <= k_around) return std::nullopt;
   const double least = limits.agreement.noise;
-  const double noise = std::max(least, noise_of(distances_of(grown.surface, cloud, grown.points)).value_or(least));
+  const double noise =
+      std::max(least, noise_within_patches(distances_of(grown.surface, cloud, grown.points)).value_or(least));
   std::vector<double> distances = distances_of(grown.surface, cloud, points);
   const double offset = strongest_offset(distances, noise);
   if (offset == 0) return std::nullopt;

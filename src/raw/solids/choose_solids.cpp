@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,7 +59,8 @@ GivenSurfaces made_regular(const PointCloud& cloud, std::span<const DetectedSurf
 }
 
 /// The cloud with the points of surfaces moved onto them, and with their normals. A surface is known much better than
-/// one of its points, so the two sides of a wall may be nearer than three standard deviations of the noise.
+/// one of its points, so the two sides of a wall may be nearer than three standard deviations of the noise. Takes the
+/// surfaces as found: made regular, the sides of a thin wall may be one plane.
 PointCloud moved_onto(PointCloud cloud, std::span<const DetectedSurface> surfaces) {
   if (!cloud.has_normals()) return cloud;  // label_places() refuses it
   for (const DetectedSurface& detected : surfaces) {
@@ -78,24 +80,23 @@ struct FoundList {
 };
 
 /// Searches a list, then improves it with planes between the solid and lumps that are wrongly in it, while that saves
-/// more than a leaf. `space_with(terms)` makes the term space.
+/// more than a leaf. All rounds together work no longer than the search. `space_with(terms)` makes the term space.
 template <typename SpaceWith>
 FoundList found_list(const SpaceWith& space_with, KnownTerms terms, const LabelledPlaces& places,
-                     const TermCosts& costs, const ListLimits& limits, const RunContext& run) {
+                     const TermCosts& costs, ListLimits limits, const RunContext& run) {
   const TermSpace space = space_with(terms);
   FoundList found{.list = search_list(space, costs, limits, run), .written = {}};
   found.written = write_solids(space, found.list);
-  double cost = cost_of(found.list, space.pulls, costs);
-  for (int round = 0; round < k_rounds && !run.stop.stop_requested(); ++round) {
-    const std::vector<Surface> planes = separating_planes(found.written, places, 2 * costs.leaf);
-    if (planes.empty()) break;
+  limits.work /= k_rounds;
+  for (int round = 0; round < k_rounds; ++round) {
+    const std::vector<Surface> planes = separating_planes(found.written, places, 2 * costs.leaf, run);
+    if (planes.empty() || run.stop.stop_requested()) break;
     terms.separators.insert(terms.separators.end(), planes.begin(), planes.end());
     const TermSpace more = space_with(terms);
-    DecisionList list = improve_list(found.list, more, costs, limits, run);
-    const double before = std::exchange(cost, cost_of(list, more.pulls, costs));
-    if (!(cost < before - costs.leaf)) break;
-    found.written = write_solids(more, list);
-    found.list = std::move(list);
+    std::optional<DecisionList> list = improve_list(found.list, more, costs, limits, run);
+    if (!list) break;
+    found.written = write_solids(more, *list);
+    found.list = std::move(*list);
   }
   return found;
 }
@@ -127,7 +128,7 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   GivenSurfaces regular = made_regular(cloud, surfaces, terms.surfaces, options.regularity, tolerance);
   run.throw_if_stopped();
   SolidChoice choice;
-  choice.places = label_places(moved_onto(cloud, regular.surfaces), place_options, run);
+  choice.places = label_places(moved_onto(cloud, surfaces), place_options, run);
   const auto space_with = [&](const KnownTerms& given) {
     return make_term_space(cloud, regular.surfaces, choice.places, tolerance, given);
   };

@@ -123,7 +123,7 @@ class Labelling {
     for (std::size_t i = 0; i < points.size(); ++i) {
       for (const int side : {-1, 1}) {
         const Eigen::Vector3d place = cloud_.positions[points[i]] + side * depths[i] * cloud_.normals[points[i]];
-        if (depths[i] <= 0 || side_by_nearest(place) != -side) continue;
+        if (side_by_nearest(place) != -side) continue;
         places.positions.push_back(place);
         places.weights.push_back(-side * 0.5 * areas_[points[i]] / area);
       }
@@ -140,7 +140,7 @@ class Labelling {
     return sum / 3;
   }
 
-  /// 1 inside, -1 outside, 0 unclear. Near points, the nearest one decides unless the winding number contradicts it.
+  /// 1 inside, -1 outside, 0 unclear. Near points, the nearest ones decide unless the winding number contradicts it.
   [[nodiscard]] std::vector<int> sides_of(const Points& places, const std::vector<double>& numbers, double unit) const {
     std::vector<int> sides(places.size());
     for_each_index_by_chunks(places.size(), k_chunk_places, run_, [&](std::size_t i) {

@@ -68,9 +68,11 @@ class ListSearch {
     return is_large_ ? improved(std::move(best_)) : std::move(best_);
   }
 
-  DecisionList run_from(DecisionList list) {
+  std::optional<DecisionList> run_from(DecisionList list) {
     for (Rule& rule : list) rule.members = members_of(space_, rule.term);
-    return improved(pruned(grown(std::move(list), limits_.rules)));
+    const double before = cost(list);
+    list = improved(pruned(grown(std::move(list), limits_.rules)));
+    return cost(list) < before - costs_.leaf ? std::optional(std::move(list)) : std::nullopt;
   }
 
  private:
@@ -356,8 +358,8 @@ DecisionList search_list(const TermSpace& space, const TermCosts& costs, const L
   return ListSearch(space, costs, limits, run).run();
 }
 
-DecisionList improve_list(DecisionList list, const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
-                          const RunContext& run) {
+std::optional<DecisionList> improve_list(DecisionList list, const TermSpace& space, const TermCosts& costs,
+                                         const ListLimits& limits, const RunContext& run) {
   return ListSearch(space, costs, limits, run).run_from(std::move(list));
 }
 

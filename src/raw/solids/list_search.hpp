@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "cloud2csg/run_context.hpp"
 #include "raw/solids/decision_list.hpp"
 
@@ -19,8 +21,10 @@ struct ListLimits {
 [[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
                                        const RunContext& run = {});
 
-/// The same from one start: a list over a space to which this one has added planes.
-[[nodiscard]] DecisionList improve_list(DecisionList list, const TermSpace& space, const TermCosts& costs,
-                                        const ListLimits& limits, const RunContext& run = {});
+/// The same from one start: a list over a space to which this one has added planes. Absent if that saves no more than a
+/// leaf.
+[[nodiscard]] std::optional<DecisionList> improve_list(DecisionList list, const TermSpace& space,
+                                                       const TermCosts& costs, const ListLimits& limits,
+                                                       const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "core/geometry/cubes.hpp"
 
@@ -14,11 +15,15 @@ namespace {
 struct InsidePlaces {
   std::vector<std::uint32_t> right, wrong;
   AlignedBox box;
+  double spacing;  ///< of all places, inside or not
 };
 
 InsidePlaces places_inside(const WrittenSolids& written, const LabelledPlaces& places) {
   const std::vector<double> values = implicit_value(written.tree, written.solids, places.positions);
-  InsidePlaces inside;
+  InsidePlaces inside{.right = {},
+                      .wrong = {},
+                      .box = {},
+                      .spacing = std::cbrt(bounds_of(places.positions).volume() / static_cast<double>(values.size()))};
   for (std::uint32_t i = 0; i < values.size(); ++i) {
     if (!(values[i] < 0)) continue;
     (places.weights[i] < 0 ? inside.wrong : inside.right).push_back(i);
@@ -27,12 +32,11 @@ InsidePlaces places_inside(const WrittenSolids& written, const LabelledPlaces& p
   return inside;
 }
 
-/// Groups of wrong places: those within about two places' distance of each other.
+/// Groups of wrong places: those in touching cubes of an edge of two spacings.
 std::vector<std::vector<std::uint32_t>> lumps_of(const InsidePlaces& inside, const LabelledPlaces& places) {
-  const auto count = static_cast<double>(inside.right.size() + inside.wrong.size());
-  const double edge = 2 * std::cbrt(inside.box.volume() / count);
   std::vector<std::uint64_t> cubes;
-  for (const std::uint32_t i : inside.wrong) cubes.push_back(cube_of(places.positions[i] - inside.box.center(), edge));
+  for (const std::uint32_t i : inside.wrong)
+    cubes.push_back(cube_of(places.positions[i] - inside.box.center(), 2 * inside.spacing));
   std::vector<std::vector<std::uint32_t>> lumps = connected_groups(cubes);
   for (std::vector<std::uint32_t>& lump : lumps) {
     for (std::uint32_t& k : lump) k = inside.wrong[k];
@@ -61,15 +65,16 @@ struct Regression {
   }
 };
 
-/// The plane that best separates a lump from the right places, by Newton's method.
-Surface plane_below(const std::vector<std::uint32_t>& lump, const InsidePlaces& inside, const LabelledPlaces& places) {
-  constexpr int k_steps = 30;
+/// The plane that best separates a lump from the right places, by Newton's method. Absent if no direction does.
+std::optional<Surface> plane_below(const std::vector<std::uint32_t>& lump, const InsidePlaces& inside,
+                                   const LabelledPlaces& places) {
+  constexpr int k_most_steps = 30;
   constexpr double k_longest_step = 10;  // else the first steps may overshoot
   const Eigen::Vector3d middle = inside.box.center();
   const double diagonal = inside.box.diagonal().norm();
   const auto in_frame = [&](std::uint32_t i) -> Eigen::Vector3d { return (places.positions[i] - middle) / diagonal; };
   Eigen::Vector4d factors = Eigen::Vector4d::Zero();
-  for (int step = 0; step < k_steps; ++step) {
+  for (int step = 0; step < k_most_steps; ++step) {
     Regression regression(factors);
     for (const std::uint32_t i : lump) {
       regression.add(in_frame(i), true, 1 / static_cast<double>(lump.size()), factors);
@@ -78,24 +83,28 @@ Surface plane_below(const std::vector<std::uint32_t>& lump, const InsidePlaces& 
       regression.add(in_frame(i), false, 1 / static_cast<double>(inside.right.size()), factors);
     }
     const Eigen::Vector4d way = regression.curvature.ldlt().solve(regression.slope);
+    if (way.norm() < 1e-6 * factors.norm()) break;
     factors -= way * (k_longest_step / std::max(way.norm(), k_longest_step));
   }
   const double length = factors.head<3>().norm();
+  if (!(length > 0)) return std::nullopt;
   const Eigen::Vector3d normal = factors.head<3>() / length;
-  return {.type = SurfaceType::plane, .position = middle - factors[3] / length * diagonal * normal, .axis = normal};
+  return Surface{
+      .type = SurfaceType::plane, .position = middle - factors[3] / length * diagonal * normal, .axis = normal};
 }
 
 }  // namespace
 
-std::vector<Surface> separating_planes(const WrittenSolids& written, const LabelledPlaces& places,
-                                       double least_weight) {
+std::vector<Surface> separating_planes(const WrittenSolids& written, const LabelledPlaces& places, double least_weight,
+                                       const RunContext& run) {
   const InsidePlaces inside = places_inside(written, places);
   std::vector<Surface> planes;
-  if (inside.wrong.empty() || inside.right.empty()) return planes;
+  if (inside.wrong.empty() || inside.right.empty() || !(inside.spacing > 0)) return planes;
   for (const std::vector<std::uint32_t>& lump : lumps_of(inside, places)) {
     double weight = 0;
     for (const std::uint32_t i : lump) weight -= places.weights[i];
-    if (weight >= least_weight) planes.push_back(plane_below(lump, inside, places));
+    if (!(weight >= least_weight) || run.stop.stop_requested()) continue;
+    if (const auto plane = plane_below(lump, inside, places)) planes.push_back(*plane);
   }
   return planes;
 }

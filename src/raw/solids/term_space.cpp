@@ -225,6 +225,7 @@ TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurfa
     space.revolved.push_back(revolved_family(detected, cloud.positions, all, rules, diagonal));
   }
   space.planes = distinct_planes(all, distance_tolerance, box.center());
+  // The last ones, so that terms keep the indices of their planes when more are added.
   for (const Surface& plane : known.separators) {
     space.planes.push_back({.normal = plane.axis, .offset = plane.axis.dot(plane.position)});
   }

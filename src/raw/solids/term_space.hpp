@@ -73,7 +73,8 @@ struct TermSpace {
   [[nodiscard]] std::size_t size() const { return pulls.size(); }
 };
 
-/// Known solids, and their surfaces, at which other solids may end.
+/// What terms may use beside the found surfaces: known solids, their surfaces, at which other solids may end, and
+/// separating planes.
 struct KnownTerms {
   PrimitiveSet solids = {};
   std::vector<DetectedSurface> surfaces = {};
