@@ -103,6 +103,7 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
   return found;
 }
 
+/// Every point is evidence.
 bool always(std::uint32_t /*point*/) {
   return true;
 }
@@ -294,9 +295,9 @@ bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const De
   if (!options.least_size && !options.most_size) return true;
   const SurfaceType type = grown.surface.type;
   const bool has_radius = type == SurfaceType::sphere || type == SurfaceType::cylinder || type == SurfaceType::torus;
-  const double start = work.extent_of(connected_groups(work.points, grown.points, link).front());
-  double least = start;
-  double most = start;
+  const double extent = work.extent_of(connected_groups(work.points, grown.points, link).front());
+  double least = extent;
+  double most = extent;
   if (has_radius) {
     least = std::min(least, type == SurfaceType::torus ? grown.surface.minor_radius : grown.surface.radius);
     most = std::max(most, grown.surface.radius);
