@@ -155,15 +155,15 @@ class Labelling {
 
   /// The side of the nearest point's plane; 0 within the noise, unless the points around are on the same side.
   [[nodiscard]] int side_by_nearest(const Eigen::Vector3d& place) const {
+    const auto height = [&](std::uint32_t i) { return cloud_.normals[i].dot(place - cloud_.positions[i]); };
+    const auto side = [&](std::uint32_t i) { return height(i) < 0 ? 1 : -1; };
+    const std::uint32_t nearest = index_.nearest(place).point;
+    if (std::abs(height(nearest)) > 1.5 * noise_) return side(nearest);
     std::array<std::uint32_t, k_nearest> near{};
     std::array<double, k_nearest> squares{};
     const std::size_t found = index_.find(place, near, squares);
-    const auto height = [&](std::uint32_t i) { return cloud_.normals[i].dot(place - cloud_.positions[i]); };
-    const auto side = [&](std::uint32_t i) { return height(i) < 0 ? 1 : -1; };
-    const auto around = std::span(near).first(found);
-    const bool is_clear = std::abs(height(near[0])) > 1.5 * noise_;
-    const auto agrees = [&](std::uint32_t i) { return side(i) == side(near[0]); };
-    return is_clear || std::ranges::all_of(around, agrees) ? side(near[0]) : 0;
+    const auto agrees = [&](std::uint32_t i) { return side(i) == side(nearest); };
+    return std::ranges::all_of(std::span(near).first(found), agrees) ? side(nearest) : 0;
   }
 
   /// Distance of the places beside a point; less if another surface is near on either side.
