@@ -21,9 +21,26 @@ constexpr std::size_t k_most_curve_points = 2000;  // of a curve; more tell no b
 /// How far curves reach beyond their points, in diagonals of the drawing. Whole lines make six times as many faces.
 constexpr double k_reach = 0.06;
 constexpr double k_meeting = 1e-6;       // in diagonals: crossings that near are one, as in OpenSCAD
-constexpr double k_border = 0.01;        // width of the empty border, in diagonals
 constexpr double k_gap = 3;              // in spacings: an edge farther from all points has none
 constexpr double k_least_share = 0.002;  // of all points, on surfaces along the direction or axis
+
+constexpr std::size_t k_sides = 4;  // of a box: least and greatest x, least and greatest y
+
+Eigen::Index axis_across(std::size_t side) {
+  return side < 2 ? 0 : 1;
+}
+
+double& place_of(Eigen::AlignedBox2d& box, std::size_t side) {
+  return (side % 2 == 0 ? box.min() : box.max())[axis_across(side)];
+}
+
+/// A side of the box. Its points are the corners.
+Curve line_along(Eigen::AlignedBox2d box, std::size_t side) {
+  const Eigen::Index across = axis_across(side);
+  const double place = place_of(box, side);
+  box.min()[across] = box.max()[across] = place;
+  return {.normal = Vector2d::Unit(across), .offset = place, .points = {box.min(), box.max()}};
+}
 
 class ChartMaker {
  public:
@@ -31,8 +48,9 @@ class ChartMaker {
       : positions_(positions),
         surfaces_(surfaces),
         options_(options),
-        middle_(bounds_of(positions).center()),
-        diagonal_(bounds_of(positions).diagonal().norm()) {}
+        seen_(points_on(surfaces, positions)),
+        middle_(bounds_of(seen_).center()),
+        diagonal_(bounds_of(seen_).diagonal().norm()) {}
 
   std::vector<Chart> make() const {
     std::vector<Chart> charts = best_of(directions(), false, options_.most_directions);
@@ -233,37 +251,60 @@ class ChartMaker {
     return charts;
   }
 
+  /// The border of a drawing, where the points end. A profile may end there for nothing, as a part on a table does.
+  struct Border {
+    Eigen::AlignedBox2d box = {};
+    std::array<std::uint32_t, k_sides> curves = {};  ///< by side: the line that it continues, or one beyond all
+  };
+
+  [[nodiscard]] Border border_of(const Chart& chart, std::span<const Curve> curves,
+                                 const Eigen::AlignedBox2d& ends) const {
+    Border border{.box = ends};
+    for (std::size_t side = 0; side < k_sides; ++side) {
+      const Curve end = line_along(ends, side);
+      const auto line =
+          std::ranges::find_if(curves, [&](const Curve& curve) { return is_same(curve, end, options_.tolerance); });
+      border.curves[side] = static_cast<std::uint32_t>(curves.size() + side);
+      if (line == curves.end()) continue;
+      border.curves[side] = static_cast<std::uint32_t>(line - curves.begin());
+      const Vector2d middle = 0.5 * (end.points[0] + end.points[1]);
+      const double off = line->normal.dot(middle) - line->offset;
+      place_of(border.box, side) -= off / line->normal[axis_across(side)];
+    }
+    if (chart.is_turned) border.box.min().x() = 0;
+    return border;
+  }
+
   [[nodiscard]] Chart drawn(Chart chart, std::vector<Curve> curves) const {
-    Eigen::AlignedBox2d box;
-    for (std::size_t i = 0; i < positions_.size(); ++i) box.extend(chart.place_of(positions_[i]));
-    const double diagonal = box.diagonal().norm();
-    box = {box.min() - Vector2d::Constant(k_border * diagonal), box.max() + Vector2d::Constant(k_border * diagonal)};
-    if (chart.is_turned) box.min().x() = 0;
+    Eigen::AlignedBox2d ends;
+    for (std::size_t i = 0; i < seen_.size(); ++i) ends.extend(chart.place_of(seen_[i]));
+    const double diagonal = ends.diagonal().norm();
     curves = with_closed_gaps(std::move(curves), k_reach * diagonal, options_.tolerance);
     std::vector<ProfileSegment> pieces;
     std::vector<std::uint32_t> curve_of_piece;
+    const auto add = [&](const ProfileSegment& piece, std::uint32_t curve) {
+      pieces.push_back(piece);
+      curve_of_piece.push_back(curve);
+    };
     const std::vector<CurveExtent> extents = extents_of(curves, k_reach * diagonal);
     for (std::uint32_t c = 0; c < curves.size(); ++c) {
-      for (const ProfileSegment& piece : pieces_of(curves[c], extents[c])) {
-        pieces.push_back(piece);
-        curve_of_piece.push_back(c);
-      }
+      for (const ProfileSegment& piece : pieces_of(curves[c], extents[c])) add(piece, c);
     }
-    const std::array corners{box.min(), Vector2d(box.max().x(), box.min().y()), box.max(),
-                             Vector2d(box.min().x(), box.max().y())};
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      pieces.push_back(segment_between(corners[k], 0, corners[(k + 1) % 4]));
-      curve_of_piece.push_back(static_cast<std::uint32_t>(curves.size()) + k);
+    const std::size_t first_of_border = pieces.size();
+    const Border border = border_of(chart, curves, ends);
+    for (std::size_t side = 0; side < k_sides; ++side) {
+      const Curve line = line_along(border.box, side);
+      add(segment_between(line.points[0], 0, line.points[1]), border.curves[side]);
     }
     chart.drawing.is_turned = chart.is_turned;
     chart.drawing.arrangement = arrange(pieces, k_meeting * diagonal);
     for (const CurveArrangement::Edge& edge : chart.drawing.arrangement.edges) {
       const std::uint32_t curve = curve_of_piece[edge.piece];
       chart.drawing.curve_of_edge.push_back(curve);
-      const bool is_border = curve >= curves.size();
       const double around = chart.is_turned ? 2 * std::numbers::pi * edge.segment.at(0.5).x() : 1.0;
       chart.drawing.price_of_edge.push_back(
-          is_border ? 0.0 : around * bare_length(edge.segment, curves[curve], k_gap * options_.spacing));
+          edge.piece >= first_of_border ? 0.0
+                                        : around * bare_length(edge.segment, curves[curve], k_gap * options_.spacing));
     }
     return chart;
   }
@@ -284,9 +325,9 @@ class ChartMaker {
   [[nodiscard]] std::vector<double> ends_in(const Chart& chart, std::vector<Cap> caps) const {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
-    for (std::size_t i = 0; i < positions_.size(); ++i) {
-      low = std::min(low, chart.level_of(positions_[i]));
-      high = std::max(high, chart.level_of(positions_[i]));
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      low = std::min(low, chart.level_of(seen_[i]));
+      high = std::max(high, chart.level_of(seen_[i]));
     }
     std::erase_if(caps, [&](const Cap& cap) {
       return cap.height < low - options_.tolerance || cap.height > high + options_.tolerance;
@@ -309,6 +350,7 @@ class ChartMaker {
   const Points& positions_;
   std::span<const DetectedSurface> surfaces_;
   const ChartOptions& options_;
+  Points seen_;
   Vector3d middle_;
   double diagonal_;
 };

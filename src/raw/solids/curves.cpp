@@ -15,14 +15,6 @@ using Eigen::Vector2d;
 
 constexpr double k_least_arc_reach = 0.35;  // beyond the points of a circle, in radians
 
-bool is_same(const Curve& a, const Curve& b, double tolerance) {
-  if (a.is_circle != b.is_circle) return false;
-  if (a.is_circle) return (a.normal - b.normal).norm() < tolerance && std::abs(a.offset - b.offset) < tolerance;
-  // A line is what it is near the other's points.
-  return std::abs(a.normal.dot(b.normal)) > 0.999 &&
-         std::ranges::all_of(b.points, [&](const Vector2d& p) { return a.distance(p) < 2 * tolerance; });
-}
-
 /// The place on a curve that is nearest to a circle beside or inside it.
 std::optional<Vector2d> nearest_place(const Curve& curve, const Curve& circle) {
   if (!curve.is_circle) return circle.normal + (curve.offset - curve.normal.dot(circle.normal)) * curve.normal;
@@ -150,6 +142,14 @@ class Extender {
 };
 
 }  // namespace
+
+bool is_same(const Curve& a, const Curve& b, double tolerance) {
+  if (a.is_circle != b.is_circle) return false;
+  if (a.is_circle) return (a.normal - b.normal).norm() < tolerance && std::abs(a.offset - b.offset) < tolerance;
+  // A line is what it is near the other's points.
+  return std::abs(a.normal.dot(b.normal)) > 0.999 &&
+         std::ranges::all_of(b.points, [&](const Vector2d& p) { return a.distance(p) < 2 * tolerance; });
+}
 
 std::vector<Curve> merged(std::vector<Curve> curves, double tolerance) {
   std::ranges::stable_sort(curves, std::greater<>(), &Curve::count);

@@ -28,6 +28,9 @@ struct Curve {
   }
 };
 
+/// Whether curves differ by no more than the tolerance; lines by twice that at the points of `b`.
+[[nodiscard]] bool is_same(const Curve& a, const Curve& b, double tolerance);
+
 /// Equal curves become one, with the values of the one with the most points.
 [[nodiscard]] std::vector<Curve> merged(std::vector<Curve> curves, double tolerance);
 

@@ -93,6 +93,14 @@ Bins edges_along_axis(const DetectedSurface& surface, const Points& positions,
   return closed(std::move(edges), low, high);
 }
 
+Points points_on(std::span<const DetectedSurface> surfaces, const Points& positions) {
+  Points points;
+  for (const DetectedSurface& detected : surfaces) {
+    for (const std::uint32_t i : detected.points) points.push_back(positions[i]);
+  }
+  return points.empty() ? positions : points;
+}
+
 std::vector<DetectedSurface> bend_planes(std::span<const DetectedSurface> surfaces) {
   std::vector<DetectedSurface> planes;
   for (const DetectedSurface& bend : surfaces) {

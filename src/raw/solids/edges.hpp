@@ -20,6 +20,9 @@ struct EdgeRules {
 [[nodiscard]] Bins edges_along_axis(const DetectedSurface& surface, const Points& positions,
                                     std::span<const DetectedSurface> surfaces, const EdgeRules& rules);
 
+/// The points on surfaces, or all points if none is: strays do not tell where the part ends. O(points)
+[[nodiscard]] Points points_on(std::span<const DetectedSurface> surfaces, const Points& positions);
+
 /// Where bent pipes may become straight, no surface shows: planes without points through the axes of tori, across the
 /// directions of planes and cylinders. O(surfaces^2)
 [[nodiscard]] std::vector<DetectedSurface> bend_planes(std::span<const DetectedSurface> surfaces);

@@ -67,7 +67,8 @@ struct TermSpace {
   std::vector<RevolvedFamily> revolved = {};
   std::vector<PlaneFamily> planes = {};
   std::vector<ProfileFamily> profiles = {};
-  AlignedBox part_bounds = {};  ///< slightly beyond the part: limit of added solids
+  AlignedBox part_bounds = {};  ///< of the points on surfaces: added solids that nothing else ends end there
+  AlignedBox part_limits = {};  ///< slightly beyond: corners of added solids may reach as far
   AlignedBox bounds = {};       ///< far beyond the part on all sides
 
   [[nodiscard]] std::size_t size() const { return pulls.size(); }

@@ -66,18 +66,47 @@ Plane world_plane(const TermSpace& space, std::uint32_t side) {
   return {.normal = -plane.normal, .offset = -plane.offset};
 }
 
-/// The planes with at least three corners, relative to the middle of all corners.
-Primitive polytope_solid(const TermSpace& space, const TermPart& part, const AlignedBox& bounds) {
-  Polytope all;
-  for (const std::uint32_t side : part.planes) all.planes.push_back(world_plane(space, side));
+/// Where a solid ends that nothing else ends: at `ends` if it would reach beyond `limits`.
+struct EndRule {
+  const AlignedBox& ends;
+  const AlignedBox& limits;
+};
+
+Span within(const EndRule& rule, const Span& wanted, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
+  const auto [low, high] = extent_along(rule.ends, origin, axis);
+  const auto [lowest, highest] = extent_along(rule.limits, origin, axis);
+  return {wanted.low < lowest ? low : wanted.low, wanted.high > highest ? high : wanted.high};
+}
+
+Polytope closed_by(std::vector<Plane> planes, const AlignedBox& box) {
   for (int axis = 0; axis < 3; ++axis) {
-    all.planes.push_back({.normal = Eigen::Vector3d::Unit(axis), .offset = bounds.max()[axis]});
-    all.planes.push_back({.normal = -Eigen::Vector3d::Unit(axis), .offset = -bounds.min()[axis]});
+    planes.push_back({.normal = Eigen::Vector3d::Unit(axis), .offset = box.max()[axis]});
+    planes.push_back({.normal = -Eigen::Vector3d::Unit(axis), .offset = -box.min()[axis]});
   }
+  return {std::move(planes)};
+}
+
+/// The planes, and the sides of a box where they leave its limits.
+Polytope within(const EndRule& rule, const std::vector<Plane>& planes, double tolerance) {
+  AlignedBox reached;
+  for (const Eigen::Vector3d& corner : corners(closed_by(planes, rule.limits))) reached.extend(corner);
+  AlignedBox box = rule.limits;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (reached.min()[axis] < box.min()[axis] + tolerance) box.min()[axis] = rule.ends.min()[axis];
+    if (reached.max()[axis] > box.max()[axis] - tolerance) box.max()[axis] = rule.ends.max()[axis];
+  }
+  return closed_by(planes, box);
+}
+
+/// The planes with at least three corners, relative to the middle of all corners.
+Primitive polytope_solid(const TermSpace& space, const TermPart& part, const EndRule& rule) {
+  const double tolerance = 1e-9 * space.bounds.diagonal().norm();
+  std::vector<Plane> own;
+  for (const std::uint32_t side : part.planes) own.push_back(world_plane(space, side));
+  Polytope all = within(rule, own, tolerance);
   const std::vector<Eigen::Vector3d> points = corners(all);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) middle += point / static_cast<double>(points.size());
-  const double tolerance = 1e-9 * space.bounds.diagonal().norm();
   Polytope needed;
   for (const Plane& plane : all.planes) {
     const auto held = std::ranges::count_if(
@@ -135,13 +164,11 @@ Primitive profile_solid(const Chart& chart, const FaceSet& faces, const Span& sp
 
 /// Solids that add to the part end with it. Solids that subtract reach beyond all those.
 Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
-  const AlignedBox& bounds = adds ? space.part_bounds : space.bounds;
-  if (part.kind == PartKind::polytope) return simplest(polytope_solid(space, part, bounds));
+  const EndRule rule = adds ? EndRule{space.part_bounds, space.part_limits} : EndRule{space.bounds, space.bounds};
+  if (part.kind == PartKind::polytope) return simplest(polytope_solid(space, part, rule));
   const auto span_along = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
     const double most = k_most_overshoot * space.bounds.diagonal().norm();
-    const Span wanted = span_of(bins_of(space, part), part.range, overshoots, most);
-    const auto [low, high] = extent_along(bounds, origin, axis);
-    return Span{std::max(wanted.low, low), std::min(wanted.high, high)};
+    return within(rule, span_of(bins_of(space, part), part.range, overshoots, most), origin, axis);
   };
   if (part.kind == PartKind::profile) {
     const Chart& chart = space.profiles[part.family].chart;

@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "cloud2csg/reconstruct.hpp"
+#include "cloud2csg/sample.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/boxes.hpp"
+#include "support/known_solids.hpp"
+#include "support/random_scene.hpp"
+
+namespace cloud2csg {
+namespace {
+
+Primitive angle_bar() {
+  const Profile profile{{{{{-1, -0.6}}, {{1, -0.6}}, {{1, -0.2}}, {{-0.5, -0.2}, -0.4}, {{-0.6, 0.8}}, {{-1, 0.8}}}}};
+  return {.id = "bar", .shape = Extrusion{profile, 5}, .pose = {}};
+}
+
+/// Where points are missing.
+using IsMissing = std::function<bool(const Eigen::Vector3d&)>;
+
+struct OpenPart {
+  Primitive solid;
+  IsMissing is_missing;
+};
+
+/// Without the missing points.
+PointCloud cloud_of(const OpenPart& part, double noise) {
+  const PointCloud whole = sample_surface({.primitives = {part.solid}, .tree = CsgTree::leaf(0)},
+                                          {.count = 15'000, .noise = noise, .seed = 7});
+  PointCloud cloud;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (part.is_missing(whole.positions[i])) continue;
+    cloud.positions.push_back(whole.positions[i]);
+    cloud.normals.push_back(whole.normals[i]);
+  }
+  return cloud;
+}
+
+/// Nothing shows the ends of a rod or the oblique cut of a bar, and strays say nothing.
+TEST(Reconstruct, EndsWhereThePointsEnd) {
+  const IsMissing ends = [](const Eigen::Vector3d& p) { return std::abs(p.z()) > 2.2; };
+  const IsMissing half = [](const Eigen::Vector3d& p) { return p.x() + 0.3 * p.z() > 0.4; };
+  const Primitive rod{.id = "rod", .shape = Cylinder{.radius = 0.7, .height = 5}, .pose = {}};
+  const Primitive block{.id = "block", .shape = Box{{2, 1.5, 5}}, .pose = {}};
+  constexpr std::size_t k_strays = 20;
+  for (const OpenPart& part : {OpenPart{angle_bar(), ends}, OpenPart{angle_bar(), half}, OpenPart{rod, ends},
+                               OpenPart{block, ends}, OpenPart{block, half}}) {
+    for (const double noise : {0.0, 0.01}) {
+      PointCloud cloud = cloud_of(part, noise);
+      const AlignedBox seen = bounds_of(cloud.positions);
+      RandomStream random(3);
+      for (std::size_t k = 0; k < k_strays; ++k) {
+        cloud.positions.push_back(seen.center() + 0.8 * seen.diagonal().norm() * test::random_direction(random));
+        cloud.normals.push_back(test::random_direction(random));
+      }
+      const Extraction result = reconstruct(cloud);
+      const AlignedBox allowed = grown(seen, 2 * result.statistics.finding->tolerance);
+      const Points places = sample_surface(result.model, {.count = 5'000}).positions;
+      const AlignedBox reached = bounds_of(places);
+      EXPECT_TRUE(allowed.contains(reached))
+          << part.solid.id << " noise " << noise << ": " << (reached.min() - allowed.min()).transpose() << " and "
+          << (allowed.max() - reached.max()).transpose();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cloud2csg
