@@ -1,21 +1,11 @@
 #pragma once
 
-#include <optional>
+#include <cstddef>
 
 #include "cloud2csg/extract.hpp"
 
 /// Where the result of a reconstruction and its points do not cover each other.
 namespace cloud2csg {
-
-/// The part of a solid's surface that no point of its cloud is near.
-struct BareSurface {
-  double share = 0;                                  ///< share of the solid's surface within the bounds of the cloud
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< the place on it farthest from all points
-};
-
-/// Estimated from deterministic samples; absent without samples on the surface. Precondition: the statistics have a
-/// finding. O(points log points + samples x size). @throws Cancelled
-[[nodiscard]] std::optional<BareSurface> find_bare_surface(const Extraction& result, const RunContext& run);
 
 /// Detected surfaces whose points are not on the solid, since a part may be too small to be worth a leaf.
 struct UnusedSurfaces {

@@ -15,6 +15,7 @@
 #include "core/geometry/subset.hpp"
 #include "pipeline/coverage.hpp"
 #include "pipeline/diagnostics.hpp"
+#include "raw/solids/bare_surface.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -123,9 +124,11 @@ std::vector<Doubt> doubts_of_disagreement(const Extraction& result, const Labell
 }
 
 std::vector<Doubt> doubts_of_bare_surface(const BareSurface& bare, const Eigen::Vector3d& origin, double diagonal) {
-  if (bare.share <= k_much_bare_surface) return {};
+  if (bare.share() <= k_much_bare_surface) return {};
+  const auto farthest = std::ranges::max_element(bare.distances) - bare.distances.begin();
+  const Eigen::Vector3d place = bare.samples.positions[static_cast<std::size_t>(farthest)];
   return {{Grade::doubtful, fmt::format("{} of its surface has no points nearby, farthest from any at {}",
-                                        percent(bare.share), place_text(origin + bare.middle, diagonal))}};
+                                        percent(bare.share()), place_text(origin + place, diagonal))}};
 }
 
 std::vector<Doubt> doubts_of_unused_surfaces(const Extraction& result, const Eigen::Vector3d& origin) {
@@ -200,10 +203,11 @@ Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::
                   const RunContext& run) {
   FindingStatistics& finding = *result.statistics.finding;
   finding.disagreement = wrong_place_share(result.tree(), result.model.primitives, places);
-  const BareSurface bare = find_bare_surface(result, run).value_or(BareSurface{});
+  const BareSurface bare = find_bare_surface(result.tree(), result.model.primitives, result.cloud.positions,
+                                             bare_distance(finding.spacing, finding.tolerance), run);
   Verdict verdict = judge_fit(result.model, result.statistics.fit, result.cloud.positions, finding.added_points);
   verdict.disagreement = finding.disagreement;
-  verdict.bare_surface = bare.share;
+  verdict.bare_surface = bare.share();
   verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places, origin));
   verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, origin, finding.diagonal));
   result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result, origin));

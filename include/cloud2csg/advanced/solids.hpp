@@ -27,7 +27,8 @@ class NoInside : public Error {
 struct LabelledPlaces {
   Points positions = {};
   /// One per place: positive in the solid, negative outside. Volume places weigh 1 in total per volume of the solid;
-  /// places just beside the surface weigh 1 in total for the whole surface.
+  /// places just beside the surface weigh 1 in total for the whole surface, and so would places beside all of a chosen
+  /// solid's surface: there are some only where no point is near it.
   std::vector<double> weights = {};
 };
 

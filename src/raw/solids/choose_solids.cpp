@@ -7,9 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/run.hpp"
 #include "raw/prepare/constants.hpp"
+#include "raw/solids/bare_surface.hpp"
 #include "raw/solids/known_parts.hpp"
 #include "raw/solids/list_search.hpp"
 #include "raw/solids/separators.hpp"
@@ -74,25 +77,47 @@ PointCloud moved_onto(PointCloud cloud, std::span<const DetectedSurface> surface
   return cloud;
 }
 
+/// Places beside the solid's surface where that is bare; none if those that are wrong weigh less than a leaf.
+LabelledPlaces bare_places(const WrittenSolids& written, const Points& points, double near,
+                           const LabelledPlaces& places, double leaf, const RunContext& run) {
+  const BareSurface bare = find_bare_surface(written.tree, written.solids, points, near, run);
+  LabelledPlaces beside = places_beside(bare, places, k_least_tolerance * bounds_of(points).diagonal().norm());
+  if (wrong_place_share(written.tree, written.solids, beside) < leaf) return {};
+  return beside;
+}
+
+void append(LabelledPlaces& places, const LabelledPlaces& more) {
+  for (std::size_t i = 0; i < more.positions.size(); ++i) {
+    places.positions.push_back(more.positions[i]);
+    places.weights.push_back(more.weights[i]);
+  }
+}
+
 struct FoundList {
-  DecisionList list;
-  WrittenSolids written;
+  LabelledPlaces places;  ///< that judge the list
+  DecisionList list = {};
+  WrittenSolids written = {};
 };
 
-/// Searches a list, then improves it with planes between the solid and lumps that are wrongly in it, while that saves
-/// more than a leaf. All rounds together work no longer than the search. `space_with(terms)` makes the term space.
+/// Searches a list, then improves it while that saves more than a leaf: with planes between the solid and lumps that
+/// are wrongly in it, and with places beside surface that no point is near. All rounds together work no longer than the
+/// search. `space_with(terms, places)` makes the term space.
 template <typename SpaceWith>
-FoundList found_list(const SpaceWith& space_with, KnownTerms terms, const LabelledPlaces& places,
-                     const TermCosts& costs, ListLimits limits, const RunContext& run) {
-  const TermSpace space = space_with(terms);
-  FoundList found{.list = search_list(space, costs, limits, run), .written = {}};
+FoundList found_list(const SpaceWith& space_with, KnownTerms terms, LabelledPlaces places, const Points& points,
+                     double near, const TermCosts& costs, ListLimits limits, const RunContext& run) {
+  FoundList found{.places = std::move(places)};
+  const TermSpace space = space_with(terms, found.places);
+  found.list = search_list(space, costs, limits, run);
   found.written = write_solids(space, found.list);
   limits.work /= k_rounds;
   for (int round = 0; round < k_rounds; ++round) {
-    const std::vector<Surface> planes = separating_planes(found.written, places, 2 * costs.leaf, run);
-    if (planes.empty() || run.stop.stop_requested()) break;
+    const std::vector<Surface> planes = separating_planes(found.written, found.places, 2 * costs.leaf, run);
+    if (run.stop.stop_requested()) break;
+    const LabelledPlaces bare = bare_places(found.written, points, near, found.places, costs.leaf, without_stop(run));
+    if (planes.empty() && bare.weights.empty()) break;
+    append(found.places, bare);
     terms.separators.insert(terms.separators.end(), planes.begin(), planes.end());
-    const TermSpace more = space_with(terms);
+    const TermSpace more = space_with(terms, found.places);
     std::optional<DecisionList> list = improve_list(found.list, more, costs, limits, run);
     if (!list) break;
     found.written = write_solids(more, *list);
@@ -128,13 +153,15 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   GivenSurfaces regular = made_regular(cloud, surfaces, terms.surfaces, options.regularity, tolerance);
   run.throw_if_stopped();
   SolidChoice choice;
-  choice.places = label_places(moved_onto(cloud, surfaces), place_options, run);
-  const auto space_with = [&](const KnownTerms& given) {
-    return make_term_space(cloud, regular.surfaces, choice.places, tolerance, given);
+  const auto space_with = [&](const KnownTerms& given, const LabelledPlaces& places) {
+    return make_term_space(cloud, regular.surfaces, places, tolerance, given);
   };
   const ListLimits limits{.rules = options.most_rules};
-  auto [list, written] =
-      found_list(space_with, std::move(terms), choice.places, {.leaf = options.leaf_cost}, limits, run);
+  const double near = bare_distance(estimate_scale(cloud).spacing, tolerance);
+  auto [places, list, written] =
+      found_list(space_with, std::move(terms), label_places(moved_onto(cloud, surfaces), place_options, run),
+                 cloud.positions, near, {.leaf = options.leaf_cost}, limits, run);
+  choice.places = std::move(places);
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);
   choice.disagreement = wrong_place_share(choice.tree, choice.solids, choice.places);
