@@ -4,7 +4,7 @@
 
 #include "cloud2csg/extract.hpp"
 
-/// Where the result of a reconstruction and its points do not cover each other.
+/// Where the result of a reconstruction does not cover its points.
 namespace cloud2csg {
 
 /// Detected surfaces whose points are not on the solid, since a part may be too small to be worth a leaf.

@@ -124,6 +124,8 @@ TEST(CurveArrangement, EndsThatBoundNothingAreLeftOut) {
   const CurveArrangement found = arrange(pieces, k_tolerance);
   EXPECT_EQ(found.areas.size(), 4U);
   EXPECT_EQ(arrange({}, k_tolerance).areas.size(), 1U);
+  pieces.push_back(segment_between({0.3, 0.3}, 0, {0.3, 0.3}));
+  EXPECT_EQ(arrange(pieces, k_tolerance).edges.size(), found.edges.size()) << "a piece without length";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "cloud2csg/sample.hpp"
+#include "core/geometry/subset.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {
@@ -26,27 +27,20 @@ Points points_of(const Model& model, std::size_t primitive) {
 TEST(BareSurface, IsWhereNoPointsAre) {
   const Model model = ball_and_block();
   Points points = points_of(model, 0);
-  points.push_back({4, 0, 3});  // makes the bounds contain the block
-  points.push_back({4, 0, -3});
-  points.push_back({7, 2, 0});
-  points.push_back({7, -2, 0});
   const BareSurface bare = find_bare_surface(*model.tree, model.primitives, points, k_near);
   EXPECT_NEAR(bare.share(), 6 / (6 + 4 * std::numbers::pi), 0.02);
   for (std::size_t i = 0; i < bare.shares.size(); ++i) {
     EXPECT_GE(bare.samples.positions[i].x(), 3.49);
     EXPECT_GT(bare.distances[i], k_near);
   }
-  const Points of_block = points_of(model, 1);
-  for (std::size_t i = 0; i < of_block.size(); ++i) points.push_back(of_block[i]);
+  append(points, points_of(model, 1));
   EXPECT_EQ(find_bare_surface(*model.tree, model.primitives, points, k_near).share(), 0);
 }
 
 /// Where all places around are outside, both sides of the surface are. Where they disagree, nothing is said.
 TEST(BareSurface, ItsPlacesHaveTheLabelsAround) {
   const Model model = ball_and_block();
-  Points points = points_of(model, 0);
-  points.push_back({7, 2, 3});
-  points.push_back({7, -2, -3});
+  const Points points = points_of(model, 0);
   const BareSurface bare = find_bare_surface(*model.tree, model.primitives, points, k_near);
   LabelledPlaces places;
   for (double x = -1.5; x < 7; x += 0.25) {

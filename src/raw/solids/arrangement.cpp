@@ -33,8 +33,11 @@ class Builder {
 
   CurveArrangement build() {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (is_place(i)) continue;
       for (const Vector2d& end : {pieces_[i].start, pieces_[i].end}) split(i, end);
-      for (std::size_t j = 0; j < i; ++j) split_each_other(i, j);
+      for (std::size_t j = 0; j < i; ++j) {
+        if (!is_place(j)) split_each_other(i, j);
+      }
     }
     for (std::size_t i = 0; i < pieces_.size(); ++i) add_edges(i);
     remove_dangling();
@@ -53,6 +56,8 @@ class Builder {
     std::vector<HalfEdge> edges = {};
     double area = 0;
   };
+
+  [[nodiscard]] bool is_place(std::size_t piece) const { return pieces_[piece].length() <= tolerance_; }
 
   std::uint32_t vertex_at(const Vector2d& place) {
     const auto found = std::ranges::find_if(

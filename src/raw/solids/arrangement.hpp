@@ -23,8 +23,8 @@ struct CurveArrangement {
 };
 
 /// Pieces may cross, touch and overlap. Those that come within the tolerance of each other meet: curves that nearly
-/// touch get one common vertex, and no sliver arises between them. It leaves out ends that bound no face. An arc turns
-/// by less than a full circle. O(pieces^2 + vertices^2)
+/// touch get one common vertex, and no sliver arises between them. It leaves out ends that bound no face, and pieces no
+/// longer than the tolerance. An arc turns by less than a full circle. O(pieces^2 + vertices^2)
 [[nodiscard]] CurveArrangement arrange(std::span<const ProfileSegment> pieces, double tolerance);
 
 /// Finds the faces of places.

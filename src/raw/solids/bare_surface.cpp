@@ -7,14 +7,14 @@
 
 #include "cells/surface_samples.hpp"
 #include "core/geometry/neighbour_tree.hpp"
-#include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
 namespace {
 
-constexpr std::size_t k_samples = 1000;  // of a primitive
-constexpr double k_step = 1e-4;          // in diagonals: to the places on either side that tell whether it is surface
-constexpr double k_spacings = 6;         // to the nearest point, more than chance leaves
+constexpr double k_samples = 1000;      // of a primitive as large as the cloud, or smaller
+constexpr double k_most_samples = 1e4;  // of a larger one
+constexpr double k_step = 1e-4;         // in diagonals: to the places on either side that tell whether it is surface
+constexpr double k_spacings = 6;        // to the nearest point, more than chance leaves
 
 Points moved(const PointCloud& samples, double by) {
   Points places;
@@ -27,11 +27,21 @@ Points moved(const PointCloud& samples, double by) {
 
 /// 1 in the solid, -1 outside, 0 where the places around disagree.
 int side_by_places(const Eigen::Vector3d& place, const NeighbourTree& index, const LabelledPlaces& places) {
-  std::array<std::uint32_t, k_nearest> near{};
-  std::array<double, k_nearest> squares{};
+  constexpr std::size_t k_around = 16;  // agree by chance in 1 % of the cases at an edge
+  std::array<std::uint32_t, k_around> near{};
+  std::array<double, k_around> squares{};
   const std::span around = std::span(near).first(index.find(place, near, squares));
   const auto in = std::ranges::count_if(around, [&](std::uint32_t i) { return places.weights[i] > 0; });
+  if (around.empty()) return 0;
   return in == 0 ? -1 : in == std::ssize(around) ? 1 : 0;
+}
+
+std::size_t samples_of(const AlignedBox& solid, const AlignedBox& cloud) {
+  const auto area = [](const AlignedBox& box) {
+    const Eigen::Vector3d size = box.sizes();
+    return size.x() * size.y() + size.y() * size.z() + size.z() * size.x();
+  };
+  return static_cast<std::size_t>(std::min(std::max(k_samples, k_samples * area(solid) / area(cloud)), k_most_samples));
 }
 
 }  // namespace
@@ -54,8 +64,9 @@ BareSurface find_bare_surface(const CsgTree& tree, const PrimitiveSet& solids, c
   for (const PrimitiveIndex p : primitives_of(tree)) {
     run.throw_if_stopped();
     const AlignedBox reached = reach(solids[p], 0);
-    const auto [samples, areas] =
-        sample_surfaces({solids[p]}, std::span(&reached, 1), box, {.base = k_samples, .a_neighbour = 0}, run);
+    const std::size_t count = samples_of(reached, box);
+    const auto [samples, areas] = sample_surfaces({solids[p]}, std::span(&reached, 1), box,
+                                                  {.base = count, .a_neighbour = 0, .most = count}, run);
     const std::vector<double> above = implicit_value(tree, solids, moved(samples, step));
     const std::vector<double> below = implicit_value(tree, solids, moved(samples, -step));
     for (std::size_t i = 0; i < samples.size(); ++i) {

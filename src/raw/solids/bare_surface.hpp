@@ -10,7 +10,7 @@ namespace cloud2csg {
 /// The part of a solid's surface that no point is near, by samples.
 struct BareSurface {
   PointCloud samples = {};             ///< with the outward normals of their primitives
-  std::vector<double> shares = {};     ///< of the solid's surface within the bounds of the points, by sample
+  std::vector<double> shares = {};     ///< of the solid's surface, by sample
   std::vector<double> distances = {};  ///< to the nearest point, by sample
 
   [[nodiscard]] double share() const;
@@ -19,7 +19,8 @@ struct BareSurface {
 /// Surface farther than this from all points has none.
 [[nodiscard]] double bare_distance(double spacing, double tolerance);
 
-/// By a thousand samples of each primitive, the same for any number of threads. O(points log points + samples x size)
+/// By at least a thousand samples of each primitive, the same for any number of threads. O(points log points + samples
+/// x size)
 /// @throws Cancelled
 [[nodiscard]] BareSurface find_bare_surface(const CsgTree& tree, const PrimitiveSet& solids, const Points& points,
                                             double near, const RunContext& run = {});

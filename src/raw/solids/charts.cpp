@@ -30,14 +30,14 @@ Eigen::Index axis_across(std::size_t side) {
   return side < 2 ? 0 : 1;
 }
 
-double& place_of(Eigen::AlignedBox2d& box, std::size_t side) {
+double& place_of_side(Eigen::AlignedBox2d& box, std::size_t side) {
   return (side % 2 == 0 ? box.min() : box.max())[axis_across(side)];
 }
 
 /// A side of the box. Its points are the corners.
 Curve line_along(Eigen::AlignedBox2d box, std::size_t side) {
   const Eigen::Index across = axis_across(side);
-  const double place = place_of(box, side);
+  const double place = place_of_side(box, side);
   box.min()[across] = box.max()[across] = place;
   return {.normal = Vector2d::Unit(across), .offset = place, .points = {box.min(), box.max()}};
 }
@@ -251,7 +251,8 @@ class ChartMaker {
     return charts;
   }
 
-  /// The border of a drawing, where the points end. A profile may end there for nothing, as a part on a table does.
+  /// The border of a drawing, where the points end. A profile may end there for nothing, as a part on a table does;
+  /// only where a line is, its price counts.
   struct Border {
     Eigen::AlignedBox2d box = {};
     std::array<std::uint32_t, k_sides> curves = {};  ///< by side: the line that it continues, or one beyond all
@@ -260,18 +261,21 @@ class ChartMaker {
   [[nodiscard]] Border border_of(const Chart& chart, std::span<const Curve> curves,
                                  const Eigen::AlignedBox2d& ends) const {
     Border border{.box = ends};
+    if (chart.is_turned) border.box.min().x() = 0;
     for (std::size_t side = 0; side < k_sides; ++side) {
+      border.curves[side] = static_cast<std::uint32_t>(curves.size() + side);
+      if (chart.is_turned && side == 0) continue;  // the axis
+      // Both sides of a thinner drawing may be one line.
+      if (border.box.sizes()[axis_across(side)] <= 4 * options_.tolerance) continue;
       const Curve end = line_along(ends, side);
       const auto line =
           std::ranges::find_if(curves, [&](const Curve& curve) { return is_same(curve, end, options_.tolerance); });
-      border.curves[side] = static_cast<std::uint32_t>(curves.size() + side);
       if (line == curves.end()) continue;
       border.curves[side] = static_cast<std::uint32_t>(line - curves.begin());
       const Vector2d middle = 0.5 * (end.points[0] + end.points[1]);
       const double off = line->normal.dot(middle) - line->offset;
-      place_of(border.box, side) -= off / line->normal[axis_across(side)];
+      place_of_side(border.box, side) -= off / line->normal[axis_across(side)];
     }
-    if (chart.is_turned) border.box.min().x() = 0;
     return border;
   }
 
@@ -321,7 +325,7 @@ class ChartMaker {
     std::ranges::sort(chart.caps);
   }
 
-  /// Distinct caps, of two near each other the one with more points, and the ends of the cloud where no cap is.
+  /// Distinct caps, of two near each other the one with more points, and the ends of the points where no cap is.
   [[nodiscard]] std::vector<double> ends_in(const Chart& chart, std::vector<Cap> caps) const {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;

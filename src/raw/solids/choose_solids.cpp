@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,8 +12,6 @@
 #include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/error.hpp"
-#include "core/base/run.hpp"
-#include "raw/prepare/constants.hpp"
 #include "raw/solids/bare_surface.hpp"
 #include "raw/solids/known_parts.hpp"
 #include "raw/solids/list_search.hpp"
@@ -77,24 +77,36 @@ PointCloud moved_onto(PointCloud cloud, std::span<const DetectedSurface> surface
   return cloud;
 }
 
-/// Places beside the solid's surface where that is bare; none if those that are wrong weigh less than a leaf.
-LabelledPlaces bare_places(const WrittenSolids& written, const Points& points, double near,
-                           const LabelledPlaces& places, double leaf, const RunContext& run) {
-  const BareSurface bare = find_bare_surface(written.tree, written.solids, points, near, run);
-  LabelledPlaces beside = places_beside(bare, places, k_least_tolerance * bounds_of(points).diagonal().norm());
-  if (wrong_place_share(written.tree, written.solids, beside) < leaf) return {};
-  return beside;
-}
+/// Places that judge a list: those of the cloud, and those beside bare surface of the solids that were tried.
+class Judges {
+ public:
+  explicit Judges(LabelledPlaces of_cloud) : of_cloud_(of_cloud), all_(std::move(of_cloud)) {}
 
-void append(LabelledPlaces& places, const LabelledPlaces& more) {
-  for (std::size_t i = 0; i < more.positions.size(); ++i) {
-    places.positions.push_back(more.positions[i]);
-    places.weights.push_back(more.weights[i]);
+  [[nodiscard]] const LabelledPlaces& all() const { return all_; }
+
+  /// Adds places beside the solid's bare surface if the wrong ones weigh a leaf. @returns whether there were new ones
+  bool learn_from(const WrittenSolids& written, const Points& points, double near, double leaf) {
+    constexpr double k_depth = 1e-3;  // in diagonals, as the least depth of places beside points
+    const BareSurface bare = find_bare_surface(written.tree, written.solids, points, near);
+    const LabelledPlaces beside = places_beside(bare, of_cloud_, k_depth * bounds_of(points).diagonal().norm());
+    if (wrong_place_share(written.tree, written.solids, beside) < leaf) return false;
+    const std::size_t before = all_.weights.size();
+    for (std::size_t i = 0; i < beside.weights.size(); ++i) {
+      const Eigen::Vector3d place = beside.positions[i];
+      if (!known_.insert({place.x(), place.y(), place.z()}).second) continue;
+      all_.positions.push_back(place);
+      all_.weights.push_back(beside.weights[i]);
+    }
+    return all_.weights.size() > before;
   }
-}
+
+ private:
+  LabelledPlaces of_cloud_, all_;
+  std::set<std::array<double, 3>> known_ = {};  ///< a solid that stays as it is has the same samples in each round
+};
 
 struct FoundList {
-  LabelledPlaces places;  ///< that judge the list
+  LabelledPlaces places = {};  ///< that judged the list
   DecisionList list = {};
   WrittenSolids written = {};
 };
@@ -105,24 +117,25 @@ struct FoundList {
 template <typename SpaceWith>
 FoundList found_list(const SpaceWith& space_with, KnownTerms terms, LabelledPlaces places, const Points& points,
                      double near, const TermCosts& costs, ListLimits limits, const RunContext& run) {
-  FoundList found{.places = std::move(places)};
-  const TermSpace space = space_with(terms, found.places);
-  found.list = search_list(space, costs, limits, run);
+  constexpr int k_rounds = 4;  // each mends what the last one left
+  Judges judges(std::move(places));
+  const TermSpace space = space_with(terms, judges.all());
+  FoundList found{.list = search_list(space, costs, limits, run)};
   found.written = write_solids(space, found.list);
   limits.work /= k_rounds;
   for (int round = 0; round < k_rounds; ++round) {
-    const std::vector<Surface> planes = separating_planes(found.written, found.places, 2 * costs.leaf, run);
+    const std::vector<Surface> planes = separating_planes(found.written, judges.all(), 2 * costs.leaf, run);
     if (run.stop.stop_requested()) break;
-    const LabelledPlaces bare = bare_places(found.written, points, near, found.places, costs.leaf, without_stop(run));
-    if (planes.empty() && bare.weights.empty()) break;
-    append(found.places, bare);
+    const bool is_new = judges.learn_from(found.written, points, near, costs.leaf);
+    if (planes.empty() && !is_new) break;
     terms.separators.insert(terms.separators.end(), planes.begin(), planes.end());
-    const TermSpace more = space_with(terms, found.places);
+    const TermSpace more = space_with(terms, judges.all());
     std::optional<DecisionList> list = improve_list(found.list, more, costs, limits, run);
     if (!list) break;
     found.written = write_solids(more, *list);
     found.list = std::move(*list);
   }
+  found.places = judges.all();
   return found;
 }
 

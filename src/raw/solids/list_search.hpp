@@ -21,8 +21,8 @@ struct ListLimits {
 [[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
                                        const RunContext& run = {});
 
-/// The same from one start: a list over a space to which this one has added planes. Absent if that saves no more than a
-/// leaf.
+/// The same from one start: a list over a space to which this one has added planes or places. Absent if that saves no
+/// more than a leaf.
 [[nodiscard]] std::optional<DecisionList> improve_list(DecisionList list, const TermSpace& space,
                                                        const TermCosts& costs, const ListLimits& limits,
                                                        const RunContext& run = {});

@@ -66,16 +66,19 @@ Plane world_plane(const TermSpace& space, std::uint32_t side) {
   return {.normal = -plane.normal, .offset = -plane.offset};
 }
 
-/// Where a solid ends that nothing else ends: at `ends` if it would reach beyond `limits`.
+/// Where a solid ends that nothing else ends: at `ends` if it would reach beyond `limits`. No overshoot reaches
+/// farther.
 struct EndRule {
   const AlignedBox& ends;
   const AlignedBox& limits;
 };
 
-Span within(const EndRule& rule, const Span& wanted, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
+Span within(const EndRule& rule, const Span& exact, const Span& wanted, const Eigen::Vector3d& origin,
+            const Eigen::Vector3d& axis) {
   const auto [low, high] = extent_along(rule.ends, origin, axis);
   const auto [lowest, highest] = extent_along(rule.limits, origin, axis);
-  return {wanted.low < lowest ? low : wanted.low, wanted.high > highest ? high : wanted.high};
+  return {exact.low < lowest ? low : std::max(wanted.low, lowest),
+          exact.high > highest ? high : std::min(wanted.high, highest)};
 }
 
 Polytope closed_by(std::vector<Plane> planes, const AlignedBox& box) {
@@ -168,7 +171,9 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
   if (part.kind == PartKind::polytope) return simplest(polytope_solid(space, part, rule));
   const auto span_along = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
     const double most = k_most_overshoot * space.bounds.diagonal().norm();
-    return within(rule, span_of(bins_of(space, part), part.range, overshoots, most), origin, axis);
+    const Bins& bins = bins_of(space, part);
+    const Span wanted = span_of(bins, part.range, overshoots, most);
+    return within(rule, span_of(bins, part.range, {}, most), wanted, origin, axis);
   };
   if (part.kind == PartKind::profile) {
     const Chart& chart = space.profiles[part.family].chart;
