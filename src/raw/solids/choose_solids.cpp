@@ -12,6 +12,7 @@
 #include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/error.hpp"
+#include "core/base/run.hpp"
 #include "raw/solids/bare_surface.hpp"
 #include "raw/solids/known_parts.hpp"
 #include "raw/solids/list_search.hpp"
@@ -85,9 +86,9 @@ class Judges {
   [[nodiscard]] const LabelledPlaces& all() const { return all_; }
 
   /// Adds places beside the solid's bare surface if the wrong ones weigh a leaf. @returns whether there were new ones
-  bool learn_from(const WrittenSolids& written, const Points& points, double near, double leaf) {
+  bool learn_from(const WrittenSolids& written, const Points& points, double near, double leaf, const RunContext& run) {
     constexpr double k_depth = 1e-3;  // in diagonals, as the least depth of places beside points
-    const BareSurface bare = find_bare_surface(written.tree, written.solids, points, near);
+    const BareSurface bare = find_bare_surface(written.tree, written.solids, points, near, run);
     const LabelledPlaces beside = places_beside(bare, of_cloud_, k_depth * bounds_of(points).diagonal().norm());
     if (wrong_place_share(written.tree, written.solids, beside) < leaf) return false;
     const std::size_t before = all_.weights.size();
@@ -126,7 +127,7 @@ FoundList found_list(const SpaceWith& space_with, KnownTerms terms, LabelledPlac
   for (int round = 0; round < k_rounds; ++round) {
     const std::vector<Surface> planes = separating_planes(found.written, judges.all(), 2 * costs.leaf, run);
     if (run.stop.stop_requested()) break;
-    const bool is_new = judges.learn_from(found.written, points, near, costs.leaf);
+    const bool is_new = judges.learn_from(found.written, points, near, costs.leaf, without_stop(run));
     if (planes.empty() && !is_new) break;
     terms.separators.insert(terms.separators.end(), planes.begin(), planes.end());
     const TermSpace more = space_with(terms, judges.all());
