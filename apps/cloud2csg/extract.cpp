@@ -32,6 +32,11 @@ std::string merge_ways(const MergeStatistics& merge) {
   return fmt::format("{}", fmt::join(ways, ", "));
 }
 
+std::string primitives_line(const ExtractStatistics& s) {
+  if (s.clique_histogram.empty()) return fmt::format("primitives   {}", s.primitives);
+  return fmt::format("primitives   {}; cliques by size ({})", s.primitives, fmt::join(s.clique_histogram, ", "));
+}
+
 std::string partitions_line(const ExtractStatistics& s) {
   return fmt::format("partitions   {} in {} component{}; merge: {}", s.partitions.size(), s.components,
                      s.components == 1 ? "" : "s", merge_ways(s.merge));
@@ -44,7 +49,7 @@ std::string cells_line(const CellStatistics& cells) {
 
 std::string way_line(const ExtractStatistics& s) {
   if (s.cells) return cells_line(*s.cells);
-  if (s.finding && s.finding->is_tree_of_choice) return "tree from    the choice of solids";
+  if (s.finding && s.strategy == Strategy::automatic) return "tree from    the choice of solids";
   return partitions_line(s);
 }
 
@@ -102,7 +107,7 @@ std::vector<std::string> summary_of(const ExtractStatistics& s, std::span<const 
   if (s.finding) lines = finding_lines(*s.finding, s.seconds);
   std::vector<std::string> extraction{
       fmt::format("points       {}, {} of them on no primitive; noise {:.3g}", s.points, s.unassigned_points, s.noise),
-      fmt::format("primitives   {}; cliques by size ({})", s.primitives, fmt::join(s.clique_histogram, ", ")),
+      primitives_line(s),
       way_line(s),
       fmt::format("tree         {} nodes, {} leaves, {} levels; price {:.3g}, {} operations{}", s.tree.size,
                   s.tree.leaves, s.tree.levels, s.tree.price, s.tree.operations,

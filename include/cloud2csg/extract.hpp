@@ -21,7 +21,7 @@
 namespace cloud2csg {
 
 enum class Strategy {
-  automatic,  ///< cells where the points support their tree, else partitions, checked and polished
+  automatic,  ///< cells where the points support their tree, else partitions, checked and polished; see reconstruct()
   cells,      ///< label the cells of space by the points and decompose the solid: see cells.hpp
   partition,  ///< the paper's method: one tree per maximal clique, merged
   baseline,   ///< the paper's baseline: one genetic algorithm over all primitives
@@ -69,7 +69,8 @@ void option_table(OptionsOf<ExtractOptions>, auto&& field) {
   field(&O::strategy, "strategy",
         "cells: by the cells into which the primitives cut space; partition: by cliques of overlapping primitives, as "
         "in the paper; baseline: all primitives at once; auto: by cells, and also by partitions where the points do "
-        "not support the tree of the cells");
+        "not support the tree of the cells. Over solids that were found in the cloud, auto takes the tree that they "
+        "were chosen with");
   field(&O::parallel, "parallel", "Parts of the search that run in parallel; the result does not depend on it");
   field(&O::segmentation, "segmentation", "Assignment of points to primitives", {.group = "Fit"});
   field(&O::objective, "objective", "Weights of the objective", {.group = "Fit"});
@@ -190,7 +191,6 @@ struct FindingStatistics {
   std::size_t unexplained_points = 0;       ///< points on no detected surface and no known primitive
   std::vector<Snap> snaps = {};             ///< surfaces made regular, and by how much
   double disagreement = 0;                  ///< see SolidChoice
-  bool is_tree_of_choice = false;           ///< the result is the tree that the solids were chosen with
 };
 
 struct TreeStatistics {

@@ -41,7 +41,7 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
   field(&O::extraction, "extraction", "Extraction of a tree over the solids", k_library);
   field(&O::refine, "refine",
         "Then fit positions, directions and sizes of the solids to the points, and keep the result if E is higher. "
-        "Works like extract_refined_csg(). Has no effect with known primitives, which stay unchanged.",
+        "The tree stays. Refused with known primitives, which stay unchanged.",
         {.absent = "the solids stay as chosen", .option = k_no_option});
 }
 
@@ -58,8 +58,8 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
 [[nodiscard]] Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& options = {},
                                          const RunContext& run = {});
 
-/// find_primitives(), then extract_csg(). Returns the extracted tree or the tree of the solid choice, whichever has the
-/// lower cost (disagreement with the cloud plus leaves); with refinement, the refined tree where it is taken.
+/// find_primitives(), measured and judged as extract_csg() does it. The tree is the one that the solids were chosen
+/// with; with another strategy than automatic, extract_csg() searches one over them.
 /// @throws as find_primitives() and extract_csg(), and Error when the surfaces bound no solid
 [[nodiscard]] Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {},
                                      const RunContext& run = {});

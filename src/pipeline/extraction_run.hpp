@@ -88,4 +88,9 @@ struct PartitionExtraction {
                                                         const NoiseScale& scale, const ExtractOptions& options,
                                                         const ExtractionRun& run);
 
+/// Moves, turns and resizes the primitives of a finished extraction to fit the points, where that raises E. The tree
+/// stays. A stop or the options' time limit leaves the extraction as it is, and says so.
+[[nodiscard]] Extraction refined(Extraction result, const PointCloud& cloud, const ExtractOptions& options,
+                                 const RefineOptions& refine_options, const RunContext& run);
+
 }  // namespace cloud2csg

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -6,6 +7,7 @@
 #include "cloud2csg/extract.hpp"
 #include "core/base/run.hpp"
 #include "paper/objective/objective.hpp"
+#include "pipeline/extraction_run.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/time_limit.hpp"
 #include "pipeline/verdict.hpp"
@@ -29,25 +31,28 @@ void note_incomplete(ExtractStatistics& statistics) {
 }
 
 /// Absent when stopped or past the time limit.
-std::optional<Refinement> refined(const PointCloud& cloud, const PrimitiveSet& primitives, const CsgTree& tree,
-                                  const RefineOptions& options, std::optional<double> seconds, const RunContext& run) {
+std::optional<Refinement> refinement_of(const Extraction& result, const PointCloud& cloud, const RefineOptions& options,
+                                        std::optional<double> seconds, const RunContext& run) {
   const TimeLimit limit(run.stop, seconds);
   RunContext limited = run;
   limited.stop = limit.token();
   limit.enforce();
   try {
-    return refine_primitives(cloud, primitives, tree, options, limited);
+    return refine_primitives(cloud, result.model.primitives, result.tree(), options, limited);
   } catch (const Cancelled&) {
     return std::nullopt;
   }
 }
 
+std::optional<double> seconds_left(std::optional<double> limit, const Stopwatch& watch) {
+  if (limit) limit = std::max(0.0, *limit - watch.seconds());
+  return limit;
+}
+
 /// Absent when stopped or without time left.
 std::optional<Extraction> extracted_again(const PointCloud& cloud, const PrimitiveSet& primitives,
-                                          ExtractOptions options, std::optional<double> seconds,
-                                          const RunContext& run) {
-  if (seconds && *seconds <= 0) return std::nullopt;
-  options.time_limit_seconds = seconds;
+                                          const ExtractOptions& options, const RunContext& run) {
+  if (options.time_limit_seconds && *options.time_limit_seconds <= 0) return std::nullopt;
   try {
     return extract_csg(cloud, primitives, options, run);
   } catch (const Cancelled&) {
@@ -55,63 +60,86 @@ std::optional<Extraction> extracted_again(const PointCloud& cloud, const Primiti
   }
 }
 
-/// extract_refined_csg() without a change of frame.
-Extraction extract_refined(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
-                           const RefineOptions& refine_options, const RunContext& run) {
-  const Stopwatch watch;
-  const auto seconds_left = [&]() -> std::optional<double> {
-    if (!options.time_limit_seconds) return std::nullopt;
-    return std::max(0.0, *options.time_limit_seconds - watch.seconds());
+/// The best by E of `result`, its tree over the refined primitives, and `again`, which another search found over these.
+Extraction best_of(Extraction result, const Refinement& refinement, std::optional<Extraction> again,
+                   const PointCloud& cloud, const ExtractOptions& options, const RunContext& run) {
+  const double noise = again ? again->statistics.noise : refinement.noise;
+  const auto fit_of = [&](const CsgTree& some, const PrimitiveSet& over) {
+    return measure_fit({.primitives = over, .tree = some}, cloud, noise, options, without_stop(run));
   };
-  Extraction result = extract_csg(cloud, primitives, options, run);
-  const CsgTree tree = result.tree();
-  if (!result.statistics.complete || is_constant(tree)) return result;
+  const FitStatistics given = fit_of(result.tree(), result.model.primitives);
+  const FitStatistics moved = fit_of(result.tree(), refinement.primitives);
+  const double anew =
+      again ? fit_of(again->tree(), refinement.primitives).objective : -std::numeric_limits<double>::infinity();
+  if (std::max(moved.objective, anew) <= given.objective) return result;
+  RefineStatistics statistics = *result.statistics.refine;
+  statistics.is_taken = true;
+  if (anew >= moved.objective) {
+    result = std::move(*again);
+  } else {
+    result.model.primitives = refinement.primitives;
+    result.statistics.fit = moved;
+    result.statistics.verdict = judge_fit(result.model, moved, cloud.positions);
+    result.statistics.noise = refinement.noise;
+  }
+  result.statistics.refine = std::move(statistics);
+  return result;
+}
 
-  Stopwatch refining;
-  const std::optional<Refinement> refinement = refined(cloud, primitives, tree, refine_options, seconds_left(), run);
-  const double refine_seconds = refining.lap();
+using Search = std::function<std::optional<Extraction>(const PrimitiveSet&)>;
+
+Extraction refined_and_searched(Extraction result, const PointCloud& cloud, const ExtractOptions& options,
+                                const RefineOptions& refine_options, const RunContext& run, const Search& search) {
+  if (!result.statistics.complete || is_constant(result.tree())) return result;
+  const Stopwatch watch;
+  const std::optional<Refinement> refinement =
+      refinement_of(result, cloud, refine_options, options.time_limit_seconds, run);
+  const double refine_seconds = watch.seconds();
   if (!refinement) {
     note_incomplete(result.statistics);
     return result;
   }
+  result.statistics.refine = statistics_of(*refinement);
   StageSeconds seconds = result.statistics.seconds;
-  RefineStatistics statistics = statistics_of(*refinement);
-  std::optional<Extraction> again;
-  if (refinement->is_better) again = extracted_again(cloud, refinement->primitives, options, seconds_left(), run);
-  if (again) seconds += again->statistics.seconds;
-  const bool is_complete = !refinement->is_better || (again && again->statistics.complete);
-
+  bool is_complete = true;
   if (refinement->is_better) {
-    const double noise = again ? again->statistics.noise : refinement->noise;
-    const auto fit_of = [&](const CsgTree& some, const PrimitiveSet& over) {
-      return measure_fit({.primitives = over, .tree = some}, cloud, noise, options, without_stop(run));
-    };
-    const FitStatistics given = fit_of(tree, primitives);
-    const FitStatistics moved = fit_of(tree, refinement->primitives);
-    const double anew =
-        again ? fit_of(again->tree(), refinement->primitives).objective : -std::numeric_limits<double>::infinity();
-    if (std::max(moved.objective, anew) > given.objective) {
-      statistics.is_taken = true;
-      if (anew >= moved.objective) {
-        result = std::move(*again);
-      } else {
-        result.model.primitives = refinement->primitives;
-        result.statistics.fit = moved;
-        result.statistics.verdict = judge_fit(result.model, moved, cloud.positions);
-        result.statistics.noise = refinement->noise;
-      }
+    std::optional<Extraction> again;
+    if (search) {
+      again = search(refinement->primitives);
+      is_complete = again && again->statistics.complete;
     }
+    if (again) seconds += again->statistics.seconds;
+    result = best_of(std::move(result), *refinement, std::move(again), cloud, options, run);
   }
   seconds.refine = refine_seconds;
   seconds.extraction += refine_seconds;
   seconds.total += refine_seconds;
   result.statistics.seconds = seconds;
   if (!is_complete) note_incomplete(result.statistics);
-  result.statistics.refine = std::move(statistics);
   return result;
 }
 
+/// extract_refined_csg() without a change of frame.
+Extraction extract_refined(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
+                           const RefineOptions& refine_options, const RunContext& run) {
+  const Stopwatch watch;
+  Extraction result = extract_csg(cloud, primitives, options, run);
+  ExtractOptions rest = options;
+  rest.time_limit_seconds = seconds_left(options.time_limit_seconds, watch);
+  const Search search = [&](const PrimitiveSet& moved) {
+    ExtractOptions again = options;
+    again.time_limit_seconds = seconds_left(options.time_limit_seconds, watch);
+    return extracted_again(cloud, moved, again, run);
+  };
+  return refined_and_searched(std::move(result), cloud, rest, refine_options, run, search);
+}
+
 }  // namespace
+
+Extraction refined(Extraction result, const PointCloud& cloud, const ExtractOptions& options,
+                   const RefineOptions& refine_options, const RunContext& run) {
+  return refined_and_searched(std::move(result), cloud, options, refine_options, run, {});
+}
 
 Extraction extract_refined_csg(const PointCloud& cloud, const PrimitiveSet& primitives, const ExtractOptions& options,
                                const RefineOptions& refine_options, const RunContext& run) {

@@ -134,8 +134,7 @@ Json finding_json(const FindingStatistics& s) {
           {"largest_turn_deg", largest.turn_deg},
           {"largest_shift", largest.shift},
           {"snaps", snaps_json(s)},
-          {"disagreement", s.disagreement},
-          {"is_tree_of_choice", s.is_tree_of_choice}};
+          {"disagreement", s.disagreement}};
 }
 
 Json regions_json(const std::vector<UnexplainedRegion>& regions) {
