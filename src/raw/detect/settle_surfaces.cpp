@@ -1,13 +1,15 @@
 #include "raw/detect/settle_surfaces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/base/parallel.hpp"
 #include "raw/detect/propose.hpp"
+#include "raw/detect/share_points.hpp"
 #include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
@@ -16,66 +18,6 @@ namespace {
 bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, const AgreementLimits& limits,
               double share) {
   return static_cast<double>(count_agreeing(surface, points, limits)) >= share * static_cast<double>(points.size());
-}
-
-/// One surface for the points of both, if it exists.
-std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b, const WorkCloud& cloud,
-                                   const AgreementLimits& all_limits) {
-  const AgreementLimits limits = all_limits.within(std::max(a.reach, b.reach));
-  if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
-  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_sample);
-  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_sample);
-  // A fit is reliable only near its own points, so this test is loose. The common fit must explain nearly all points.
-  AgreementLimits wide = limits;
-  wide.distance *= 3;
-  if (!explains(a.surface, of_b, wide, 0.5) && !explains(b.surface, of_a, wide, 0.5)) return std::nullopt;
-  std::vector<OrientedPoint> of_both = of_a;
-  of_both.insert(of_both.end(), of_b.begin(), of_b.end());
-  const std::optional<Surface> fitted = fit_plausible(a.surface, of_both, limits);
-  if (!fitted || !explains(*fitted, of_a, limits, k_nearly_all) || !explains(*fitted, of_b, limits, k_nearly_all)) {
-    return std::nullopt;
-  }
-  GrownSurface both{.surface = *fitted, .points = {}, .support = a.support + b.support, .reach = limits.distance};
-  std::set_union(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both.points));
-  return both;
-}
-
-/// @throws Cancelled
-void join_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
-              const RunContext& run) {
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    run.throw_if_stopped();
-    for (std::size_t j = i + 1; j < surfaces.size();) {
-      std::optional<GrownSurface> both = joined(surfaces[i], surfaces[j], cloud, limits);
-      if (!both) {
-        ++j;
-        continue;
-      }
-      surfaces[i] = std::move(*both);
-      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(j));
-      j = i + 1;
-    }
-  }
-}
-
-/// Gives each surface all agreeing points, whoever found them first: the true surface of a face gets all of it.
-/// @returns the points' distances, by surface
-std::vector<std::vector<double>> claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                                           const AgreementLimits& limits, const RunContext& run) {
-  std::vector<std::vector<double>> distances(surfaces.size());
-  for_each_index(surfaces.size(), run, [&](std::size_t k) {
-    GrownSurface& surface = surfaces[k];
-    surface.points.clear();
-    surface.support = 0;
-    const auto always = [](std::uint32_t) { return true; };
-    for_each_agreeing(surface.surface, cloud, limits.within(surface.reach), always,
-                      [&](std::uint32_t i, const Agreement& agreement) {
-                        surface.points.push_back(i);
-                        surface.support += limits.support(agreement);
-                        distances[k].push_back(std::abs(agreement.distance));
-                      });
-  });
-  return distances;
 }
 
 /// Costs of the points on a surface with this noise, if their normals are not on another side of an edge.
@@ -93,61 +35,137 @@ std::vector<double> costs_of(const Surface& surface, const std::vector<OrientedP
   });
 }
 
-/// Logarithm of the ratio of the likelihoods of a surface's points: all on it, or each on the nearest of the others.
-/// Two standard errors less if a sample must do. O(surfaces)
-double evidence_for(std::size_t k, const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud) {
-  const std::vector<OrientedPoint> sample = cloud.some_of(surfaces[k].points, k_sample);
-  if (sample.empty()) return 0;
-  const double noise = surfaces[k].reach / k_deviations;
-  std::vector<double> without(sample.size(), cost_of(k_deviations, 1));
-  for (std::size_t other = 0; other < surfaces.size(); ++other) {
-    if (other == k) continue;
-    std::ranges::transform(without, costs_of(surfaces[other].surface, sample, noise), without.begin(),
-                           [](double a, double b) { return std::min(a, b); });
-  }
-  const std::vector<double> with = costs_of(surfaces[k].surface, sample, noise);
+/// Sum of `more` - `less` over all points, from those of a sample, and two standard errors less.
+double likely_sum(const std::vector<double>& more, const std::vector<double>& less, std::size_t points) {
   double sum = 0;
   double squares = 0;
-  for (std::size_t i = 0; i < sample.size(); ++i) {
-    sum += without[i] - with[i];
-    squares += (without[i] - with[i]) * (without[i] - with[i]);
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    sum += more[i] - less[i];
+    squares += (more[i] - less[i]) * (more[i] - less[i]);
   }
-  const auto count = static_cast<double>(sample.size());
-  const auto all = static_cast<double>(surfaces[k].points.size());
+  const auto count = static_cast<double>(more.size());
+  const auto all = static_cast<double>(points);
   const double variance = std::max(0.0, squares / count - sum / count * sum / count);
   return all * (sum / count - 2 * std::sqrt(variance * (1 / count - 1 / all)));
 }
 
+/// A connected group of points, or all groups together that are too small for a surface.
+struct Piece {
+  std::vector<OrientedPoint> sample;
+  std::size_t points;  ///< number of all
+};
+
+std::vector<Piece> pieces_of(const std::vector<std::uint32_t>& points, const WorkCloud& cloud,
+                             const SearchLimits& limits) {
+  std::vector<Piece> pieces;
+  std::vector<std::uint32_t> rest;
+  for (const std::vector<std::uint32_t>& group : connected_groups(cloud.points, points, limits.link)) {
+    if (group.size() < limits.least_points) {
+      rest.insert(rest.end(), group.begin(), group.end());
+    } else {
+      pieces.push_back({cloud.some_of(group, k_sample), group.size()});
+    }
+  }
+  if (!rest.empty()) pieces.push_back({cloud.some_of(rest, k_sample), rest.size()});
+  return pieces;
+}
+
+/// The least evidence for a surface of `points` points: what its parameters fit by chance does not count (BIC).
+double least_evidence(SurfaceType type, std::size_t points) {
+  constexpr std::array k_parameters{3, 4, 5, 6, 7};
+  return k_evidence + 0.5 * k_parameters[static_cast<std::size_t>(type)] * std::log(static_cast<double>(points));
+}
+
+/// Logarithm of the ratio of the likelihoods of the samples: each piece on the one of the two that explains it better,
+/// or all on `one`. Points beyond the samples do not count, because `one` is not fitted to more.
+double evidence_for_two(const Surface& one, const GrownSurface& a, const GrownSurface& b,
+                        const std::vector<Piece>& pieces, double noise) {
+  double sum = 0;
+  for (const Piece& piece : pieces) {
+    const std::vector<double> together = costs_of(one, piece.sample, noise);
+    const auto evidence = [&](const GrownSurface& own) {
+      return likely_sum(together, costs_of(own.surface, piece.sample, noise), piece.sample.size());
+    };
+    sum += std::max(evidence(a), evidence(b));
+  }
+  return sum;
+}
+
+/// One surface for the points of both, if it exists.
+std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b, const WorkCloud& cloud,
+                                   const SearchLimits& search) {
+  const AgreementLimits limits = search.agreement.within(std::max(a.reach, b.reach));
+  if (a.surface.type != b.surface.type || a.surface.concave != b.surface.concave) return std::nullopt;
+  const std::vector<OrientedPoint> of_a = cloud.some_of(a.points, k_sample);
+  const std::vector<OrientedPoint> of_b = cloud.some_of(b.points, k_sample);
+  // A fit is reliable only near its own points, so this test is loose. The common fit must explain nearly all points.
+  AgreementLimits wide = limits;
+  wide.distance *= 3;
+  if (!explains(a.surface, of_b, wide, 0.5) && !explains(b.surface, of_a, wide, 0.5)) return std::nullopt;
+  std::vector<OrientedPoint> of_both = of_a;
+  of_both.insert(of_both.end(), of_b.begin(), of_b.end());
+  const std::optional<Surface> fitted = fit_plausible(a.surface, of_both, limits);
+  if (!fitted || !explains(*fitted, of_a, limits, k_nearly_all) || !explains(*fitted, of_b, limits, k_nearly_all)) {
+    return std::nullopt;
+  }
+  GrownSurface both{.surface = *fitted, .points = {}, .support = a.support + b.support, .reach = limits.distance};
+  std::set_union(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both.points));
+  // Each face may be a surface of its own, with a radius that differs by less than its points do.
+  const double evidence =
+      evidence_for_two(*fitted, a, b, pieces_of(both.points, cloud, search), limits.distance / k_deviations);
+  if (evidence >= least_evidence(a.surface.type, of_both.size())) return std::nullopt;
+  return both;
+}
+
+/// @throws Cancelled
+void join_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const SearchLimits& limits,
+              const RunContext& run) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    run.throw_if_stopped();
+    for (std::size_t j = i + 1; j < surfaces.size();) {
+      std::optional<GrownSurface> both = joined(surfaces[i], surfaces[j], cloud, limits);
+      if (!both) {
+        ++j;
+        continue;
+      }
+      surfaces[i] = std::move(*both);
+      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(j));
+      j = i + 1;
+    }
+  }
+}
+
+/// Logarithm of the ratio of the likelihoods of a surface's points: all on it, or each on the nearest of the others.
+/// Counts the pieces that speak for it: it may agree with other faces, too. O(surfaces)
+double evidence_for(std::size_t k, const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
+                    const SearchLimits& limits) {
+  const double noise = surfaces[k].reach / k_deviations;
+  double most = 0;
+  for (const Piece& piece : pieces_of(surfaces[k].points, cloud, limits)) {
+    std::vector<double> without(piece.sample.size(), cost_of(k_deviations, 1));
+    for (std::size_t other = 0; other < surfaces.size(); ++other) {
+      if (other == k) continue;
+      std::ranges::transform(without, costs_of(surfaces[other].surface, piece.sample, noise), without.begin(),
+                             [](double a, double b) { return std::min(a, b); });
+    }
+    const std::vector<double> with = costs_of(surfaces[k].surface, piece.sample, noise);
+    most = std::max(most, likely_sum(without, with, piece.points));
+  }
+  return most;
+}
+
 /// Drops surfaces without evidence, the smallest first. @throws Cancelled
-void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const RunContext& run) {
+void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const SearchLimits& limits,
+                    const RunContext& run) {
   std::stable_sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) {
     return preference(a.surface.type) * a.support > preference(b.surface.type) * b.support;
   });
   for (std::size_t k = surfaces.size(); k-- > 0;) {
     run.throw_if_stopped();
-    if (evidence_for(k, surfaces, cloud) >= k_evidence) continue;
+    const double least = least_evidence(surfaces[k].surface.type, surfaces[k].points.size());
+    if (evidence_for(k, surfaces, cloud, limits) >= least) continue;
     surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(k));
   }
-}
-
-/// Gives each point to the nearest agreeing surface. Surfaces with fewer than `least` points are dropped.
-void share_points(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const AgreementLimits& limits,
-                  std::size_t least, const RunContext& run) {
-  const std::vector<std::vector<double>> distances = claim_all(surfaces, cloud, limits, run);
-  std::vector<double> nearest(cloud.size(), std::numeric_limits<double>::infinity());
-  std::vector<std::size_t> owner(cloud.size());
-  for (std::size_t k = 0; k < surfaces.size(); ++k) {
-    for (std::size_t n = 0; n < distances[k].size(); ++n) {
-      const std::uint32_t i = surfaces[k].points[n];
-      if (distances[k][n] >= nearest[i]) continue;
-      nearest[i] = distances[k][n];
-      owner[i] = k;
-    }
-  }
-  for (std::size_t k = 0; k < surfaces.size(); ++k) {
-    std::erase_if(surfaces[k].points, [&](std::uint32_t i) { return owner[i] != k; });
-  }
-  std::erase_if(surfaces, [&](const GrownSurface& s) { return s.points.size() < least; });
 }
 
 /// Whether so many points came or went since the last fit that a new one would move the surface noticeably. m of n
@@ -182,17 +200,18 @@ bool fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const 
 
 std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                           const SearchLimits& limits, const RunContext& run) {
+  const PointSharing sharing(cloud, limits.agreement);
   for (int round = 0; round < 2; ++round) {
     // A small surface also agrees with points on its far continuation. These would turn it onto its neighbour, so each
-    // point counts for its nearest surface only.
+    // point counts for one surface only.
     for (int again = 0; again < 5 && fit_all(surfaces, cloud, limits.agreement, run); ++again) {
-      share_points(surfaces, cloud, limits.agreement, 0, run);
+      surfaces = sharing.shared(std::move(surfaces), 0, run);
     }
     fit_all(surfaces, cloud, limits.agreement, run);
     claim_all(surfaces, cloud, limits.agreement, run);
-    join_all(surfaces, cloud, limits.agreement, run);
-    drop_explained(surfaces, cloud, run);
-    share_points(surfaces, cloud, limits.agreement, limits.least_points, run);
+    join_all(surfaces, cloud, limits, run);
+    drop_explained(surfaces, cloud, limits, run);
+    surfaces = sharing.shared(std::move(surfaces), limits.least_points, run);
     fit_all(surfaces, cloud, limits.agreement, run);
   }
   return surfaces;

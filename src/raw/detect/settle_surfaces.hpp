@@ -8,7 +8,7 @@
 namespace cloud2csg {
 
 /// Joins equal surfaces (a face in several pieces, a shaft through a wall). Drops those that others explain or that
-/// have too few points. Each point goes to the nearest agreeing surface, which is fitted to it.
+/// have too few points. Each point goes to one agreeing surface, which is fitted to it: see PointSharing.
 /// O(points x surfaces) @throws Cancelled
 [[nodiscard]] std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                                         const SearchLimits& limits, const RunContext& run);
