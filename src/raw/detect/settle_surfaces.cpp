@@ -77,16 +77,20 @@ double least_evidence(SurfaceType type, std::size_t points) {
 }
 
 /// Logarithm of the ratio of the likelihoods of the samples: each piece on the one of the two that explains it better,
-/// or all on `one`. Points beyond the samples do not count, because `one` is not fitted to more.
+/// or all on `one`. A piece counts as few points, so that form errors within the noise, such as those of a scan whose
+/// views do not quite fit, are no evidence.
 double evidence_for_two(const Surface& one, const GrownSurface& a, const GrownSurface& b,
                         const std::vector<Piece>& pieces, double noise) {
+  // About two standard deviations between two radii are told apart; with double, one and a half.
+  constexpr double k_counted = 128;
   double sum = 0;
   for (const Piece& piece : pieces) {
     const std::vector<double> together = costs_of(one, piece.sample, noise);
     const auto evidence = [&](const GrownSurface& own) {
       return likely_sum(together, costs_of(own.surface, piece.sample, noise), piece.sample.size());
     };
-    sum += std::max(evidence(a), evidence(b));
+    const auto count = static_cast<double>(piece.sample.size());
+    sum += std::min(1.0, k_counted / count) * std::max(evidence(a), evidence(b));
   }
   return sum;
 }
