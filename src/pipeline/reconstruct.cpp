@@ -57,7 +57,8 @@ Extraction extract_over(const FoundPrimitives& found, const ExtractOptions& opti
   return result;
 }
 
-/// Separates the surfaces of the solids in the tree, as the last step: more cells would need more evidence.
+/// Separates the surfaces of the solids in the tree. This comes last: a search for other trees would need evidence for
+/// cells between them.
 void let_overshoot(Extraction& result, const ReconstructOptions& options, const RunContext& run) {
   result.model.primitives = with_overshoots(std::move(result.model.primitives), result.tree(), options.known.size(),
                                             bounds_of(result.cloud.positions));

@@ -33,7 +33,8 @@ std::array<double, 2> shares_on_own_side(const WorkCloud& work, double step, con
   const auto grown = [&](double height) {
     return GrownSurface{.surface = plane_at(height), .points = {}, .reach = limits.distance};
   };
-  const std::vector<GrownSurface> dealt = PointSharing(work, limits).shared({grown(0), grown(step)}, 0, {});
+  const std::vector<GrownSurface> dealt =
+      share_points({grown(0), grown(step)}, work, work.neighbours({}), limits, 0, {});
   std::array<double, 2> shares{};
   std::size_t all = 0;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -47,7 +48,7 @@ std::array<double, 2> shares_on_own_side(const WorkCloud& work, double step, con
 }
 
 /// By its own distance alone, every sixth point would be on the wrong side of a step of two deviations.
-TEST(PointSharing, LetsThePointsAroundDecideWithinTheNoise) {
+TEST(SharePoints, LetsThePointsAroundDecideWithinTheNoise) {
   for (const double sigmas : {2.0, 3.0}) {
     const double step = sigmas * k_wall_noise;
     const auto shares = shares_on_own_side(stepped(step, k_wall_noise), step,
@@ -58,7 +59,7 @@ TEST(PointSharing, LetsThePointsAroundDecideWithinTheNoise) {
 }
 
 /// Beside an edge, most neighbours may be on the other surface.
-TEST(PointSharing, GoesByTheOwnDistanceInAnExactCloud) {
+TEST(SharePoints, GoesByTheOwnDistanceInAnExactCloud) {
   constexpr double k_step = 0.0005;
   constexpr double k_exact = 1e-6;
   const auto shares =
@@ -67,14 +68,13 @@ TEST(PointSharing, GoesByTheOwnDistanceInAnExactCloud) {
   EXPECT_EQ(shares[1], 1.0);
 }
 
-TEST(PointSharing, DropsSurfacesWithFewPoints) {
+TEST(SharePoints, DropsSurfacesWithFewPoints) {
   const AgreementLimits limits{.distance = 3 * k_wall_noise, .noise = k_wall_noise, .cosine = 0.9};
   const WorkCloud work = stepped(0, k_wall_noise);
   const std::vector<GrownSurface> dealt =
-      PointSharing(work, limits)
-          .shared({{.surface = plane_at(0), .points = {}, .reach = limits.distance},
-                   {.surface = plane_at(1), .points = {}, .reach = limits.distance}},
-                  10, {});
+      share_points({{.surface = plane_at(0), .points = {}, .reach = limits.distance},
+                    {.surface = plane_at(1), .points = {}, .reach = limits.distance}},
+                   work, work.neighbours({}), limits, 10, {});
   ASSERT_EQ(dealt.size(), 1U);
   EXPECT_EQ(dealt[0].surface.position.z(), 0);
 }

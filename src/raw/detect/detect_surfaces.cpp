@@ -203,15 +203,16 @@ FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& 
 
 /// Finds all surfaces after the largest, then more among the points that are left, by normals of their own. Points that
 /// the first surfaces explain are no evidence for a later one. Only its other points get the new normals.
-std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, LargestSurfaces largest, std::uint64_t seed,
-                                             const RunContext& run, const StageShare& share) {
+std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const NeighbourTable& neighbours,
+                                             LargestSurfaces largest, std::uint64_t seed, const RunContext& run,
+                                             const StageShare& share) {
   const double first_pass = 0.8;  // of the time, roughly
   const SearchLimits& limits = largest.limits;
   FreePoints points = free_points(cloud, largest.surfaces);
   std::vector<GrownSurface> found =
       find_all(points, limits, seed, always, run, share.part(0, first_pass), {.found = std::move(largest.surfaces)});
   if (points.list().size() < limits.least_points) return found;
-  const WorkCloud part = unexplained_part(points, limits.agreement.noise, run);
+  const WorkCloud part = unexplained_part(points, neighbours, limits.agreement.noise, run);
   FreePoints of_part(part);
   const auto is_unexplained = [&](std::uint32_t k) { return points.is_free(part.index[k]); };
   for (GrownSurface& surface : find_all(of_part, limits, seed, is_unexplained, run, share.part(first_pass, 1))) {
@@ -243,10 +244,11 @@ std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownS
 std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, LargestSurfaces largest, std::uint64_t seed,
                                           const RunContext& run, const StageShare& share) {
   const SearchLimits limits = largest.limits;
-  std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, std::move(largest), seed, run, share);
+  const NeighbourTable neighbours = cloud.neighbours(run);
+  std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, neighbours, std::move(largest), seed, run, share);
   for (int round = 1;; ++round) {
     const std::size_t searched = free_points(cloud, surfaces).list().size();
-    surfaces = settle_surfaces(std::move(surfaces), cloud, limits, run);
+    surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
     FreePoints points = free_points(cloud, surfaces);
     if (round == k_rounds || points.list().size() < searched + limits.least_points) return surfaces;
     const std::vector<bool> is_off = are_off_all(points, surfaces);

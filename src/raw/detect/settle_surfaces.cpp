@@ -203,19 +203,19 @@ bool fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const 
 }  // namespace
 
 std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
-                                          const SearchLimits& limits, const RunContext& run) {
-  const PointSharing sharing(cloud, limits.agreement);
+                                          const NeighbourTable& neighbours, const SearchLimits& limits,
+                                          const RunContext& run) {
   for (int round = 0; round < 2; ++round) {
     // A small surface also agrees with points on its far continuation. These would turn it onto its neighbour, so each
     // point counts for one surface only.
     for (int again = 0; again < 5 && fit_all(surfaces, cloud, limits.agreement, run); ++again) {
-      surfaces = sharing.shared(std::move(surfaces), 0, run);
+      surfaces = share_points(std::move(surfaces), cloud, neighbours, limits.agreement, 0, run);
     }
     fit_all(surfaces, cloud, limits.agreement, run);
     claim_all(surfaces, cloud, limits.agreement, run);
     join_all(surfaces, cloud, limits, run);
     drop_explained(surfaces, cloud, limits, run);
-    surfaces = sharing.shared(std::move(surfaces), limits.least_points, run);
+    surfaces = share_points(std::move(surfaces), cloud, neighbours, limits.agreement, limits.least_points, run);
     fit_all(surfaces, cloud, limits.agreement, run);
   }
   return surfaces;

@@ -4,51 +4,32 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
-#include <span>
 #include <utility>
 
 #include "core/base/parallel.hpp"
 #include "raw/prepare/constants.hpp"
-#include "raw/prepare/neighbours.hpp"
 
 namespace cloud2csg {
 namespace {
 
-/// Points that agree with several surfaces, and their nearest neighbours in the cloud.
-struct ContestedPoints {
-  static constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
-
-  std::vector<std::uint32_t> rows = {};  ///< by point: into the table, or none
-  NeighbourTable neighbours = {};
-
-  [[nodiscard]] std::span<const std::uint32_t> around(std::uint32_t i) const {
-    return rows[i] == k_none ? std::span<const std::uint32_t>{} : neighbours.of(rows[i]);
-  }
-};
-
-ContestedPoints contested_points(const std::vector<GrownSurface>& surfaces, const Points& positions,
-                                 const NeighbourTree& tree, const RunContext& run) {
-  std::vector<std::uint8_t> claims(positions.size(), 0);
+/// By point: whether it agrees with several surfaces.
+std::vector<bool> contested_points(const std::vector<GrownSurface>& surfaces, std::size_t points) {
+  std::vector<bool> is_claimed(points, false);
+  std::vector<bool> is_contested(points, false);
   for (const GrownSurface& surface : surfaces) {
-    for (const std::uint32_t i : surface.points) claims[i] = static_cast<std::uint8_t>(std::min(claims[i] + 1, 2));
+    for (const std::uint32_t i : surface.points) {
+      if (is_claimed[i]) is_contested[i] = true;
+      is_claimed[i] = true;
+    }
   }
-  ContestedPoints result{.rows = std::vector<std::uint32_t>(positions.size(), ContestedPoints::k_none)};
-  std::vector<std::uint32_t> contested;
-  for (std::uint32_t i = 0; i < positions.size(); ++i) {
-    if (claims[i] < 2) continue;
-    result.rows[i] = static_cast<std::uint32_t>(contested.size());
-    contested.push_back(i);
-  }
-  result.neighbours = find_neighbours_of(contested, positions, tree, std::min(k_around, positions.size() - 1), run);
-  return result;
+  return is_contested;
 }
 
 /// By point: the surface on which it and the points around it cost least. Its own cost has no limit.
 std::vector<std::size_t> owners_of(const std::vector<GrownSurface>& surfaces,
-                                   const std::vector<std::vector<double>>& distances, const ContestedPoints& contested,
-                                   double noise) {
-  const std::size_t count = contested.rows.size();
+                                   const std::vector<std::vector<double>>& distances, const NeighbourTable& neighbours,
+                                   std::size_t count, double noise) {
+  const std::vector<bool> is_contested = contested_points(surfaces, count);
   std::vector<std::size_t> owners(count);
   std::vector<double> least(count, std::numeric_limits<double>::infinity());
   const double most = cost_of(k_deviations, 1);
@@ -58,7 +39,9 @@ std::vector<std::size_t> owners_of(const std::vector<GrownSurface>& surfaces,
     for (std::size_t n = 0; n < points.size(); ++n) costs[points[n]] = cost_of(distances[k][n], noise);
     for (std::size_t n = 0; n < points.size(); ++n) {
       double cost = std::pow(distances[k][n] / noise, 2) / 2;
-      for (const std::uint32_t j : contested.around(points[n])) cost += costs[j];
+      if (is_contested[points[n]]) {
+        for (const std::uint32_t j : neighbours.of(points[n])) cost += costs[j];
+      }
       if (cost >= least[points[n]]) continue;
       least[points[n]] = cost;
       owners[points[n]] = k;
@@ -66,12 +49,6 @@ std::vector<std::size_t> owners_of(const std::vector<GrownSurface>& surfaces,
     for (const std::uint32_t i : points) costs[i] = most;
   }
   return owners;
-}
-
-Points positions_of(const WorkCloud& cloud) {
-  std::vector<std::uint32_t> all(cloud.size());
-  std::iota(all.begin(), all.end(), 0U);
-  return cloud.positions_of(all);
 }
 
 }  // namespace
@@ -94,14 +71,11 @@ std::vector<std::vector<double>> claim_all(std::vector<GrownSurface>& surfaces, 
   return distances;
 }
 
-PointSharing::PointSharing(const WorkCloud& cloud, const AgreementLimits& limits)
-    : cloud_(cloud), limits_(limits), positions_(positions_of(cloud)), tree_(positions_) {}
-
-std::vector<GrownSurface> PointSharing::shared(std::vector<GrownSurface> surfaces, std::size_t least,
-                                               const RunContext& run) const {
-  const std::vector<std::vector<double>> distances = claim_all(surfaces, cloud_, limits_, run);
-  const ContestedPoints contested = contested_points(surfaces, positions_, tree_, run);
-  const std::vector<std::size_t> owners = owners_of(surfaces, distances, contested, limits_.noise);
+std::vector<GrownSurface> share_points(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
+                                       const NeighbourTable& neighbours, const AgreementLimits& limits,
+                                       std::size_t least, const RunContext& run) {
+  const std::vector<std::vector<double>> distances = claim_all(surfaces, cloud, limits, run);
+  const std::vector<std::size_t> owners = owners_of(surfaces, distances, neighbours, cloud.size(), limits.noise);
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
     std::erase_if(surfaces[k].points, [&](std::uint32_t i) { return owners[i] != k; });
   }

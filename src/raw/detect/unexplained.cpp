@@ -2,10 +2,8 @@
 
 #include <algorithm>
 
-#include "core/geometry/neighbour_tree.hpp"
 #include "raw/prepare/constants.hpp"
 #include "raw/prepare/local_fit.hpp"
-#include "raw/prepare/neighbours.hpp"
 #include "raw/prepare/orientation.hpp"
 
 namespace cloud2csg {
@@ -20,16 +18,13 @@ constexpr std::size_t k_least_free = 2;
 constexpr double k_bend = 0.25;
 
 /// The free points that lie together, and all nearest points of these. Ascending.
-std::vector<std::uint32_t> points_together(const FreePoints& points, const Points& all, const NeighbourTree& tree,
-                                           const RunContext& run) {
-  const std::vector<std::uint32_t>& free = points.list();
-  const NeighbourTable table = find_neighbours_of(free, all, tree, k_voters, run);
+std::vector<std::uint32_t> points_together(const FreePoints& points, const NeighbourTable& neighbours) {
   std::vector<std::uint32_t> together;
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const auto is_free = [&](std::uint32_t i) { return points.is_free(i); };
-    const std::span<const std::uint32_t> near = table.of(k);
+  const auto is_free = [&](std::uint32_t i) { return points.is_free(i); };
+  for (const std::uint32_t point : points.list()) {
+    const std::span<const std::uint32_t> near = neighbours.nearest(point, k_voters);
     if (std::count_if(near.begin(), near.end(), is_free) < static_cast<std::ptrdiff_t>(k_least_free)) continue;
-    together.push_back(free[k]);
+    together.push_back(point);
     together.insert(together.end(), near.begin(), near.end());
   }
   std::sort(together.begin(), together.end());
@@ -50,19 +45,17 @@ void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& po
 }
 
 /// Turns the normals of the part so that they agree with those of the explained points around it, across its edges.
-void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, const NeighbourTree& tree,
-                 const RunContext& run) {
-  const NeighbourTable near = find_neighbours_of(part.index, all, tree, k_voters, run);
-  std::vector<Vector3d> normals(all.size(), Vector3d::Zero());  // zero: not known yet
-  for (std::uint32_t i = 0; i < all.size(); ++i) {
+void orient_part(WorkCloud& part, const FreePoints& points, const NeighbourTable& neighbours) {
+  std::vector<Vector3d> normals(points.cloud().size(), Vector3d::Zero());  // zero: not known yet
+  for (std::uint32_t i = 0; i < normals.size(); ++i) {
     if (!points.is_free(i)) normals[i] = points[i].normal;
   }
   for (int sweep = 0; sweep < k_rounds; ++sweep) {
     for (std::size_t k = 0; k < part.size(); ++k) {
       OrientedPoint& point = part.points[k];
       double votes = 0;
-      for (const std::uint32_t j : near.of(k)) {
-        const double vote = agreement(all[j] - point.position, point.normal, normals[j]);
+      for (const std::uint32_t j : neighbours.nearest(part.index[k], k_voters)) {
+        const double vote = agreement(points[j].position - point.position, point.normal, normals[j]);
         votes += vote * vote * vote;
       }
       if (votes < 0) point.normal = -point.normal;
@@ -75,14 +68,12 @@ void orient_part(WorkCloud& part, const FreePoints& points, const Points& all, c
 
 }  // namespace
 
-WorkCloud unexplained_part(const FreePoints& points, double noise, const RunContext& run) {
+WorkCloud unexplained_part(const FreePoints& points, const NeighbourTable& neighbours, double noise,
+                           const RunContext& run) {
   const WorkCloud& cloud = points.cloud();
-  Points all(cloud.size());
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) all.set(i, cloud.points[i].position);
-  const NeighbourTree tree(all);
   WorkCloud part{.points = {},
                  .code = {},
-                 .index = points_together(points, all, tree, run),
+                 .index = points_together(points, neighbours),
                  .runs = {},
                  .middle = cloud.middle,
                  .diagonal = cloud.diagonal};
@@ -93,7 +84,7 @@ WorkCloud unexplained_part(const FreePoints& points, double noise, const RunCont
   part.runs = runs_of(part.points);
   if (part.points.empty()) return part;
   estimate_normals_among(part.points, cloud.positions_of(part.index), noise, run);
-  orient_part(part, points, all, tree, run);
+  orient_part(part, points, neighbours);
   return part;
 }
 

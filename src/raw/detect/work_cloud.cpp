@@ -30,6 +30,12 @@ Points WorkCloud::positions_of(const std::vector<std::uint32_t>& indices) const 
   return positions;
 }
 
+NeighbourTable WorkCloud::neighbours(const RunContext& run) const {
+  Points positions(size());
+  for (std::uint32_t i = 0; i < size(); ++i) positions.set(i, points[i].position);
+  return find_neighbours(positions, NeighbourTree(positions), k_around, run);
+}
+
 std::vector<OrientedPoint> WorkCloud::some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const {
   std::vector<OrientedPoint> some;
   for (const std::uint32_t i : cloud2csg::some_of(indices, most)) some.push_back(points[i]);

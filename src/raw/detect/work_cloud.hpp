@@ -9,6 +9,7 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "core/base/random.hpp"
 #include "raw/detect/agreement.hpp"
+#include "raw/prepare/neighbours.hpp"
 
 namespace cloud2csg {
 
@@ -38,6 +39,8 @@ struct WorkCloud {
   [[nodiscard]] double extent_of(const std::vector<std::uint32_t>& indices) const;
   /// O(indices)
   [[nodiscard]] Points positions_of(const std::vector<std::uint32_t>& indices) const;
+  /// The k_around nearest of each point. They stay while normals change. O(n log n) @throws Cancelled
+  [[nodiscard]] NeighbourTable neighbours(const RunContext& run) const;
   /// At most `most` of the points, evenly spaced along the list.
   [[nodiscard]] std::vector<OrientedPoint> some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const;
 };

@@ -67,7 +67,7 @@ std::vector<std::uint32_t> contradicted(const Points& places, const Points& norm
                                         const std::vector<char>& is_doubtful) {
   std::vector<std::uint32_t> doubtful;
   for (std::uint32_t i = 0; i < places.size(); ++i) {
-    const std::span<const std::uint32_t> near = neighbours.of(i).first(std::min(k_voters, neighbours.width));
+    const std::span<const std::uint32_t> near = neighbours.nearest(i, k_voters);
     const bool is_contradicted = !is_doubtful.empty() && is_doubtful[i] != 0;
     if (is_contradicted || mean_agreement(places, normals, i, near) < 0.0) doubtful.push_back(i);
   }

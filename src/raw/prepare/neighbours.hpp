@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,18 +29,18 @@ struct NeighbourTable {
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t row) const {
     return std::span(indices).subspan(row * width, width);
   }
+  /// The first `most` of the row.
+  [[nodiscard]] std::span<const std::uint32_t> nearest(std::size_t row, std::size_t most) const {
+    return of(row).first(std::min(most, width));
+  }
   [[nodiscard]] std::span<const float> distances_of(std::size_t row) const {
     return std::span(distances).subspan(row * width, width);
   }
 };
 
-/// The table of all points, a row for each. `width` must be less than the number of points. O(n k log n) @throws
+/// The table of all points, a row for each. Fewer points than `width` have narrower rows. O(n k log n) @throws
 /// Cancelled
 [[nodiscard]] NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
                                              const RunContext& run, const StageShare& share = {});
-
-/// A row for each of `some`, of its nearest among all points. O(some k log n) @throws Cancelled
-[[nodiscard]] NeighbourTable find_neighbours_of(std::span<const std::uint32_t> some, const Points& points,
-                                                const NeighbourTree& tree, std::size_t width, const RunContext& run);
 
 }  // namespace cloud2csg

@@ -31,9 +31,7 @@ struct Cloud {
   const std::vector<double>& areas;
 
   [[nodiscard]] std::size_t size() const { return places.size(); }
-  [[nodiscard]] std::span<const std::uint32_t> linked(std::size_t i) const {
-    return neighbours.of(i).first(std::min(k_voters, neighbours.width));
-  }
+  [[nodiscard]] std::span<const std::uint32_t> linked(std::size_t i) const { return neighbours.nearest(i, k_voters); }
   /// Cubed, so that certain votes outweigh many vague ones.
   [[nodiscard]] double vote(std::size_t i, std::size_t j) const {
     const double vote = agreement(places[j] - places[i], normals[i], normals[j]);

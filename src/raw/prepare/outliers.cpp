@@ -57,7 +57,7 @@ Witnesses ask_witnesses(const LocalFits& fits, std::size_t point, double noise, 
   Witnesses witnesses;
   thread_local std::vector<double> gaps;
   gaps.clear();
-  for (const std::uint32_t neighbour : fits.neighbours.of(point).first(std::min(k_around, fits.neighbours.width))) {
+  for (const std::uint32_t neighbour : fits.neighbours.nearest(point, k_around)) {
     const LocalPlane& plane = fits.planes[neighbour];
     if (fates[neighbour] == PointFate::isolated || !has_plane(fits, neighbour, noise, strictness)) continue;
     ++witnesses.count;
