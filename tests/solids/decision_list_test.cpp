@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/sample.hpp"
 #include "raw/solids/list_search.hpp"
 #include "raw/solids/outline.hpp"
@@ -35,7 +36,9 @@ const Scene& scene() {
     const PointCloud cloud = sample_surface({.primitives = solids, .tree = tree}, {.count = 3000, .seed = 2});
     Scene result;
     result.places = label_places(cloud, {.noise = 0.0, .volume_places = 3000, .surface_points = 1000});
-    result.space = make_term_space(cloud, test::known_surfaces(solids, cloud, 0.01), result.places, 0.01);
+    result.space = with_places(make_term_space(cloud.positions, test::known_surfaces(solids, cloud, 0.01),
+                                               {.tolerance = 0.01, .spacing = estimate_scale(cloud).spacing}),
+                               result.places);
     return result;
   }();
   return made;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 #include "core/base/disjoint_sets.hpp"
 
@@ -18,17 +19,15 @@ DisjointSets join_cubes(const std::vector<std::uint64_t>& cubes) {
   // Half of the 26 neighbours, as rows along x. The other half joins from the neighbour's side.
   constexpr std::uint64_t k_row = std::uint64_t{1} << k_bits;
   constexpr std::uint64_t k_slice = k_row << k_bits;
-  for (std::size_t i = 0; i < cubes.size(); ++i) {
-    const auto join = [&](std::uint64_t first, std::uint64_t last) {
-      auto at = std::lower_bound(cubes.begin() + static_cast<std::ptrdiff_t>(i) + 1, cubes.end(), first);
-      for (; at != cubes.end() && *at <= last; ++at) groups.join(i, static_cast<std::size_t>(at - cubes.begin()));
-    };
-    const std::uint64_t c = cubes[i];
-    join(c + 1, c + 1);
-    join(c + k_row - 1, c + k_row + 1);
-    for (const std::uint64_t slice : {c + k_slice - k_row, c + k_slice, c + k_slice + k_row})
-      join(slice - 1, slice + 1);
-  }
+  const auto join = [&](std::uint64_t first, std::uint64_t last) {
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < cubes.size(); ++i) {
+      while (at < cubes.size() && cubes[at] < cubes[i] + first) ++at;
+      for (std::size_t j = at; j < cubes.size() && cubes[j] <= cubes[i] + last; ++j) groups.join(i, j);
+    }
+  };
+  join(1, 1);
+  for (const std::uint64_t row : {k_row, k_slice - k_row, k_slice, k_slice + k_row}) join(row - 1, row + 1);
   return groups;
 }
 
@@ -44,16 +43,21 @@ std::uint64_t cube_of(const Eigen::Vector3d& place, double edge) {
 }
 
 std::vector<std::vector<std::uint32_t>> connected_groups(std::span<const std::uint64_t> cubes) {
-  std::vector<std::uint64_t> distinct(cubes.begin(), cubes.end());
+  std::vector<std::uint64_t> distinct;
+  std::unique_copy(cubes.begin(), cubes.end(), std::back_inserter(distinct));  // successive things are mostly near
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   DisjointSets group_of_cube = join_cubes(distinct);
   std::vector<std::vector<std::uint32_t>> groups(distinct.size());
+  std::size_t group = 0;
   for (std::size_t k = 0; k < cubes.size(); ++k) {
-    const auto cube = std::lower_bound(distinct.begin(), distinct.end(), cubes[k]) - distinct.begin();
-    groups[group_of_cube.root(static_cast<std::size_t>(cube))].push_back(static_cast<std::uint32_t>(k));
+    if (k == 0 || cubes[k] != cubes[k - 1]) {
+      const auto cube = std::lower_bound(distinct.begin(), distinct.end(), cubes[k]) - distinct.begin();
+      group = group_of_cube.root(static_cast<std::size_t>(cube));
+    }
+    groups[group].push_back(static_cast<std::uint32_t>(k));
   }
-  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  std::erase_if(groups, [](const auto& g) { return g.empty(); });
   std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return groups;
 }

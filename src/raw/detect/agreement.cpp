@@ -3,9 +3,9 @@
 namespace cloud2csg {
 
 double support_of(const Surface& surface, std::span<const OrientedPoint> points, const AgreementLimits& limits) {
-  return with_agreement(surface, [&](const auto& rule) {
+  return with_agreement(surface, [&, support = limits.support()](const auto& rule) {
     double sum = 0;
-    for (const OrientedPoint& p : points) sum += limits.support(rule(p.position, p.normal));
+    for (const OrientedPoint& p : points) sum += support(rule(p.position, p.normal));
     return sum;
   });
 }

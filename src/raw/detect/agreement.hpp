@@ -42,14 +42,17 @@ struct AgreementLimits {
   double cosine;    ///< least value
   double most_radius = k_flat_radius;
 
-  /// Weight of the point: 1 on the surface with its normal, falling to 0 at either limit. Over the distance it is the
-  /// logarithm of a density whose scale is unknown between noise and form error (Jeffreys' prior): a surface that
-  /// passes through the points within the noise is much better than one that passes by them within the form error.
-  [[nodiscard]] double support(const Agreement& agreement) const {
-    if (!hold(agreement)) return 0;
-    const double off = agreement.distance / noise;
+  /// A function of an Agreement, the weight of the point: 1 on the surface with its normal, falling to 0 at either
+  /// limit. Over the distance it is the logarithm of a density whose scale is unknown between noise and form error
+  /// (Jeffreys' prior): a surface that passes through the points within the noise is much better than one that passes
+  /// by them within the form error.
+  [[nodiscard]] auto support() const {
     const double most = distance / noise;
-    return (1 - std::log1p(off * off) / std::log1p(most * most)) * (agreement.cosine - cosine) / (1 - cosine);
+    return [limits = *this, range = std::log1p(most * most)](const Agreement& agreement) -> double {
+      if (!limits.hold(agreement)) return 0;
+      const double off = agreement.distance / limits.noise;
+      return (1 - std::log1p(off * off) / range) * (agreement.cosine - limits.cosine) / (1 - limits.cosine);
+    };
   }
   /// The same for a surface whose own points reach less far.
   [[nodiscard]] AgreementLimits within(double reach) const {

@@ -26,15 +26,6 @@ std::vector<std::uint32_t> connected_points(const Surface& surface, const FreePo
   return largest.size() < limits.least_points ? std::vector<std::uint32_t>{} : largest;
 }
 
-double support_by(const std::vector<std::uint32_t>& indices, const Surface& surface, const FreePoints& points,
-                  const AgreementLimits& limits) {
-  return with_agreement(surface, [&](const auto& rule) {
-    double sum = 0;
-    for (const std::uint32_t i : indices) sum += limits.support(rule(points[i].position, points[i].normal));
-    return sum;
-  });
-}
-
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> connected_groups(std::span<const OrientedPoint> points,
@@ -47,6 +38,15 @@ std::vector<std::vector<std::uint32_t>> connected_groups(std::span<const Oriente
     for (std::uint32_t& k : group) k = indices[k];
   }
   return groups;
+}
+
+double support_by(const std::vector<std::uint32_t>& indices, const Surface& surface, const WorkCloud& cloud,
+                  const AgreementLimits& limits) {
+  return with_agreement(surface, [&, support = limits.support()](const auto& rule) {
+    double sum = 0;
+    for (const std::uint32_t i : indices) sum += support(rule(cloud.points[i].position, cloud.points[i].normal));
+    return sum;
+  });
 }
 
 std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
@@ -112,7 +112,7 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
         fit_plausible(best.surface, points.cloud().some_of(seen, k_sample), limits.agreement.within(best.reach));
     if (!fitted) break;
     seen = connected_points(*fitted, points, limits);
-    const double support = support_by(seen, *fitted, points, limits.agreement);
+    const double support = support_by(seen, *fitted, points.cloud(), limits.agreement);
     if (support <= best.support) break;
     const double reach = reach_of(*fitted, points.cloud(), seen, limits.agreement);
     best = {.surface = *fitted, .points = seen, .support = support, .reach = reach};
@@ -121,7 +121,7 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
     SearchLimits own = limits;
     own.agreement = limits.agreement.within(best.reach);
     best.points = connected_points(best.surface, points, own);
-    best.support = support_by(best.points, best.surface, points, limits.agreement);
+    best.support = support_by(best.points, best.surface, points.cloud(), limits.agreement);
   }
   return best.points.empty() ? std::nullopt : std::optional(std::move(best));
 }

@@ -32,6 +32,10 @@ struct GrownSurface {
   std::vector<std::uint32_t> fitted_to = {};  ///< the points of the last fit while surfaces settle
 };
 
+/// Sum of the points' support: see support_of(). O(indices)
+[[nodiscard]] double support_by(const std::vector<std::uint32_t>& indices, const Surface& surface,
+                                const WorkCloud& cloud, const AgreementLimits& limits);
+
 /// Signed distances of the points from the surface. O(n)
 [[nodiscard]] std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
                                                std::span<const std::uint32_t> points);

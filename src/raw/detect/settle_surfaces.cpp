@@ -112,7 +112,7 @@ std::optional<GrownSurface> joined(const GrownSurface& a, const GrownSurface& b,
   if (!fitted || !explains(*fitted, of_a, limits, k_nearly_all) || !explains(*fitted, of_b, limits, k_nearly_all)) {
     return std::nullopt;
   }
-  GrownSurface both{.surface = *fitted, .points = {}, .support = a.support + b.support, .reach = limits.distance};
+  GrownSurface both{.surface = *fitted, .points = {}, .reach = limits.distance};
   std::set_union(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both.points));
   // Each face may be a surface of its own, with a radius that differs by less than its points do.
   const double evidence =
@@ -161,6 +161,10 @@ double evidence_for(std::size_t k, const std::vector<GrownSurface>& surfaces, co
 /// Drops surfaces without evidence, the smallest first. @throws Cancelled
 void drop_explained(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const SearchLimits& limits,
                     const RunContext& run) {
+  for_each_index(surfaces.size(), run, [&](std::size_t k) {
+    GrownSurface& s = surfaces[k];
+    s.support = support_by(s.points, s.surface, cloud, limits.agreement.within(s.reach));
+  });
   std::stable_sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) {
     return preference(a.surface.type) * a.support > preference(b.surface.type) * b.support;
   });

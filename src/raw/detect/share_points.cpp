@@ -59,12 +59,10 @@ std::vector<std::vector<double>> claim_all(std::vector<GrownSurface>& surfaces, 
   for_each_index(surfaces.size(), run, [&](std::size_t k) {
     GrownSurface& surface = surfaces[k];
     surface.points.clear();
-    surface.support = 0;
     const auto always = [](std::uint32_t) { return true; };
     for_each_agreeing(surface.surface, cloud, limits.within(surface.reach), always,
                       [&](std::uint32_t i, const Agreement& agreement) {
                         surface.points.push_back(i);
-                        surface.support += limits.support(agreement);
                         distances[k].push_back(std::abs(agreement.distance));
                       });
   });

@@ -8,8 +8,8 @@
 
 namespace cloud2csg {
 
-/// Gives each surface all agreeing points, whoever found them first: the true surface of a face gets all of it.
-/// @returns the points' distances, by surface
+/// Gives each surface all agreeing points, whoever found them first: the true surface of a face gets all of it. Their
+/// support is not measured. @returns the points' distances, by surface
 std::vector<std::vector<double>> claim_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                                            const AgreementLimits& limits, const RunContext& run);
 

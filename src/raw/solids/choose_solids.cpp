@@ -114,23 +114,23 @@ struct FoundList {
 
 /// Searches a list, then improves it while that saves more than a leaf: with planes between the solid and lumps that
 /// are wrongly in it, and with places beside surface that no point is near. All rounds together work no longer than the
-/// search. `space_with(terms, places)` makes the term space.
-template <typename SpaceWith>
-FoundList found_list(const SpaceWith& space_with, KnownTerms terms, LabelledPlaces places, const Points& points,
-                     double near, const TermCosts& costs, ListLimits limits, const RunContext& run) {
+/// search. `families` is a space without places.
+FoundList found_list(const TermSpace& families, LabelledPlaces places, const Points& points, double near,
+                     const TermCosts& costs, ListLimits limits, const RunContext& run) {
   constexpr int k_rounds = 4;  // each mends what the last one left
   Judges judges(std::move(places));
-  const TermSpace space = space_with(terms, judges.all());
+  const TermSpace space = with_places(families, judges.all());
   FoundList found{.list = search_list(space, costs, limits, run)};
   found.written = write_solids(space, found.list);
   limits.work /= k_rounds;
+  std::vector<Surface> separators;
   for (int round = 0; round < k_rounds; ++round) {
     const std::vector<Surface> planes = separating_planes(found.written, judges.all(), 2 * costs.leaf, run);
     if (run.stop.stop_requested()) break;
     const bool is_new = judges.learn_from(found.written, points, near, costs.leaf, without_stop(run));
     if (planes.empty() && !is_new) break;
-    terms.separators.insert(terms.separators.end(), planes.begin(), planes.end());
-    const TermSpace more = space_with(terms, judges.all());
+    separators.insert(separators.end(), planes.begin(), planes.end());
+    const TermSpace more = with_places(families, judges.all(), separators);
     std::optional<DecisionList> list = improve_list(found.list, more, costs, limits, run);
     if (!list) break;
     found.written = write_solids(more, *list);
@@ -167,14 +167,14 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   GivenSurfaces regular = made_regular(cloud, surfaces, terms.surfaces, options.regularity, tolerance);
   run.throw_if_stopped();
   SolidChoice choice;
-  const auto space_with = [&](const KnownTerms& given, const LabelledPlaces& places) {
-    return make_term_space(cloud, regular.surfaces, places, tolerance, given);
-  };
   const ListLimits limits{.rules = options.most_rules};
-  const double near = bare_distance(estimate_scale(cloud).spacing, tolerance);
+  LabelledPlaces of_cloud = label_places(moved_onto(cloud, surfaces), place_options, run);
+  const double spacing = estimate_scale(cloud).spacing;
+  const TermSpace families =
+      make_term_space(cloud.positions, regular.surfaces, {.tolerance = tolerance, .spacing = spacing}, terms);
   auto [places, list, written] =
-      found_list(space_with, std::move(terms), label_places(moved_onto(cloud, surfaces), place_options, run),
-                 cloud.positions, near, {.leaf = options.leaf_cost}, limits, run);
+      found_list(families, std::move(of_cloud), cloud.positions, bare_distance(spacing, tolerance),
+                 {.leaf = options.leaf_cost}, limits, run);
   choice.places = std::move(places);
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);

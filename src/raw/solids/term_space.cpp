@@ -4,7 +4,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "cloud2csg/advanced/prepare.hpp"
 #include "core/geometry/boxes.hpp"
 #include "core/tree/interner.hpp"
 #include "raw/solids/edges.hpp"
@@ -133,12 +132,11 @@ RevolvedFamily revolved_family(const DetectedSurface& detected, const Points& po
   return family;
 }
 
-std::vector<ProfileFamily> profile_families(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                                            double tolerance, double diagonal) {
-  const double spacing = estimate_scale(cloud).spacing;
-  const double area = static_cast<double>(cloud.size()) * spacing * spacing;
+std::vector<ProfileFamily> profile_families(const Points& positions, std::span<const DetectedSurface> surfaces,
+                                            const ChartOptions& options, double diagonal) {
+  const double area = static_cast<double>(positions.size()) * options.spacing * options.spacing;
   std::vector<ProfileFamily> families;
-  for (Chart& chart : make_charts(cloud.positions, surfaces, {.tolerance = tolerance, .spacing = spacing})) {
+  for (Chart& chart : make_charts(positions, surfaces, options)) {
     ProfileFamily& family = families.emplace_back();
     const double end = chart.is_turned ? std::numbers::pi : diagonal;
     family.slabs.edges = {-end, end};
@@ -203,33 +201,37 @@ std::uint16_t Bins::bin_of(double value) const {
   return static_cast<std::uint16_t>(above - (edges.begin() + 1));
 }
 
-TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                          const LabelledPlaces& places, double distance_tolerance, const KnownTerms& known) {
-  const AlignedBox box = bounds_of(cloud.positions);
+TermSpace make_term_space(const Points& positions, std::span<const DetectedSurface> surfaces,
+                          const ChartOptions& options, const KnownTerms& known) {
+  const AlignedBox box = bounds_of(positions);
   const double diagonal = box.diagonal().norm();
   TermSpace space;
   space.known = known.solids;
   space.bounds = grown(box, k_margin * diagonal);
   const EdgeRules rules{.bounds = space.bounds,
-                        .plane_tolerance = distance_tolerance,
-                        .derived_tolerance = std::max(2 * distance_tolerance, k_derived_share * diagonal)};
+                        .plane_tolerance = options.tolerance,
+                        .derived_tolerance = std::max(2 * options.tolerance, k_derived_share * diagonal)};
   std::vector<DetectedSurface> all = known.surfaces;
   all.insert(all.end(), surfaces.begin(), surfaces.end());
   const std::vector<DetectedSurface> hidden = bend_planes(all);
   all.insert(all.end(), hidden.begin(), hidden.end());
-  space.part_bounds = bounds_of(points_on(all, cloud.positions));
+  space.part_bounds = bounds_of(points_on(all, positions));
   space.part_limits = grown(space.part_bounds, k_part_margin * diagonal);
   space.revolved = known_families(known.solids.size(), diagonal);
   for (const DetectedSurface& detected : surfaces) {
     if (detected.surface.type == SurfaceType::plane) continue;
-    space.revolved.push_back(revolved_family(detected, cloud.positions, all, rules, diagonal));
+    space.revolved.push_back(revolved_family(detected, positions, all, rules, diagonal));
   }
-  space.planes = distinct_planes(all, distance_tolerance, box.center());
-  // The last ones, so that terms keep the indices of their planes when more are added.
-  for (const Surface& plane : known.separators) {
+  space.planes = distinct_planes(all, options.tolerance, box.center());
+  space.profiles = profile_families(positions, all, options, diagonal);
+  return space;
+}
+
+TermSpace with_places(TermSpace space, const LabelledPlaces& places, std::span<const Surface> separators) {
+  // The last planes, so that terms keep the indices of theirs when more are added.
+  for (const Surface& plane : separators) {
     space.planes.push_back({.normal = plane.axis, .offset = plane.axis.dot(plane.position)});
   }
-  space.profiles = profile_families(cloud, all, distance_tolerance, diagonal);
   join_places(space, places);
   return space;
 }

@@ -60,7 +60,7 @@ struct ProfileFamily {
   return std::round(pull / k_quantum) * k_quantum;
 }
 
-/// Places that no surface distinguishes are merged, and their weights added.
+/// What terms are made of. Places that no surface distinguishes are merged, and their weights added.
 struct TermSpace {
   PrimitiveSet known = {};         ///< solids that terms may use
   std::vector<double> pulls = {};  ///< by place: gain from having it in the solid; summable()
@@ -74,18 +74,19 @@ struct TermSpace {
   [[nodiscard]] std::size_t size() const { return pulls.size(); }
 };
 
-/// What terms may use beside the found surfaces: known solids, their surfaces, at which other solids may end, and
-/// separating planes.
+/// What terms may use beside the found surfaces: known solids, and their surfaces, at which other solids may end.
 struct KnownTerms {
   PrimitiveSet solids = {};
   std::vector<DetectedSurface> surfaces = {};
-  std::vector<Surface> separators = {};  ///< planes that are no faces
 };
 
-/// O(places x surfaces).
-[[nodiscard]] TermSpace make_term_space(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                                        const LabelledPlaces& places, double distance_tolerance,
-                                        const KnownTerms& known = {});
+/// The families, without places yet. Costs what make_charts() costs.
+[[nodiscard]] TermSpace make_term_space(const Points& positions, std::span<const DetectedSurface> surfaces,
+                                        const ChartOptions& options, const KnownTerms& known = {});
+
+/// The space with these places, and with more planes, which need be no faces. O(places x surfaces)
+[[nodiscard]] TermSpace with_places(TermSpace space, const LabelledPlaces& places,
+                                    std::span<const Surface> separators = {});
 
 enum class PartKind : std::uint8_t { revolved, polytope, profile };
 
