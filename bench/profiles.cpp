@@ -1,10 +1,12 @@
 // How often random extrusions and revolutions of lines and arcs come back from points: with the right number of
 // segments and the right solid.
-//   bench_profiles [--count N] [--noise SHARE] [--points N]
+//   bench_profiles [--count N] [--noise SHARE] [--points N] [--keep FOLDER]
+// With --keep, the truth and the result of each solid that did not come back are written as models.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -29,6 +31,7 @@ constexpr double k_least_iou = 0.98;
 struct Options {
   std::size_t count = 200, points = 40'000;
   double noise = 0;  ///< in diagonals
+  std::filesystem::path keep = {};
 };
 
 Options read_options(int argc, char** argv) {
@@ -38,6 +41,7 @@ Options read_options(int argc, char** argv) {
     if (name == "--count") options.count = std::stoul(argv[i + 1]);
     if (name == "--points") options.points = std::stoul(argv[i + 1]);
     if (name == "--noise") options.noise = std::stod(argv[i + 1]);
+    if (name == "--keep") options.keep = argv[i + 1];
   }
   return options;
 }
@@ -156,7 +160,7 @@ struct Outcome {
   double iou = 0;
 };
 
-Outcome outcome_of(const Model& truth, PointCloud cloud, const Options& options) {
+Outcome outcome_of(const Model& truth, PointCloud cloud, const Options& options, const std::string& name) {
   cloud = with_noise(cloud, options.noise * bounds_of(cloud.positions).diagonal().norm());
   try {
     RunContext alone;
@@ -165,7 +169,13 @@ Outcome outcome_of(const Model& truth, PointCloud cloud, const Options& options)
     const Shape3d a{.model = truth};
     const Shape3d b{.model = result.model};
     const double iou = compare(a, b, {.resolution = 96, .surface_samples = 1000}).intersection_over_union.value_or(0);
-    return {.is_counted = has_right_counts(truth, result), .is_right = iou >= k_least_iou, .iou = iou};
+    const Outcome outcome{.is_counted = has_right_counts(truth, result), .is_right = iou >= k_least_iou, .iou = iou};
+    if (!options.keep.empty() && !outcome.is_counted) {
+      std::filesystem::create_directories(options.keep);
+      write_model(options.keep / (name + "_truth.json"), truth);
+      write_model(options.keep / (name + "_result.json"), result.model);
+    }
+    return outcome;
   } catch (const Error&) {
     return {};
   }
@@ -189,7 +199,9 @@ Outcome outcome_of(bool is_turned, bool is_pair, const Options& options, std::ui
   for (std::uint64_t t = 0; t < k_tries; ++t) {
     const Model truth = any_solids(is_turned, is_pair, k_tries * seed + t);
     PointCloud cloud = sample_surface(truth, {.count = options.points, .seed = seed});
-    if (shows_all_segments(truth, cloud)) return outcome_of(truth, std::move(cloud), options);
+    if (shows_all_segments(truth, cloud))
+      return outcome_of(truth, std::move(cloud), options,
+                        fmt::format("{}{}_{}", is_turned ? "revolution" : "extrusion", is_pair ? "_pair" : "", seed));
   }
   return {};
 }

@@ -7,6 +7,7 @@
 #include "prepare/clouds.hpp"
 #include "raw/prepare/orientation.hpp"
 #include "raw/prepare/patches.hpp"
+#include "support/known_solids.hpp"
 #include "support/warnings.hpp"
 
 namespace cloud2csg {
@@ -302,6 +303,18 @@ TEST(CheckNormals, AreFoundOutWhereTheyFaceTheWrongSide) {
   }
   EXPECT_EQ(check_normals(upward, estimate_scale(part)), NormalsVerdict::unoriented);
   EXPECT_EQ(check_normals(flipped, estimate_scale(part)), NormalsVerdict::unoriented);
+}
+
+/// In noise, winding numbers at single points err by a third also with right normals.
+TEST(CheckNormals, AreFoundOutOnTheUndersideInNoise) {
+  const PrimitiveSet solids{test::placed("block", Box{{4, 3, 4}}, {0, 0, 0})};
+  const PointCloud exact = sample_surface({.primitives = solids, .tree = CsgTree::leaf(0)}, {.count = 40000});
+  PointCloud block = with_noise(exact, 0.025);
+  EXPECT_EQ(check_normals(block, estimate_scale(block)), NormalsVerdict::outward);
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    if (block.normals[i].z() < -0.5) block.normals.set(i, -block.normals[i]);
+  }
+  EXPECT_EQ(check_normals(block, estimate_scale(block)), NormalsVerdict::unoriented);
 }
 
 /// It has no inside that normals could lead into; those that it has are somebody's choice.
