@@ -1,7 +1,7 @@
 // How often random extrusions and revolutions of lines and arcs come back from points: with the right number of
 // segments and the right solid.
 //   bench_profiles [--count N] [--noise SHARE] [--points N] [--keep FOLDER]
-// With --keep, the truth and the result of each solid that did not come back are written as models.
+// With --keep, each result with another number of segments is written as a model, beside its truth.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -199,9 +199,9 @@ Outcome outcome_of(bool is_turned, bool is_pair, const Options& options, std::ui
   for (std::uint64_t t = 0; t < k_tries; ++t) {
     const Model truth = any_solids(is_turned, is_pair, k_tries * seed + t);
     PointCloud cloud = sample_surface(truth, {.count = options.points, .seed = seed});
-    if (shows_all_segments(truth, cloud))
-      return outcome_of(truth, std::move(cloud), options,
-                        fmt::format("{}{}_{}", is_turned ? "revolution" : "extrusion", is_pair ? "_pair" : "", seed));
+    if (!shows_all_segments(truth, cloud)) continue;
+    const auto* const kind = is_turned ? "revolution" : "extrusion";
+    return outcome_of(truth, std::move(cloud), options, fmt::format("{}{}_{}", kind, is_pair ? "_pair" : "", seed));
   }
   return {};
 }

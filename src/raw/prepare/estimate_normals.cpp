@@ -94,9 +94,10 @@ struct LevelErrors {
   double outward = 0, inward = 0;
 };
 
-LevelErrors level_errors(const PointCloud& field, const Points& places, const RunContext& run) {
+/// `near`: the places around each place.
+LevelErrors level_errors(const PointCloud& field, const Points& places, const NeighbourTable& near,
+                         const RunContext& run) {
   const std::vector<double> levels = winding_numbers(field, places, run);
-  const NeighbourTable near = find_neighbours(places, NeighbourTree(places), k_voters, run);
   LevelErrors errors;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     double sum = levels[i];
@@ -153,14 +154,15 @@ namespace {
 NormalsVerdict check_by_winding(const PointCloud& cloud, const Points& places, const RunContext& run) {
   PointCloud field =
       select_points(cloud, one_of_every_few(cloud.size(), 4 * k_large_sample, RandomStream(0, k_field_stage)));
-  const LevelErrors given = level_errors(field, places, run);
+  const NeighbourTable near = find_neighbours(places, NeighbourTree(places), k_voters, run);
+  const LevelErrors given = level_errors(field, places, near, run);
   if (given.outward <= k_sure_error) return NormalsVerdict::outward;
   if (given.inward <= k_sure_error) return NormalsVerdict::inward;
   // The surface is open, or some normals point to the wrong side: would others do better?
   RunContext silent = run;
   silent.on_progress = {};
   field.normals = estimate_normals(field, estimate_scale(field), silent).normals;
-  const LevelErrors anew = level_errors(field, places, run);
+  const LevelErrors anew = level_errors(field, places, near, run);
   // The normals of a half to two thirds of a closed part, estimated anew, left 0.68 or more of the error of right ones
   // in 50 clouds, exact and noisy, and 0.32 or less where three tenths of the surface were flipped.
   if (2 * anew.outward < std::min(given.outward, given.inward)) return NormalsVerdict::unoriented;
