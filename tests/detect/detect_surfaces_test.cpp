@@ -81,6 +81,31 @@ TEST(DetectSurfaces, TakesSlenderConesForOneSurfaceEach) {
   }
 }
 
+/// A pin of radius 2 with a tapered end.
+test::Part tapered_pin(double half_angle_deg) {
+  const double slope = std::tan(half_angle_deg * std::numbers::pi / 180);
+  const double height = std::min(4.0, 1.5 / slope);
+  const Cone end{.radius_bottom = 2, .radius_top = 2 - height * slope, .height = height};
+  return {.primitives = {test::placed("end", end, {0, 0, 0}),
+                         test::placed("shaft", Cylinder{2, 2}, {0, 0, -1 - height / 2})},
+          .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
+}
+
+/// A strip of a slender cone fits a cylinder, and one of a flat cone fits a plane.
+TEST(DetectSurfaces, TakesACylinderWithALittleDraftForOneCone) {
+  for (const double half_angle_deg : {0.5, 1.0, 2.0, 86.0, 89.0}) {
+    // Noise takes the faces of 0.5 degrees for those of a slightly blunter pin, and of 89 degrees for planes.
+    const bool is_extreme = half_angle_deg < 1 || half_angle_deg > 88;
+    for (const double noise : is_extreme ? std::vector{0.0} : std::vector{0.0, 0.005}) {
+      const Detection detection = detect(cloud_of(tapered_pin(half_angle_deg), noise, 40'000), noise);
+      const std::vector<Surface> cones = by_radius(detection, SurfaceType::cone);
+      EXPECT_EQ(detection.surfaces.size(), 4U) << half_angle_deg;
+      ASSERT_EQ(cones.size(), 1U) << half_angle_deg;
+      EXPECT_NEAR(cones[0].half_angle * 180 / std::numbers::pi, half_angle_deg, 0.05);
+    }
+  }
+}
+
 TEST(DetectSurfaces, SaysHowSureTheDirectionOfAShortPieceIs) {
   const test::Part plate = test::plate_with_holes();
   const Detection detection = detect(cloud_of(plate, 0.02, 20'000), 0.02);

@@ -128,7 +128,8 @@ std::optional<GrownSurface> grow_surface(const Surface& start, const FreePoints&
 
 GrownSurface with_best_round_type(GrownSurface grown, const FreePoints& points, const SearchLimits& limits) {
   constexpr std::array k_round{SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone, SurfaceType::torus};
-  if (grown.surface.type == SurfaceType::plane) return grown;
+  const bool is_within_noise = grown.reach <= k_deviations * limits.agreement.noise;
+  if (grown.surface.type == SurfaceType::plane && is_within_noise) return grown;
   // Uses a wider band, because the own points fit the surface too well to show its true type.
   SearchLimits wide = limits;
   wide.agreement.distance *= 4;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "raw/prepare/constants.hpp"
 
@@ -52,9 +53,13 @@ bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
     case SurfaceType::sphere:
     case SurfaceType::cylinder:
       return surface.radius > least && surface.radius < limits.most_radius;
-    case SurfaceType::cone:
-      // Points cannot tell sharper cones from cylinders or blunter ones from planes.
-      return surface.half_angle > 0.035 && surface.half_angle < 1.5 && surface.position.norm() < k_flat_radius;
+    case SurfaceType::cone: {
+      // Over a third of the diagonal, a cone must leave the band around a cylinder. A flat one must leave three bands
+      // around a plane, where the points may be those of two planes at a step: with one, every third step of 5 standard
+      // deviations is lost; with double, faces of 1.5 degrees fall into planes in an exact cloud.
+      const double slope = 3 * limits.distance;
+      return surface.half_angle > slope && surface.half_angle < std::numbers::pi / 2 - 3 * slope;
+    }
     case SurfaceType::torus:
       return surface.minor_radius > least && surface.radius > surface.minor_radius &&
              surface.radius < limits.most_radius;
