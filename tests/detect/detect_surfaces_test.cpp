@@ -92,7 +92,7 @@ test::Part tapered_pin(double half_angle_deg) {
 }
 
 /// A strip of a slender cone fits a cylinder, and one of a flat cone fits a plane.
-TEST(DetectSurfaces, TakesACylinderWithALittleDraftForOneCone) {
+TEST(DetectSurfaces, TakesSlightlyTaperedAndNearlyFlatFacesForOneConeEach) {
   for (const double half_angle_deg : {0.5, 1.0, 2.0, 86.0, 89.0}) {
     // Noise takes the faces of 0.5 degrees for those of a slightly blunter pin, and of 89 degrees for planes.
     const bool is_extreme = half_angle_deg < 1 || half_angle_deg > 88;

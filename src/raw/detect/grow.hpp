@@ -71,7 +71,8 @@ std::vector<std::uint32_t> points_near(const GrownSurface& grown, const WorkClou
                                                        const SearchLimits& limits);
 
 /// The surface, or one of another round type that explains its points and those around it better. Locally a slender
-/// cone looks like a cylinder, and a narrow band of a cylinder like a sphere.
+/// cone looks like a cylinder, and a narrow band of a cylinder like a sphere. A plane within the noise stays one; a
+/// strip of a flat cone fits a plane less well.
 [[nodiscard]] GrownSurface with_best_round_type(GrownSurface grown, const FreePoints& points,
                                                 const SearchLimits& limits);
 
