@@ -26,7 +26,7 @@ struct Surface {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   double radius = 0;        ///< sphere, cylinder; torus: major radius, from its centre to the tube's
   double half_angle = 0;    ///< cone: angle between axis and surface in radians, above 0 and below pi / 2
-  double minor_radius = 0;  ///< torus: radius of the tube
+  double minor_radius = 0;  ///< torus: radius of the tube; if larger than the major one, only the tube's outside counts
   bool concave = false;     ///< the material is outside, as around a hole; never for planes
 };
 

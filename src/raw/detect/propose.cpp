@@ -61,8 +61,8 @@ bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
       return surface.half_angle > slope && surface.half_angle < std::numbers::pi / 2 - 3 * slope;
     }
     case SurfaceType::torus:
-      return surface.minor_radius > least && surface.radius > surface.minor_radius &&
-             surface.radius < limits.most_radius;
+      return surface.minor_radius > least && surface.radius + surface.minor_radius > least &&
+             surface.radius < limits.most_radius && surface.minor_radius < limits.most_radius;
   }
   return false;
 }

@@ -38,6 +38,14 @@ Span span_of(const Bins& bins, BinRange range, const std::array<bool, 2>& oversh
   return span;
 }
 
+/// A torus whose tube crosses the axis: an arc that ends on the axis, turned.
+Primitive spindle(const Surface& torus, const Eigen::Vector3d& axis) {
+  const double half_angle = std::acos(-torus.radius / torus.minor_radius);
+  const double end = torus.minor_radius * std::sin(half_angle);
+  const ClosedPath path{{.point = {0, -end}, .bulge = std::tan(half_angle / 2)}, {.point = {0, end}}};
+  return {.id = {}, .shape = Revolution{{{path}}}, .pose = pose_from_axis(torus.position, axis)};
+}
+
 Primitive revolved_solid(const Surface& surface, const Span& span) {
   const Eigen::Vector3d middle = surface.position + 0.5 * (span.low + span.high) * surface.axis;
   const double height = span.high - span.low;
@@ -52,6 +60,7 @@ Primitive revolved_solid(const Surface& surface, const Span& span) {
       return {.id = {}, .shape = cone, .pose = pose_from_axis(middle, axis)};
     }
     case SurfaceType::torus:
+      if (surface.radius < surface.minor_radius) return spindle(surface, axis);
       return {.id = {},
               .shape = Torus{surface.radius, surface.minor_radius},
               .pose = pose_from_axis(surface.position, axis)};

@@ -139,7 +139,8 @@ bool Chart::is_surface(const Place& place) const {
              opening <= std::numbers::pi / 2 - k_least_half_angle;
     }
     case SurfaceType::torus:
-      return std::isfinite(place.sizes[0]) && place.sizes[0] > 0 && std::isfinite(place.sizes[1]) && place.sizes[1] > 0;
+      return std::isfinite(place.sizes[0]) && std::isfinite(place.sizes[1]) && place.sizes[1] > 0 &&
+             place.sizes[0] + place.sizes[1] > 0;
   }
   return false;
 }

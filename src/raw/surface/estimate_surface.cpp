@@ -212,7 +212,7 @@ std::optional<Surface> torus_around(Surface torus, Vectors points) {
     profile.emplace_back(at.radial, at.height);
   }
   const std::optional<Circle> circle = estimate_circle(profile);
-  if (!circle || !(circle->centre.x() > 0)) return std::nullopt;
+  if (!circle || !(circle->centre.x() + circle->radius > 0)) return std::nullopt;
   torus.position += circle->centre.y() * torus.axis;
   torus.radius = circle->centre.x();
   torus.minor_radius = circle->radius;
