@@ -52,7 +52,8 @@ void bind_surface(py::module_& module) {
           "Shape (3,), unit length: the outward normal of a plane, or an axis. Meaningless for spheres.")
       .def_property_readonly(
           "radius", [](const DetectedSurface& self) { return self.surface.radius; },
-          "Radius of a sphere or cylinder, or major radius of a torus, in the cloud's units.")
+          "Radius of a sphere or cylinder, or major radius of a torus, in the cloud's units. Below that of the tube, "
+          "as of an apple, or negative, as of a lemon, if the tube crosses the axis.")
       .def_property_readonly(
           "minor_radius", [](const DetectedSurface& self) { return self.surface.minor_radius; },
           "Radius of a torus' tube.")

@@ -69,4 +69,14 @@ inline std::size_t count_of(const Detection& detection, SurfaceType type) {
                                                 [&](const auto& s) { return s.surface.type == type; }));
 }
 
+/// The surfaces of one type, by ascending radius.
+inline std::vector<Surface> by_radius(const Detection& detection, SurfaceType type) {
+  std::vector<Surface> found;
+  for (const DetectedSurface& s : detection.surfaces) {
+    if (s.surface.type == type) found.push_back(s.surface);
+  }
+  std::sort(found.begin(), found.end(), [](const Surface& a, const Surface& b) { return a.radius < b.radius; });
+  return found;
+}
+
 }  // namespace cloud2csg::test

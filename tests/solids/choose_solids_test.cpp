@@ -11,6 +11,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "solids/known_surfaces.hpp"
+#include "support/any_profile.hpp"
 #include "support/known_solids.hpp"
 
 namespace cloud2csg {
@@ -200,6 +201,15 @@ TEST(ChooseSolids, FindsAConeAndATorus) {
                             test::placed("ring", Torus{1.5, 0.3}, {0, 0, -0.9})},
                            "cone | ring"),
                    2);
+}
+
+TEST(ChooseSolids, FindsTurnedArcsThatEndOnTheAxis) {
+  for (const double centre : {0.5, -0.5}) {
+    const Primitive round = test::placed("round", test::turned_arc(centre, 1.5), {0, 0, 0});
+    expect_recovered(part_of({round}, "round"), 1);
+    const Primitive block = test::placed("block", Box{{6, 5, 4}}, {0, 0, 2});
+    expect_recovered(part_of({block, round}, "block - round"), 2);
+  }
 }
 
 /// Nothing is seen of where the bend goes over into the straight pipes.

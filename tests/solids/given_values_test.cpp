@@ -4,6 +4,7 @@
 
 #include "core/base/random.hpp"
 #include "raw/solids/known_parts.hpp"
+#include "support/any_profile.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -156,7 +157,8 @@ TEST(SurfacesOfKnown, LieOnTheSolid) {
   const Polytope wedge{
       .planes = {{{-1, 0, 0}, 1}, {{0, -1, 0}, 1}, {{0, 0, -1}, 1}, {{0.6, 0.8, 0}, 1}, {{0, 0, 1}, 2}}};
   for (const Shape& shape : {Shape(Box{{1, 2, 3}}), Shape(Sphere{1.5}), Shape(Cylinder{0.5, 2}), Shape(Cone{0.2, 1, 2}),
-                             Shape(Cone{1, 0.2, 2}), Shape(Cone{1, 1, 2}), Shape(Torus{1, 0.3}), Shape(wedge)}) {
+                             Shape(Cone{1, 0.2, 2}), Shape(Cone{1, 1, 2}), Shape(Torus{1, 0.3}), Shape(wedge),
+                             Shape(test::turned_arc(0.3, 1)), Shape(test::turned_arc(-0.3, 1))}) {
     const Primitive solid{.id = "solid", .shape = shape, .pose = pose};
     // Points on the surface: any, along the field.
     KnownSolid known{.solid = solid, .own = {}};

@@ -12,6 +12,7 @@
 #include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/primitive.hpp"
+#include "core/primitive/profile.hpp"
 
 /// What detection would find in a cloud of known solids.
 namespace cloud2csg::test {
@@ -20,7 +21,7 @@ inline Surface plane_at(const Eigen::Vector3d& position, const Eigen::Vector3d& 
   return {.type = SurfaceType::plane, .position = position, .axis = normal.normalized()};
 }
 
-/// The surfaces of a solid, without ends. Of cones only those with a slope.
+/// The surfaces of a solid. Of cones only those with a slope, of turned profiles those of arcs.
 inline std::vector<Surface> surfaces_of(const Primitive& solid) {
   std::vector<Surface> found;
   const Eigen::Vector3d axis = solid.pose.orientation * Eigen::Vector3d::UnitZ();
@@ -60,6 +61,15 @@ inline std::vector<Surface> surfaces_of(const Primitive& solid) {
                      .axis = axis,
                      .radius = torus->major_radius,
                      .minor_radius = torus->minor_radius});
+  } else if (const auto* turned = std::get_if<Revolution>(&solid.shape)) {
+    for (const ProfileSegment& arc : segments_of(turned->profile.paths.at(0))) {
+      if (!arc.is_arc()) continue;
+      found.push_back({.type = SurfaceType::torus,
+                       .position = middle + arc.centre.y() * axis,
+                       .axis = axis,
+                       .radius = arc.centre.x(),
+                       .minor_radius = arc.radius});
+    }
   }
   return found;
 }

@@ -24,6 +24,13 @@ inline ClosedPath circle_path(const Eigen::Vector2d& centre, double radius) {
   return {{.point = centre - arm, .bulge = 1}, {.point = centre + arm, .bulge = 1}};
 }
 
+/// What a circle turned around an axis that it crosses encloses: an apple, or a lemon if the circle's centre is beyond.
+inline Revolution turned_arc(double centre, double radius) {
+  const double half_angle = std::acos(-centre / radius);
+  const double end = radius * std::sin(half_angle);
+  return {{{{{.point = {0, -end}, .bulge = std::tan(half_angle / 2)}, {.point = {0, end}}}}}};
+}
+
 /// A regular polygon around the origin.
 inline ClosedPath regular_path(std::size_t corners, double radius) {
   ClosedPath path;

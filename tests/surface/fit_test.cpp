@@ -210,6 +210,29 @@ TEST(FitSurface, OfANarrowConeIsNearlyACylinder) {
   EXPECT_LT(test::largest_distance(fit->surface, cylinder, {}), k_noise);
 }
 
+TEST(EstimateSurface, FindsToriWhoseTubeCrossesTheAxis) {
+  RandomStream random(4);
+  for (const double radius : {0.4, 0.2, -0.2, -0.4}) {
+    for (const double noise : {0.0, k_noise}) {
+      const Surface truth{.type = SurfaceType::torus,
+                          .position = test::random_within(1, random),
+                          .axis = test::random_direction(random),
+                          .radius = radius,
+                          .minor_radius = 0.8,
+                          .concave = noise > 0};
+      const test::Patch patch = test::sample_patch(truth, {.noise = noise, .normal_noise = 5 * noise}, random);
+      const auto start = estimate_surface(SurfaceType::torus, patch.points, patch.normals);
+      ASSERT_TRUE(start) << radius;
+      const auto fit = fit_surface(*start, patch.points);
+      ASSERT_TRUE(fit) << radius;
+      EXPECT_NEAR(fit->surface.radius, radius, 1e-9 + noise);
+      EXPECT_NEAR(fit->surface.minor_radius, 0.8, 1e-9 + noise);
+      EXPECT_EQ(fit->surface.concave, truth.concave);
+      EXPECT_LT(test::largest_distance(fit->surface, truth, {}), 1e-9 + 0.5 * noise) << radius;
+    }
+  }
+}
+
 TEST(EstimateSurface, RefusesWhatPointsDoNotDetermine) {
   std::vector<Eigen::Vector3d> line;
   std::vector<Eigen::Vector3d> flat;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -67,7 +68,9 @@ inline Eigen::Vector3d point_on(const Surface& surface, double along, double tur
       return surface.position + height * (surface.axis + std::tan(surface.half_angle) * outward);
     }
     case SurfaceType::torus: {
-      const double tube = 2 * std::numbers::pi * along * options.length;
+      // As far as the axis, if the tube crosses it.
+      const double most = std::acos(std::clamp(-surface.radius / surface.minor_radius, -1.0, 1.0));
+      const double tube = (2 * along - 1) * most * options.length;
       return surface.position + (surface.radius + surface.minor_radius * std::cos(tube)) * outward +
              surface.minor_radius * std::sin(tube) * surface.axis;
     }

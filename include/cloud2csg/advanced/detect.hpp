@@ -38,11 +38,12 @@ void option_table(OptionsOf<DetectOptions>, auto&& field) {
       {.absent = "as many as cannot be chance: 13 in a sparse exact cloud, more the more spacings the tolerance has"});
   field(&O::least_size, "least_size",
         "Leave out surfaces with a smaller radius or extent, in the cloud's units. The radius is that of a sphere or "
-        "cylinder, or both radii of a torus; the extent is the diagonal of the box around the largest connected piece "
+        "cylinder, or that of a torus' tube; the extent is the diagonal of the box around the largest connected piece "
         "of the surface's points. Points of surfaces that are left out lie on no surface; but a surface whose only "
         "possible radius is above `most_size` may be detected as flat.",
         above(0), {.absent = "no limit", .unit = "D", .option = "min-size"});
-  field(&O::most_size, "most_size", "Leave out surfaces with a larger radius or extent, in the cloud's units", above(0),
+  field(&O::most_size, "most_size",
+        "Leave out surfaces with a larger radius (of a torus, either) or extent, in the cloud's units", above(0),
         {.absent = "no limit", .unit = "D", .option = "max-size"});
   field(&O::seed, k_inner_seed);
 }

@@ -18,20 +18,22 @@ enum class SurfaceType { plane, sphere, cylinder, cone, torus };
 [[nodiscard]] std::string_view type_name(SurfaceType type);
 
 /// An unbounded surface. Members have a meaning only for the types that they name.
+/// The tube of a torus may cross the axis; then its outside is the surface. The major radius is below the minor one, as
+/// of an apple, or negative, as of a lemon; the sum of both is above 0.
 struct Surface {
   SurfaceType type = SurfaceType::plane;
   /// A point of the plane; the centre of a sphere or torus; a point on the axis of a cylinder; the apex of a cone.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   /// Unit length: a plane's outward normal; the axis of a cylinder or torus; a cone's axis from apex into the opening.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-  double radius = 0;        ///< sphere, cylinder; torus: major radius, from its centre to the tube's
+  double radius = 0;        ///< sphere, cylinder; torus: major radius, from its axis to the tube's centre
   double half_angle = 0;    ///< cone: angle between axis and surface in radians, above 0 and below pi / 2
-  double minor_radius = 0;  ///< torus: radius of the tube; if larger than the major one, only the tube's outside counts
+  double minor_radius = 0;  ///< torus: radius of the tube
   bool concave = false;     ///< the material is outside, as around a hole; never for planes
 };
 
-/// Distance from the surface in the points' units, negative on the material's side. Euclidean, except within a torus
-/// whose tube overlaps itself. A cone has one nappe: behind the apex it is the distance from the apex. O(1)
+/// Distance from the surface in the points' units, negative on the material's side. Euclidean, except near the axis of
+/// a torus whose tube crosses it. A cone has one nappe: behind the apex it is the distance from the apex. O(1)
 [[nodiscard]] double signed_distance(const Surface& surface, const Eigen::Vector3d& point);
 
 /// Gradient of signed_distance(): unit outward normal at the point's foot. On axes and centres, one of the limits.

@@ -302,7 +302,7 @@ bool has_allowed_size(const GrownSurface& grown, const WorkCloud& work, const De
   double most = extent;
   if (has_radius) {
     least = std::min(least, type == SurfaceType::torus ? grown.surface.minor_radius : grown.surface.radius);
-    most = std::max(most, grown.surface.radius);
+    most = std::max({most, grown.surface.radius, grown.surface.minor_radius});
   }
   return least * work.diagonal >= options.least_size.value_or(0) &&
          (!options.most_size || most * work.diagonal <= *options.most_size);

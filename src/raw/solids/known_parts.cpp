@@ -166,7 +166,7 @@ class GivenValues {
     const double measured = surface.*radius;
     surface.*radius =
         *std::ranges::min_element(options_.radii, {}, [&](double given) { return std::abs(given - measured); });
-    const bool is_torus = surface.type != SurfaceType::torus || surface.radius > surface.minor_radius;
+    const bool is_torus = surface.type != SurfaceType::torus || surface.radius + surface.minor_radius > 0;
     if (!is_torus || candidate.try_taking(surface, tolerance_)) {
       other_radii_.push_back(
           fmt::format("{} {} of {:.4g}", type_name(surface.type), place_of(candidate.surface()), measured));
@@ -273,10 +273,9 @@ class SurfaceList {
                         .half_angle = half_angle,
                         .concave = concave});
   }
-  /// The surface of an arc about the axis. None if its centre is beyond the axis.
+  /// The surface of an arc about the axis.
   void add_ring(const ProfileSegment& arc) {
-    if (arc.centre.x() < -k_on_axis * arc.radius) return;
-    const bool is_sphere = arc.centre.x() <= k_on_axis * arc.radius;
+    const bool is_sphere = std::abs(arc.centre.x()) <= k_on_axis * arc.radius;
     surfaces.push_back({.type = is_sphere ? SurfaceType::sphere : SurfaceType::torus,
                         .position = pose_.to_world(arc.centre.y() * Vector3d::UnitZ()),
                         .axis = axis_,
