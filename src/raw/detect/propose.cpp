@@ -54,9 +54,9 @@ bool is_plausible(const Surface& surface, const AgreementLimits& limits) {
     case SurfaceType::cylinder:
       return surface.radius > least && surface.radius < limits.most_radius;
     case SurfaceType::cone: {
-      // Over a third of the diagonal, a cone must leave the band around a cylinder. A flat one must leave three bands
-      // around a plane, where the points may be those of two planes at a step: with one, every third step of 5 standard
-      // deviations is lost; with double, faces of 1.5 degrees fall into planes in an exact cloud.
+      // Over a third of the diagonal, a cone must leave the noise around a cylinder. A flat one must leave three times
+      // the noise around a plane, where the points may be those of two planes at a step: with once, every third step of
+      // 5 standard deviations is lost.
       const double slope = 3 * least;
       return surface.half_angle > slope && surface.half_angle < std::numbers::pi / 2 - 3 * slope;
     }
