@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
 #include "core/geometry/place_text.hpp"
@@ -48,13 +49,16 @@ std::vector<std::uint32_t> points_of_none(const PointLists& lists, std::size_t c
 
 void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   PointCloud& cloud = found.prepared.cloud;
-  const std::optional<UnseenSide> side = find_unseen_side(cloud, found.detection.surfaces, found.prepared.scale, run);
+  found.areas = point_areas(cloud, run);
+  const std::optional<UnseenSide> side =
+      find_unseen_side(cloud, found.areas, found.detection.surfaces, found.prepared.scale, run);
   if (!side) return;
   DetectedSurface plane{.surface = {.position = side->points.positions[0], .axis = side->normal}, .points = {}};
   plane.points.resize(side->points.size());
   std::iota(plane.points.begin(), plane.points.end(), static_cast<std::uint32_t>(cloud.size()));
   found.added_points += side->points.size();
   append(cloud, side->points);
+  found.areas.clear();
   found.detection.surfaces.push_back(std::move(plane));
   // Rounded, and + 0.0 turns -0 into 0.
   const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
@@ -80,6 +84,7 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
     found.added_points += wall.points.size();
     append(cloud, wall.points);
   }
+  found.areas.clear();
   found.warnings.push_back(
       fmt::format("no sensor saw far into {} of the holes, the largest near {}: their walls were extended between the "
                   "parts that were seen",
@@ -176,7 +181,7 @@ void choose(FoundPrimitives& found, std::span<const KnownSolid> known, const Rec
   SolidOptions solids = options.solids;
   if (!solids.regularity.given_tolerance) solids.regularity.given_tolerance = found.detection.distance_tolerance;
   try {
-    found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run);
+    found.choice = choose_solids(found.prepared.cloud, found.detection.surfaces, known, solids, run, found.areas);
   } catch (const NoInside& error) {
     found.no_solid = error;
     for (const KnownSolid& one : known) found.choice.solids.push_back(one.solid);

@@ -27,6 +27,7 @@ struct FoundPrimitives {
   PreparedCloud prepared;                            ///< the cloud that all other members refer to
   Detection detection;                               ///< surfaces of the points on no known primitive
   std::vector<std::uint32_t> unexplained;            ///< points on no surface and no known primitive, ascending
+  std::vector<double> areas = {};     ///< of the surface around each point of the cloud; empty if not measured
   std::size_t added_points = 0;       ///< points on an unseen side or hidden walls, at the end of the cloud
   SolidChoice choice;                 ///< known solids, chosen solids with evidence, and a tree over them
   std::optional<Error> no_solid;      ///< why the surfaces bound no solid; `choice` has no tree then

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cloud2csg/advanced/solids.hpp"
+#include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/sample.hpp"
 #include "support/known_solids.hpp"
@@ -61,6 +62,19 @@ TEST(LabelPlaces, WeighsTheVolumeOfTheSolidAsOne) {
   // Nothing in the solid: its volume, and half of what is beside its surface, is wrong.
   EXPECT_NEAR(wrong_place_share(CsgTree::empty(), k_solids, places), 1.5, 0.05);
   EXPECT_GT(total_weight(places), 2.0);
+}
+
+TEST(LabelPlaces, TakesAreasThatAreKnown) {
+  const PointCloud cloud =
+      sample_surface({.primitives = k_solids, .tree = tree()}, {.count = 3000, .noise = 0.005, .seed = 2});
+  const PlaceOptions options{.noise = 0.005, .volume_places = 2000, .surface_points = 500};
+  const LabelledPlaces measured = label_places(cloud, options);
+  std::vector<double> areas = point_areas(cloud);
+  const LabelledPlaces taken = label_places(cloud, options, {}, areas);
+  EXPECT_EQ(taken.positions.x, measured.positions.x);
+  EXPECT_EQ(taken.weights, measured.weights);
+  areas.pop_back();
+  EXPECT_THROW((void)label_places(cloud, options, {}, areas), Error);
 }
 
 TEST(LabelPlaces, RefusesACloudWithoutAnInside) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cloud2csg/advanced/prepare.hpp"
+#include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/sample.hpp"
 #include "raw/solids/unseen_surfaces.hpp"
 #include "solids/known_surfaces.hpp"
@@ -40,7 +41,7 @@ class BoredBlock : public ::testing::Test {
     return cloud_without([](const Vector3d&, const Vector3d& normal) { return normal.z() < -0.9; });
   }
   [[nodiscard]] std::optional<UnseenSide> find(const PointCloud& cloud) const {
-    return find_unseen_side(cloud, surfaces_, estimate_scale(cloud));
+    return find_unseen_side(cloud, point_areas(cloud), surfaces_, estimate_scale(cloud));
   }
   [[nodiscard]] Vector3d down() const { return turn_.orientation * Vector3d(0, 0, -1); }
 

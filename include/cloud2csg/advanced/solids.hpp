@@ -51,10 +51,11 @@ void option_table(OptionsOf<PlaceOptions>, auto&& field) {
 }
 
 /// Labels places in the volume by the winding number of the oriented points (Barill et al. 2018) and places beside a
-/// point by its normal. Leaves out unclear places. O((places + points) log points + places x some thousand voxels)
+/// point by its normal. Leaves out unclear places. `areas`: of the surface around each point, by point_areas();
+/// measured if empty. O((places + points) log points + places x some thousand voxels)
 /// @throws NoInside; Error (where = "cloud", "noise"...) for no normals, fewer than 16 points, a bad option; Cancelled
 [[nodiscard]] LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options = {},
-                                          const RunContext& run = {});
+                                          const RunContext& run = {}, std::span<const double> areas = {});
 
 /// Total weight of the places that the tree labels differently; 0 when it is right everywhere. O(places x size).
 [[nodiscard]] double wrong_place_share(const CsgTree& tree, const PrimitiveSet& solids, const LabelledPlaces& places);
@@ -204,9 +205,10 @@ struct SolidChoice {
                                         const SolidOptions& options = {}, const RunContext& run = {});
 
 /// The same with known solids. They are terms of any type, and cost a twentieth of a leaf. New solids may end at
-/// their faces. Detected surfaces adapt to them. No surfaces are needed where a known solid has points.
+/// their faces. Detected surfaces adapt to them. No surfaces are needed where a known solid has points. `areas` as in
+/// label_places().
 [[nodiscard]] SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                         std::span<const KnownSolid> known, const SolidOptions& options,
-                                        const RunContext& run);
+                                        const RunContext& run, std::span<const double> areas = {});
 
 }  // namespace cloud2csg

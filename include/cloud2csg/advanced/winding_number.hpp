@@ -15,6 +15,9 @@ namespace cloud2csg {
 /// @throws Cancelled
 [[nodiscard]] std::vector<double> point_areas(const PointCloud& cloud, const RunContext& run = {});
 
+/// Median edge of a square with a point's area, as Scale::spacing. O(n) Precondition: not empty.
+[[nodiscard]] double spacing_of(std::vector<double> areas);
+
 /// The field of the winding number. Every point is a dipole along its normal with the strength of its area, smoothed
 /// within the radius of a disc of that area. The first and second moments of distant groups stand for their points.
 class WindingField {

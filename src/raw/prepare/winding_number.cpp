@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/parallel.hpp"
+#include "core/base/robust_deviation.hpp"
 #include "raw/prepare/constants.hpp"
 #include "raw/prepare/neighbours.hpp"
 
@@ -29,6 +30,10 @@ std::vector<double> point_areas(const PointCloud& cloud, const RunContext& run) 
     areas[i] = std::numbers::pi * radius * radius / static_cast<double>(neighbours.width);
   }
   return areas;
+}
+
+double spacing_of(std::vector<double> areas) {
+  return std::sqrt(median_of(areas));
 }
 
 WindingField::WindingField(PointsView positions, PointsView normals, std::span<const double> areas)

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/solids.hpp"
+#include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
 #include "raw/solids/bare_surface.hpp"
@@ -148,7 +148,8 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
 }
 
 SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                          std::span<const KnownSolid> known, const SolidOptions& options, const RunContext& run) {
+                          std::span<const KnownSolid> known, const SolidOptions& options, const RunContext& run,
+                          std::span<const double> areas) {
   validate(options);
   const bool is_any_seen =
       std::ranges::any_of(known, [](const KnownSolid& solid) { return !solid.own.points.empty(); });
@@ -168,8 +169,10 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   run.throw_if_stopped();
   SolidChoice choice;
   const ListLimits limits{.rules = options.most_rules};
-  LabelledPlaces of_cloud = label_places(moved_onto(cloud, surfaces), place_options, run);
-  const double spacing = estimate_scale(cloud).spacing;
+  const std::vector<double> own_areas = areas.empty() ? point_areas(cloud, run) : std::vector<double>();
+  if (areas.empty()) areas = own_areas;
+  LabelledPlaces of_cloud = label_places(moved_onto(cloud, surfaces), place_options, run, areas);
+  const double spacing = spacing_of({areas.begin(), areas.end()});
   const TermSpace families =
       make_term_space(cloud.positions, regular.surfaces, {.tolerance = tolerance, .spacing = spacing}, terms);
   auto [places, list, written] =

@@ -36,9 +36,12 @@ constexpr std::size_t k_chunk_places = 256;  // places between two looks at the 
        .remedy = "give points from all sides of the object, and outward normals or sensor positions if there are any"});
 }
 
-void check(const PointCloud& cloud, const PlaceOptions& options) {
+void check(const PointCloud& cloud, const PlaceOptions& options, std::span<const double> areas) {
   if (!cloud.has_normals()) refuse("cloud", "expected a cloud with outward normals");
   if (cloud.size() < k_least_points) refuse("cloud", fmt::format("expected at least {} points", k_least_points));
+  if (!areas.empty() && areas.size() != cloud.size()) {
+    refuse("areas", fmt::format("expected one for each of {} points, found {}", cloud.size(), areas.size()));
+  }
   validate(options);
 }
 
@@ -64,13 +67,13 @@ Points stratified(const AlignedBox& box, std::size_t count, std::uint64_t seed) 
 
 class Labelling {
  public:
-  Labelling(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run)
-      : cloud_(cloud), options_(options), run_(run), index_(cloud.positions), areas_(point_areas(cloud, run)) {
+  Labelling(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run, std::span<const double> areas)
+      : cloud_(cloud), options_(options), run_(run), index_(cloud.positions), areas_(areas.begin(), areas.end()) {
+    if (areas_.empty()) areas_ = point_areas(cloud, run);
     const AlignedBox box = bounds_of(cloud.positions);
     diagonal_ = box.diagonal().norm();
     if (!(diagonal_ > 0)) refuse("cloud", "expected points that are not all in one place");
-    std::vector<double> areas = areas_;
-    spacing_ = std::sqrt(median_of(areas));
+    spacing_ = spacing_of(areas_);
     noise_ = options.noise.value_or(0.1 * spacing_);
     grown_ = grown(box, options.margin * diagonal_);
     if (!(enclosed_volume() > 0)) refuse_without_inside();
@@ -192,9 +195,10 @@ class Labelling {
 
 }  // namespace
 
-LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run) {
-  check(cloud, options);
-  const Labelling labelling(cloud, options, run);
+LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run,
+                            std::span<const double> areas) {
+  check(cloud, options, areas);
+  const Labelling labelling(cloud, options, run, areas);
   LabelledPlaces places;
   labelling.add_volume(places);
   labelling.add_surface(places);

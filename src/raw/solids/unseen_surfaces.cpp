@@ -33,14 +33,14 @@ constexpr std::size_t k_window = 2;  ///< bins on each side in which a bin's lay
 /// Points with areas, and the area-weighted sum of their normals.
 struct Surroundings {
   const PointCloud& cloud;
-  std::vector<double> areas;
+  std::span<const double> areas;
   double area = 0;
   Vector3d sum = Vector3d::Zero();
   Vector3d middle;
 };
 
-Surroundings survey(const PointCloud& cloud, const Scale& scale, const RunContext& run) {
-  Surroundings all{.cloud = cloud, .areas = point_areas(cloud, run), .middle = scale.box.center()};
+Surroundings survey(const PointCloud& cloud, std::span<const double> areas, const Scale& scale) {
+  Surroundings all{.cloud = cloud, .areas = areas, .middle = scale.box.center()};
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     all.sum += all.areas[i] * cloud.normals[i];
     all.area += all.areas[i];
@@ -319,9 +319,10 @@ Points hidden_places(const RolledWall& wall, const SensorViews& views, double us
 
 }  // namespace
 
-std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                                           const Scale& scale, const RunContext& run) {
-  const Surroundings all = survey(cloud, scale, run);
+std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud, std::span<const double> areas,
+                                           std::span<const DetectedSurface> surfaces, const Scale& scale,
+                                           const RunContext& run) {
+  const Surroundings all = survey(cloud, areas, scale);
   if (!(all.sum.norm() > k_least_share * all.area)) return std::nullopt;
   std::optional<LayerCount> best;
   Vector3d best_up = Vector3d::Zero();
