@@ -63,9 +63,18 @@ std::vector<std::string> normals_warnings(const PreparedCloud& prepared, const E
 }
 
 std::vector<std::string> outlier_warnings(const CleanReport& report, std::size_t points) {
+  std::vector<std::string> warnings;
   const std::size_t outliers = report.isolated + report.off_surface;
-  if (share(outliers, points) <= k_many_outliers) return {};
-  return {fmt::format("{} of {} points are outliers and are left out", outliers, points)};
+  if (share(outliers, points) > k_many_outliers) {
+    warnings.push_back(fmt::format("{} of {} points are outliers and are left out", outliers, points));
+  }
+  if (report.smoothed > 0) {
+    warnings.push_back(
+        fmt::format("the cloud was smoothed, which rounds edges: {} of {} points beside edges are left out, and the "
+                    "edges are sharp",
+                    report.smoothed, points));
+  }
+  return warnings;
 }
 
 std::vector<std::string> unused_known_warnings(const CsgTree& tree, const FoundPrimitives& found,

@@ -129,12 +129,16 @@ void add_evidence(FoundPrimitives& found, const DetectOptions& options, const Ru
   }
 }
 
-/// Leaves out the doubted points that are on no surface and on no known primitive: they are outliers.
+/// Leaves out the doubted points that are on no surface and on no known primitive, which are outliers, and those beside
+/// smoothed edges.
 std::pair<PreparedCloud, RestDetection> without_doubted(PreparedCloud prepared, RestDetection rest) {
   const std::vector<std::uint32_t> doubted = std::exchange(prepared.doubted, {});
   const std::size_t count = prepared.cloud.size();
+  const std::vector<std::uint32_t> smoothed = std::exchange(rest.detection.smoothed, {});
+  std::vector<std::uint32_t> candidates;
+  std::ranges::set_union(doubted, smoothed, std::back_inserter(candidates));
   std::vector<std::uint32_t> outliers;
-  std::ranges::set_intersection(doubted, points_of_none(lists_of(rest), count), std::back_inserter(outliers));
+  std::ranges::set_intersection(candidates, points_of_none(lists_of(rest), count), std::back_inserter(outliers));
   if (outliers.empty()) return {std::move(prepared), std::move(rest)};
   std::vector<std::uint32_t> place(count);
   auto next = outliers.begin();
@@ -148,7 +152,8 @@ std::pair<PreparedCloud, RestDetection> without_doubted(PreparedCloud prepared, 
   for (DetectedSurface& surface : rest.detection.surfaces) move(surface.points);
   for (SurfacePoints& known : rest.known) move(known.points);
   prepared.cloud = without_points(prepared.cloud, outliers);
-  prepared.cleaning.off_surface += outliers.size();
+  prepared.cleaning.smoothed = smoothed.size();
+  prepared.cleaning.off_surface += outliers.size() - smoothed.size();
   rest.detection.unexplained -= outliers.size();
   return {std::move(prepared), std::move(rest)};
 }
@@ -247,6 +252,7 @@ RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const Pri
   for (DetectedSurface& surface : result.detection.surfaces) {
     for (std::uint32_t& i : surface.points) i = rest[i];
   }
+  for (std::uint32_t& i : result.detection.smoothed) i = rest[i];
   return result;
 }
 

@@ -64,6 +64,8 @@ struct Detection {
   /// none, or if a tolerance is given. In the cloud's units.
   double noise = 0;
   double distance_tolerance = 0;  ///< the option, or the default by this noise
+  /// Points on no surface, beside edges that a smoothing of the cloud has rounded; ascending.
+  std::vector<std::uint32_t> smoothed = {};
 };
 
 /// The distance tolerance: the option, or its default by the noise of the scale. In the cloud's units.

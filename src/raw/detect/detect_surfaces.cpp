@@ -19,6 +19,7 @@
 #include "raw/detect/grow.hpp"
 #include "raw/detect/propose.hpp"
 #include "raw/detect/settle_surfaces.hpp"
+#include "raw/detect/smoothing.hpp"
 #include "raw/detect/split_surfaces.hpp"
 #include "raw/detect/unexplained.hpp"
 #include "raw/prepare/constants.hpp"
@@ -241,10 +242,9 @@ std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownS
 
 /// Finds surfaces and settles them. Where surfaces did not last, more points are free than were searched in vain: then
 /// it does so again among the free ones.
-std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, LargestSurfaces largest, std::uint64_t seed,
-                                          const RunContext& run, const StageShare& share) {
+std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const NeighbourTable& neighbours, LargestSurfaces largest,
+                                          std::uint64_t seed, const RunContext& run, const StageShare& share) {
   const SearchLimits limits = largest.limits;
-  const NeighbourTable neighbours = cloud.neighbours(run);
   std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, neighbours, std::move(largest), seed, run, share);
   for (int round = 1;; ++round) {
     const std::size_t searched = free_points(cloud, surfaces).list().size();
@@ -332,9 +332,25 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
                    .unexplained = cloud.size(),
                    .noise = largest.scale.noise,
                    .distance_tolerance = detection_tolerance(options, largest.scale)};
-  std::vector<GrownSurface> surfaces = find_and_settle(work, std::move(largest), options.seed, run, share);
+  const NeighbourTable neighbours = work.neighbours(run);
+  std::vector<GrownSurface> surfaces = find_and_settle(work, neighbours, std::move(largest), options.seed, run, share);
   // A given tolerance says that nearer surfaces are one.
-  if (!options.distance_tolerance) surfaces = split_surfaces(std::move(surfaces), work, limits, run);
+  double smoothing = 0;
+  if (!options.distance_tolerance) {
+    smoothing = smoothing_length(surfaces, work, neighbours, limits.agreement.noise);
+    if (smoothing > 0) {
+      surfaces = settle_surfaces(without_smoothed_edges(std::move(surfaces), work, smoothing, limits, run), work,
+                                 neighbours, limits, run);
+    }
+    surfaces = split_surfaces(std::move(surfaces), work, limits, run);
+  }
+  if (smoothing > 0) {
+    const FreePoints points = free_points(work, surfaces);
+    for (const std::uint32_t i : points_at_edges(points.list(), surfaces, work, smoothing, run)) {
+      result.smoothed.push_back(work.index[i]);
+    }
+    std::ranges::sort(result.smoothed);
+  }
   for (const GrownSurface& grown : surfaces) {
     if (!has_allowed_size(grown, work, options, limits.link)) continue;
     result.surfaces.push_back(detected(grown, work));

@@ -1,0 +1,184 @@
+#include "raw/detect/smoothing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "core/base/parallel.hpp"
+#include "core/geometry/neighbour_tree.hpp"
+#include "core/geometry/subset.hpp"
+#include "raw/prepare/constants.hpp"
+
+namespace cloud2csg {
+namespace {
+
+/// Products of the errors of two points, and the squares of their distances, in a ring of neighbours.
+struct Ring {
+  double products = 0, squares = 0, count = 0;
+
+  [[nodiscard]] double covariance() const { return products / count; }
+  [[nodiscard]] double square() const { return squares / count; }
+};
+
+/// Surfaces near a point, and whether smoothing has mixed them there.
+class Edges {
+ public:
+  Edges(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double length)
+      : surfaces_(surfaces), positions_(positions_of(cloud)), tree_(positions_), length_(length) {
+    owners_.assign(cloud.size(), k_no_surface);
+    for (std::uint32_t k = 0; k < surfaces.size(); ++k) own(surfaces[k].points, k);
+  }
+
+  /// Whether two of the first `end` surfaces pass near the point, at an angle.
+  [[nodiscard]] bool is_at(std::uint32_t point, std::uint32_t end) const {
+    // Half of it leaves strips along edges, double drops faces between two edges.
+    constexpr double k_reach = 1.25;
+    std::vector<Eigen::Vector3d> normals;
+    for (const std::uint32_t k : around(point, end)) {
+      if (distance(point, k) >= k_reach * length_) continue;
+      const Eigen::Vector3d here = normal(surfaces_[k].surface, positions_[point]);
+      const auto is_across = [&](const Eigen::Vector3d& one) { return std::abs(one.dot(here)) < k_alike_cosine; };
+      if (std::ranges::any_of(normals, is_across)) return true;
+      normals.push_back(here);
+    }
+    return false;
+  }
+
+  /// Whether the point is on one of the first `end` surfaces, whatever its normal.
+  [[nodiscard]] bool is_on_any(std::uint32_t point, std::uint32_t end) const {
+    return std::ranges::any_of(around(point, end),
+                               [&](std::uint32_t k) { return distance(point, k) <= surfaces_[k].reach; });
+  }
+
+  void forget(std::uint32_t surface) { own(surfaces_[surface].points, k_no_surface); }
+
+ private:
+  static constexpr std::uint32_t k_no_surface = std::numeric_limits<std::uint32_t>::max();
+
+  static Points positions_of(const WorkCloud& cloud) {
+    Points positions(cloud.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions.set(i, cloud.points[i].position);
+    return positions;
+  }
+  void own(const std::vector<std::uint32_t>& points, std::uint32_t surface) {
+    for (const std::uint32_t i : points) owners_[i] = surface;
+  }
+  [[nodiscard]] double distance(std::uint32_t point, std::uint32_t surface) const {
+    return std::abs(signed_distance(surfaces_[surface].surface, positions_[point]));
+  }
+  /// Those of the first `end` surfaces that have points not far from this one.
+  [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t point, std::uint32_t end) const {
+    constexpr double k_far = 3;
+    std::vector<std::uint32_t> found;
+    for (const std::uint32_t other : tree_.within(positions_[point], k_far * length_)) {
+      const std::uint32_t owner = owners_[other];
+      if (owner < end && std::ranges::find(found, owner) == found.end()) found.push_back(owner);
+    }
+    return found;
+  }
+
+  const std::vector<GrownSurface>& surfaces_;
+  Points positions_;
+  NeighbourTree tree_;
+  double length_;
+  std::vector<std::uint32_t> owners_;  ///< by point
+};
+
+/// The points with is_wanted(point). @throws Cancelled
+template <class IsWanted>
+std::vector<std::uint32_t> those(std::span<const std::uint32_t> points, const RunContext& run,
+                                 const IsWanted& is_wanted) {
+  std::vector<std::uint8_t> wanted(points.size(), 0);
+  for_each_index(points.size(), run, [&](std::size_t i) { wanted[i] = is_wanted(points[i]) ? 1 : 0; });
+  std::vector<std::uint32_t> found;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (wanted[i] == 1) found.push_back(points[i]);
+  }
+  return found;
+}
+
+}  // namespace
+
+double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
+                        const NeighbourTable& neighbours, double noise) {
+  // Smoothing leaves hardly any error that is not shared with the neighbours.
+  constexpr double k_shared = k_clear_share;
+  // Neighbours reach over two spacings. They do not tell a longer distance from a form error.
+  constexpr double k_most_spacings = 4;
+  std::array<Ring, 2> rings;
+  double squares = 0;
+  double count = 0;
+  std::vector<double> errors(cloud.size());
+  std::vector<bool> is_own(cloud.size(), false);
+  for (const GrownSurface& plane : surfaces) {
+    if (plane.surface.type != SurfaceType::plane || plane.points.size() < k_sample) continue;
+    const std::vector<double> distances = distances_of(plane.surface, cloud, plane.points);
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+      errors[plane.points[k]] = distances[k];
+      is_own[plane.points[k]] = true;
+      squares += distances[k] * distances[k];
+    }
+    count += static_cast<double>(distances.size());
+    for (const std::uint32_t i : plane.points) {
+      for (std::size_t n = 0; n < neighbours.width; ++n) {
+        const std::uint32_t other = neighbours.of(i)[n];
+        if (!is_own[other]) continue;
+        Ring& ring = rings[n < k_nearest ? 0 : 1];
+        const double distance = neighbours.distances_of(i)[n];
+        ring.products += errors[i] * errors[other];
+        ring.squares += distance * distance;
+        ring.count += 1;
+      }
+    }
+    for (const std::uint32_t i : plane.points) is_own[i] = false;
+  }
+  if (!(rings[0].count > 0 && rings[1].count > 0)) return 0;
+  const double variance = squares / count;
+  if (!(rings[0].covariance() > rings[1].covariance() && rings[1].covariance() > 0)) return 0;
+  const double square =
+      (rings[1].square() - rings[0].square()) / std::log(rings[0].covariance() / rings[1].covariance());
+  const double shared = rings[0].covariance() * std::exp(rings[0].square() / square) / variance;
+  // The eight nearest points are within a disc of eight squared spacings.
+  const double spacing = std::sqrt(2 * rings[0].square() * std::numbers::pi / k_nearest);
+  const bool is_measured = std::sqrt(variance) > 0.5 * noise && shared > k_shared;
+  return is_measured && square < k_most_spacings * k_most_spacings * spacing * spacing ? std::sqrt(square) : 0;
+}
+
+std::vector<GrownSurface> without_smoothed_edges(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
+                                                 double length, const SearchLimits& limits, const RunContext& run) {
+  std::ranges::stable_sort(surfaces, std::ranges::greater{}, [](const GrownSurface& s) { return s.points.size(); });
+  Edges edges(surfaces, cloud, length);
+  const auto is_edge = [&](std::uint32_t k) {
+    // A sample tells most faces.
+    const std::vector<std::uint32_t> sample = some_of(surfaces[k].points, k_sample);
+    const auto is_at = [&](std::uint32_t i) { return edges.is_at(i, k); };
+    if (2 * those(sample, run, is_at).size() < sample.size()) return false;
+    const std::vector<std::uint32_t> own =
+        those(surfaces[k].points, run, [&](std::uint32_t i) { return !edges.is_at(i, k) && !edges.is_on_any(i, k); });
+    return own.empty() || connected_groups(cloud.points, own, limits.link).front().size() < limits.least_points;
+  };
+  std::vector<GrownSurface> kept;
+  for (auto k = static_cast<std::uint32_t>(surfaces.size()); k-- > 0;) {
+    if (is_edge(k)) {
+      edges.forget(k);
+    } else {
+      kept.push_back(surfaces[k]);
+    }
+  }
+  std::ranges::reverse(kept);
+  return kept;
+}
+
+std::vector<std::uint32_t> points_at_edges(std::span<const std::uint32_t> points,
+                                           const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
+                                           double length, const RunContext& run) {
+  const Edges edges(surfaces, cloud, length);
+  const auto all = static_cast<std::uint32_t>(surfaces.size());
+  return those(points, run, [&](std::uint32_t i) { return edges.is_at(i, all); });
+}
+
+}  // namespace cloud2csg
