@@ -212,6 +212,15 @@ TEST(ChooseSolids, FindsTurnedArcsThatEndOnTheAxis) {
   }
 }
 
+TEST(ChooseSolids, FindsATorusThatTouchesItsAxis) {
+  Part part = part_of({test::placed("horn", Torus{1, 1}, {0, 0, 0})}, "horn", 0);
+  part.surfaces[0].surface.radius *= 1 - 1e-9;
+  const SolidChoice choice = choose_solids(part.cloud, part.surfaces, quick());
+  ASSERT_EQ(choice.solids.size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<Torus>(choice.solids[0].shape));
+  EXPECT_NO_THROW(validate(choice.solids[0]));
+}
+
 /// Nothing is seen of where the bend goes over into the straight pipes.
 TEST(ChooseSolids, FindsABentPipe) {
   const Part pipe =

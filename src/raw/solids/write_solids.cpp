@@ -47,6 +47,7 @@ Primitive spindle(const Surface& torus, const Eigen::Vector3d& axis) {
 }
 
 Primitive revolved_solid(const Surface& surface, const Span& span) {
+  constexpr double k_rounding = 1e-6;  // of the radius of a tube that touches the axis
   const Eigen::Vector3d middle = surface.position + 0.5 * (span.low + span.high) * surface.axis;
   const double height = span.high - span.low;
   const Eigen::Vector3d axis = upright(surface.axis);
@@ -60,9 +61,9 @@ Primitive revolved_solid(const Surface& surface, const Span& span) {
       return {.id = {}, .shape = cone, .pose = pose_from_axis(middle, axis)};
     }
     case SurfaceType::torus:
-      if (surface.radius < surface.minor_radius) return spindle(surface, axis);
+      if (surface.radius < (1 - k_rounding) * surface.minor_radius) return spindle(surface, axis);
       return {.id = {},
-              .shape = Torus{surface.radius, surface.minor_radius},
+              .shape = Torus{std::max(surface.radius, surface.minor_radius), surface.minor_radius},
               .pose = pose_from_axis(surface.position, axis)};
     default:
       return {.id = {}, .shape = Sphere{surface.radius}, .pose = {.position = surface.position}};
