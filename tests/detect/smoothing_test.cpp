@@ -55,8 +55,9 @@ TEST(Smoothing, LeavesSharpEdges) {
   }
 }
 
+/// Noise of more than the spacing, too, where neighbours in space have similar errors.
 TEST(Smoothing, IsNotSeenInIndependentErrorsNorInNone) {
-  for (const double noise : {0.0, k_box_noise}) {
+  for (const double noise : {0.0, k_box_noise, 5 * k_box_noise}) {
     EXPECT_TRUE(detect(cloud_of(k_box, noise), noise).smoothed.empty()) << noise;
   }
 }

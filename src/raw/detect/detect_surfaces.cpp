@@ -337,7 +337,7 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
   // A given tolerance says that nearer surfaces are one.
   double smoothing = 0;
   if (!options.distance_tolerance) {
-    smoothing = smoothing_length(surfaces, work, neighbours, limits.agreement.noise);
+    smoothing = smoothing_length(surfaces, work, limits.agreement.noise);
     if (smoothing > 0) {
       surfaces = settle_surfaces(without_smoothed_edges(std::move(surfaces), work, smoothing, limits, run), work,
                                  neighbours, limits, run);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/parallel.hpp"
+#include "core/base/robust_deviation.hpp"
 #include "core/geometry/neighbour_tree.hpp"
 #include "core/geometry/subset.hpp"
 #include "raw/prepare/constants.hpp"
@@ -101,49 +102,69 @@ std::vector<std::uint32_t> those(std::span<const std::uint32_t> points, const Ru
   return found;
 }
 
+/// Null if there is none.
+const GrownSurface* largest_plane(const std::vector<GrownSurface>& surfaces) {
+  const GrownSurface* largest = nullptr;
+  for (const GrownSurface& s : surfaces) {
+    if (s.surface.type != SurfaceType::plane) continue;
+    if (largest == nullptr || s.points.size() > largest->points.size()) largest = &s;
+  }
+  return largest;
+}
+
+/// Limits errors to three of their deviations: strips of neighbouring faces are no errors.
+std::vector<double> clamped(std::vector<double> errors) {
+  std::vector<double> absolute(errors.size());
+  std::ranges::transform(errors, absolute.begin(), [](double error) { return std::abs(error); });
+  const double most = k_deviations * robust_deviation(absolute);
+  for (double& error : errors) error = std::clamp(error, -most, most);
+  return errors;
+}
+
+/// The k_nearest neighbours of a sample of the plane's points, and as many around these. Neighbours by the distance
+/// along the plane: those in space have similar errors, whatever the errors are.
+std::array<Ring, 2> rings_on(const GrownSurface& plane, const WorkCloud& cloud, std::span<const double> errors) {
+  Points feet = cloud.positions_of(plane.points);
+  const Eigen::Vector3d& normal = plane.surface.axis;
+  for (std::size_t k = 0; k < feet.size(); ++k) {
+    feet.set(k, feet[k] - (feet[k] - plane.surface.position).dot(normal) * normal);
+  }
+  const NeighbourTree tree(feet);
+  std::array<Ring, 2> rings;
+  std::array<std::uint32_t, 2 * k_nearest + 1> near{};
+  std::array<double, 2 * k_nearest + 1> squares{};
+  for (std::size_t sample = 0; sample < k_sample; ++sample) {
+    const std::size_t k = sample * feet.size() / k_sample;
+    tree.find(feet[k], near, squares);
+    for (std::size_t n = 1; n < near.size(); ++n) {  // after the point itself
+      Ring& ring = rings[n <= k_nearest ? 0 : 1];
+      ring.products += errors[k] * errors[near[n]];
+      ring.squares += squares[n];
+      ring.count += 1;
+    }
+  }
+  return rings;
+}
+
 }  // namespace
 
-double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                        const NeighbourTable& neighbours, double noise) {
+double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise) {
   // Smoothing leaves hardly any error that is not shared with the neighbours.
   constexpr double k_shared = k_clear_share;
-  // Neighbours reach over two spacings. They do not tell a longer distance from a form error.
-  constexpr double k_most_spacings = 4;
-  std::array<Ring, 2> rings;
-  double squares = 0;
-  double count = 0;
-  std::vector<double> errors(cloud.size());
-  std::vector<bool> is_own(cloud.size(), false);
-  for (const GrownSurface& plane : surfaces) {
-    if (plane.surface.type != SurfaceType::plane || plane.points.size() < k_sample) continue;
-    const std::vector<double> distances = distances_of(plane.surface, cloud, plane.points);
-    for (std::size_t k = 0; k < distances.size(); ++k) {
-      errors[plane.points[k]] = distances[k];
-      is_own[plane.points[k]] = true;
-      squares += distances[k] * distances[k];
-    }
-    count += static_cast<double>(distances.size());
-    for (const std::uint32_t i : plane.points) {
-      for (std::size_t n = 0; n < neighbours.width; ++n) {
-        const std::uint32_t other = neighbours.of(i)[n];
-        if (!is_own[other]) continue;
-        Ring& ring = rings[n < k_nearest ? 0 : 1];
-        const double distance = neighbours.distances_of(i)[n];
-        ring.products += errors[i] * errors[other];
-        ring.squares += distance * distance;
-        ring.count += 1;
-      }
-    }
-    for (const std::uint32_t i : plane.points) is_own[i] = false;
-  }
-  if (!(rings[0].count > 0 && rings[1].count > 0)) return 0;
-  const double variance = squares / count;
-  if (!(rings[0].covariance() > rings[1].covariance() && rings[1].covariance() > 0)) return 0;
-  const double square =
-      (rings[1].square() - rings[0].square()) / std::log(rings[0].covariance() / rings[1].covariance());
-  const double shared = rings[0].covariance() * std::exp(rings[0].square() / square) / variance;
+  // The rings are at one and two spacings. From one to the other, the covariance falls by a quarter at this distance,
+  // and by an eighth at 4 spacings, as for form errors.
+  constexpr double k_most_spacings = 3;
+  const GrownSurface* plane = largest_plane(surfaces);
+  if (plane == nullptr || plane->points.size() < k_sample) return 0;
+  const std::vector<double> errors = clamped(distances_of(plane->surface, cloud, plane->points));
+  double variance = 0;
+  for (const double error : errors) variance += error * error / static_cast<double>(errors.size());
+  const auto [inner, outer] = rings_on(*plane, cloud, errors);
+  if (!(inner.covariance() > outer.covariance() && outer.covariance() > 0)) return 0;
+  const double square = (outer.square() - inner.square()) / std::log(inner.covariance() / outer.covariance());
+  const double shared = inner.covariance() * std::exp(inner.square() / square) / variance;
   // The eight nearest points are within a disc of eight squared spacings.
-  const double spacing = std::sqrt(2 * rings[0].square() * std::numbers::pi / k_nearest);
+  const double spacing = std::sqrt(2 * inner.square() * std::numbers::pi / k_nearest);
   const bool is_measured = std::sqrt(variance) > 0.5 * noise && shared > k_shared;
   return is_measured && square < k_most_spacings * k_most_spacings * spacing * spacing ? std::sqrt(square) : 0;
 }

@@ -10,9 +10,9 @@ namespace cloud2csg {
 
 /// Distance over which a program has smoothed the points, such as one that joins the views of a scanner into a mesh:
 /// the errors of points so far apart correlate with 1/e. 0 if the errors are independent, or correlate over more than
-/// some spacings, as form errors do. Two rings of neighbours on the planes tell it from a Gaussian. O(n)
-[[nodiscard]] double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                                      const NeighbourTable& neighbours, double noise);
+/// some spacings, as form errors do. Two rings of neighbours on the largest plane tell it from a Gaussian; 0 if no
+/// plane is large enough. O(n log n)
+[[nodiscard]] double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise);
 
 /// The surfaces without those that have no group of points of their own: all others lie at edges of larger surfaces, or
 /// on these. Smoothing rounds edges, and within its length nothing tells a chamfer or fillet from a sharp edge. Largest
