@@ -80,6 +80,19 @@ TEST_F(WriteBrep, PrimitivesHaveTheirVolumes) {
   expect_solid(leaf, {turned("wedge", wedge)}, 0.5 * 2 * 1.5 * 3);
 }
 
+/// The part at r > 0 of a circle around (R, 0). Turned, it is an apple for R > 0 and a lemon for R < 0.
+TEST_F(WriteBrep, TurnedArcsThatEndOnTheAxisHaveTheirVolumes) {
+  constexpr double k_radius = 2;
+  for (const double middle : {1.8, 1.0, 0.2, -0.2, -1.0, -1.8}) {
+    const double half = std::sqrt(k_radius * k_radius - middle * middle);
+    const double half_angle = std::acos(-middle / k_radius);
+    const ClosedPath path{{.point = {0, -half}, .bulge = std::tan(half_angle / 2)}, {.point = {0, half}}};
+    const double area = k_radius * k_radius * half_angle / 2 + middle * half / 2;  // of one half
+    const double volume = 4 * k_pi * (middle * area + half * half * half / 3);
+    expect_solid(CsgTree::leaf(0), {turned("turned", Revolution{{.paths = {path}}})}, volume);
+  }
+}
+
 TEST_F(WriteBrep, SolidsWithoutExactSurfacesHaveFacets) {
   const Expression egg{.distance = "sqrt(x^2 + y^2 + 4 * z^2) - 1",
                        .bounds = AlignedBox(Eigen::Vector3d(-1.2, -1.2, -0.6), Eigen::Vector3d(1.2, 1.2, 0.6))};

@@ -13,6 +13,7 @@
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
+#include <Convert_ParameterisationType.hxx>
 #include <Eigen/Core>
 #include <GeomConvert.hxx>
 #include <Geom_BSplineCurve.hxx>
@@ -295,8 +296,8 @@ Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, boo
   Handle(Geom_Curve) circle = new Geom_Circle(axes, arc.radius);
   const bool is_sphere = std::abs(arc.centre.x()) < Precision::Confusion();
   if (!is_turned || is_sphere || arc.centre.x() > (1 + k_pinhole) * arc.radius) return circle;
-  Handle(Geom_Curve) spline = GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)));
-  return spline;
+  // A parameter close to the angle: with others, the kernel's measure of the volume is off by up to .4 %.
+  return GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
 }
 
 /// Whether two arcs make a circle.
