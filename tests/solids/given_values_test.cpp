@@ -95,21 +95,26 @@ TEST(TakeGivenValues, MovesAnArcToWhereItSuitsItsPoints) {
   EXPECT_GT(given.surfaces[0].surface.position.head<2>().norm(), 0.05);
 }
 
+/// A ring, an apple and a lemon.
 TEST(TakeGivenValues, TakesBothRadiiOfATorus) {
-  Found found;
-  std::vector<Vector3d> points;
-  RandomStream random(3);
-  for (int i = 0; i < 800; ++i) {
-    const double u = 2 * std::numbers::pi * random.uniform();
-    const double v = 2 * std::numbers::pi * random.uniform();
-    const double across = 2.99 + 0.51 * std::cos(v);
-    points.emplace_back(across * std::cos(u), across * std::sin(u), 0.51 * std::sin(v));
+  for (const double major : {3.0, 0.3, -0.2}) {
+    const double measured = major - 0.01;
+    Found found;
+    std::vector<Vector3d> points;
+    RandomStream random(3);
+    while (points.size() < 800) {
+      const double u = 2 * std::numbers::pi * random.uniform();
+      const double v = 2 * std::numbers::pi * random.uniform();
+      const double across = measured + 0.51 * std::cos(v);
+      if (across > 0) points.emplace_back(across * std::cos(u), across * std::sin(u), 0.51 * std::sin(v));
+    }
+    add(found, {.type = SurfaceType::torus, .axis = Vector3d::UnitZ(), .radius = measured, .minor_radius = 0.51},
+        points);
+    const GivenSurfaces given = take(found, {.radii = {0.5, std::abs(major)}});
+    EXPECT_EQ(given.surfaces[0].surface.radius, major);
+    EXPECT_EQ(given.surfaces[0].surface.minor_radius, 0.5);
+    EXPECT_EQ(given.snaps.size(), 2U);
   }
-  add(found, {.type = SurfaceType::torus, .axis = Vector3d::UnitZ(), .radius = 2.99, .minor_radius = 0.51}, points);
-  const GivenSurfaces given = take(found, {.radii = {0.5, 3.0}});
-  EXPECT_EQ(given.surfaces[0].surface.radius, 3.0);
-  EXPECT_EQ(given.surfaces[0].surface.minor_radius, 0.5);
-  EXPECT_EQ(given.snaps.size(), 2U);
 }
 
 TEST(TakeGivenValues, TurnsDirectionsThatThePointsLetTurn) {

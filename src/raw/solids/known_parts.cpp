@@ -161,11 +161,12 @@ class GivenValues {
     result_.fixed[i].radius = take_radius(i, candidate, &Surface::radius) && is_tube_given;
   }
 
+  /// The major radius of a lemon is negative, and given radii are not.
   bool take_radius(std::uint32_t i, Candidate& candidate, double Surface::*radius) {
     Surface surface = candidate.surface();
     const double measured = surface.*radius;
-    surface.*radius =
-        *std::ranges::min_element(options_.radii, {}, [&](double given) { return std::abs(given - measured); });
+    const auto difference = [&](double given) { return std::abs(given - std::abs(measured)); };
+    surface.*radius = std::copysign(*std::ranges::min_element(options_.radii, {}, difference), measured);
     const bool is_torus = surface.type != SurfaceType::torus || surface.radius + surface.minor_radius > 0;
     if (!is_torus || candidate.try_taking(surface, tolerance_)) {
       other_radii_.push_back(
