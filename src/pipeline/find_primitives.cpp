@@ -131,7 +131,7 @@ void add_evidence(FoundPrimitives& found, const DetectOptions& options, const Ru
 
 /// Leaves out the doubted points that are on no surface and on no known primitive, which are outliers, and those beside
 /// smoothed edges.
-std::pair<PreparedCloud, RestDetection> without_doubted(PreparedCloud prepared, RestDetection rest) {
+std::pair<PreparedCloud, RestDetection> without_outliers(PreparedCloud prepared, RestDetection rest) {
   const std::vector<std::uint32_t> doubted = std::exchange(prepared.doubted, {});
   const std::size_t count = prepared.cloud.size();
   const std::vector<std::uint32_t> smoothed = std::exchange(rest.detection.smoothed, {});
@@ -215,7 +215,8 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   const std::optional<double>& tolerance = options.detection.distance_tolerance;
   if (tolerance) append(found.warnings, tolerance_warnings(*tolerance, found.prepared.scale.diagonal));
   RestDetection all = detect_rest(found.prepared.cloud, found.prepared.scale, known, options.detection, run);
-  auto [prepared, rest] = without_doubted(std::move(found.prepared), std::move(all));
+  if (!options.preparation.clean.remove_outliers) all.detection.smoothed.clear();
+  auto [prepared, rest] = without_outliers(std::move(found.prepared), std::move(all));
   found.prepared = std::move(prepared);
   append(found.warnings, outlier_warnings(found.prepared.cleaning, cloud.size()));
   check_any_surface(rest, found.prepared.cloud);
@@ -278,6 +279,7 @@ FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& 
 FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t known, std::size_t raw_points) {
   const Scale& scale = found.prepared.scale;
   FindingStatistics statistics{.raw_points = raw_points,
+                               .smoothed_points = found.prepared.cleaning.smoothed,
                                .added_points = found.added_points,
                                .normals_estimated = found.prepared.normals_estimated,
                                .diagonal = scale.diagonal,

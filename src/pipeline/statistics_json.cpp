@@ -116,6 +116,7 @@ Json finding_json(const FindingStatistics& s) {
   const auto count = [&s](SurfaceType type) { return std::ranges::count(s.surfaces, type); };
   const LargestChange largest = largest_change(s.snaps);
   return {{"raw_points", s.raw_points},
+          {"smoothed_points", s.smoothed_points},
           {"added_points", s.added_points},
           {"normals_estimated", s.normals_estimated},
           {"diagonal", s.diagonal},

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 
-#include "core/geometry/neighbour_tree.hpp"
+#include "core/base/random.hpp"
 #include "detect/detected_parts.hpp"
+#include "support/smoothed.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -13,27 +15,7 @@ namespace {
 using test::cloud_of;
 using test::count_of;
 using test::detect;
-
-/// Each point and normal is a Gaussian mean of those around it, as in a mesh that joins the views of a scanner.
-PointCloud smoothed(const PointCloud& cloud, double deviation) {
-  const NeighbourTree tree(cloud.positions);
-  PointCloud result = cloud;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    double weights = 0;
-    for (const std::uint32_t k : tree.within(cloud.positions[i], 3 * deviation)) {
-      const double distance = (cloud.positions[k] - cloud.positions[i]).norm() / deviation;
-      const double weight = std::exp(-0.5 * distance * distance);
-      position += weight * cloud.positions[k];
-      normal += weight * cloud.normals[k];
-      weights += weight;
-    }
-    result.positions.set(i, position / weights);
-    result.normals.set(i, normal.normalized());
-  }
-  return result;
-}
+using test::smoothed;
 
 const test::Part k_box = test::without_others({test::placed("box", Box{{4, 3, 1}}, {0, 0, 0})});
 constexpr double k_box_noise = 0.01;
@@ -59,6 +41,50 @@ TEST(Smoothing, LeavesSharpEdges) {
 TEST(Smoothing, IsNotSeenInIndependentErrorsNorInNone) {
   for (const double noise : {0.0, k_box_noise, 5 * k_box_noise}) {
     EXPECT_TRUE(detect(cloud_of(k_box, noise), noise).smoothed.empty()) << noise;
+  }
+}
+
+/// Each point comes `copies` times. The copies share its error, and hardly differ.
+TEST(Smoothing, IsNotSeenInCopiedPoints) {
+  for (const std::size_t copies : {2U, 4U, 8U}) {
+    const PointCloud once = cloud_of(k_box, k_box_noise, 12'000 / copies);
+    RandomStream random(1);
+    PointCloud cloud;
+    for (std::size_t i = 0; i < copies * once.size(); ++i) {
+      const std::size_t k = i % once.size();
+      const Eigen::Vector3d own(random.normal(), random.normal(), random.normal());
+      cloud.positions.push_back(once.positions[k] + 0.1 * k_box_noise * own);
+      cloud.normals.push_back(once.normals[k]);
+    }
+    EXPECT_TRUE(detect(cloud, k_box_noise).smoothed.empty()) << copies;
+  }
+}
+
+/// A scanner that measures line by line. The points of a line share most of their errors.
+TEST(Smoothing, IsNotSeenInLinesOfAScanner) {
+  for (const double along : {0.02, 0.03}) {
+    constexpr double k_across = 0.1;
+    RandomStream random(2);
+    PointCloud cloud;
+    for (const double side : {-1.0, 1.0}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Vector3d half(2, 1.5, 0.5);
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        for (double y = -half[v]; y < half[v]; y += k_across) {
+          const double of_line = k_box_noise * random.normal();
+          for (double x = -half[u]; x < half[u]; x += along) {
+            Eigen::Vector3d point;
+            point[axis] = side * half[axis] + of_line + 0.3 * k_box_noise * random.normal();
+            point[u] = x + along * random.uniform();
+            point[v] = y;
+            cloud.positions.push_back(point);
+            cloud.normals.push_back(side * Eigen::Vector3d::Unit(axis));
+          }
+        }
+      }
+    }
+    EXPECT_TRUE(detect(cloud, k_box_noise).smoothed.empty()) << along;
   }
 }
 

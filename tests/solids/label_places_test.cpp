@@ -73,6 +73,8 @@ TEST(LabelPlaces, TakesAreasThatAreKnown) {
   const LabelledPlaces taken = label_places(cloud, options, {}, areas);
   EXPECT_EQ(taken.positions.x, measured.positions.x);
   EXPECT_EQ(taken.weights, measured.weights);
+  for (double& area : areas) area *= 4;
+  EXPECT_NE(label_places(cloud, options, {}, areas).weights, measured.weights);
   areas.pop_back();
   EXPECT_THROW((void)label_places(cloud, options, {}, areas), Error);
 }

@@ -64,7 +64,8 @@ struct Detection {
   /// none, or if a tolerance is given. In the cloud's units.
   double noise = 0;
   double distance_tolerance = 0;  ///< the option, or the default by this noise
-  /// Points on no surface, beside edges that a smoothing of the cloud has rounded; ascending.
+  /// Points on no surface, beside edges that a smoothing of the cloud has rounded; ascending. None if a tolerance is
+  /// given.
   std::vector<std::uint32_t> smoothed = {};
 };
 

@@ -51,7 +51,7 @@ struct CleanReport {
   std::size_t duplicates = 0;   ///< at exactly the same place as another point
   std::size_t isolated = 0;     ///< far from all others
   std::size_t off_surface = 0;  ///< near others, but on none of their local planes, or doubted and on no surface
-  std::size_t smoothed = 0;     ///< beside edges that a smoothing rounded
+  std::size_t smoothed = 0;     ///< beside edges that a smoothing rounded, which only detection sees
   std::size_t thinned = 0;      ///< removed by down-sampling to the budget
 };
 

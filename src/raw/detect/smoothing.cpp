@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/base/parallel.hpp"
@@ -24,6 +25,9 @@ struct Ring {
   [[nodiscard]] double covariance() const { return products / count; }
   [[nodiscard]] double square() const { return squares / count; }
 };
+
+constexpr std::size_t k_ring_points = k_nearest / 2;
+using Rings = std::array<Ring, 4>;
 
 /// Surfaces near a point, and whether smoothing has mixed them there.
 class Edges {
@@ -73,6 +77,8 @@ class Edges {
   }
   /// Those of the first `end` surfaces that have points not far from this one.
   [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t point, std::uint32_t end) const {
+    // Points of a surface that passes within 1.25 lengths. Half of it misses those beyond a strip of the edge, double
+    // takes four times as long.
     constexpr double k_far = 3;
     std::vector<std::uint32_t> found;
     for (const std::uint32_t other : tree_.within(positions_[point], k_far * length_)) {
@@ -121,23 +127,23 @@ std::vector<double> clamped(std::vector<double> errors) {
   return errors;
 }
 
-/// The k_nearest neighbours of a sample of the plane's points, and as many around these. Neighbours by the distance
-/// along the plane: those in space have similar errors, whatever the errors are.
-std::array<Ring, 2> rings_on(const GrownSurface& plane, const WorkCloud& cloud, std::span<const double> errors) {
+/// Rings of neighbours around a sample of the plane's points, the nearest first. Neighbours by the distance along the
+/// plane: those in space have similar errors, whatever the errors are.
+Rings rings_on(const GrownSurface& plane, const WorkCloud& cloud, std::span<const double> errors) {
   Points feet = cloud.positions_of(plane.points);
   const Eigen::Vector3d& normal = plane.surface.axis;
   for (std::size_t k = 0; k < feet.size(); ++k) {
     feet.set(k, feet[k] - (feet[k] - plane.surface.position).dot(normal) * normal);
   }
   const NeighbourTree tree(feet);
-  std::array<Ring, 2> rings;
-  std::array<std::uint32_t, 2 * k_nearest + 1> near{};
-  std::array<double, 2 * k_nearest + 1> squares{};
+  Rings rings;
+  std::array<std::uint32_t, rings.size() * k_ring_points + 1> near{};
+  std::array<double, near.size()> squares{};
   for (std::size_t sample = 0; sample < k_sample; ++sample) {
     const std::size_t k = sample * feet.size() / k_sample;
     tree.find(feet[k], near, squares);
     for (std::size_t n = 1; n < near.size(); ++n) {  // after the point itself
-      Ring& ring = rings[n <= k_nearest ? 0 : 1];
+      Ring& ring = rings[(n - 1) / k_ring_points];
       ring.products += errors[k] * errors[near[n]];
       ring.squares += squares[n];
       ring.count += 1;
@@ -146,27 +152,48 @@ std::array<Ring, 2> rings_on(const GrownSurface& plane, const WorkCloud& cloud, 
   return rings;
 }
 
+/// A Gaussian of the distance.
+struct Correlation {
+  double covariance;  ///< at no distance
+  double square;      ///< of the distance at which 1/e is left
+};
+
+/// The Gaussian through the first and the last ring, if the others are on it: errors that copies of a point or the
+/// lines of a scanner share are not.
+std::optional<Correlation> gaussian_through(const Rings& rings) {
+  const Ring& first = rings.front();
+  const Ring& last = rings.back();
+  if (!(first.covariance() > last.covariance() && last.covariance() > 0)) return std::nullopt;
+  const double square = (last.square() - first.square()) / std::log(first.covariance() / last.covariance());
+  const Correlation gaussian{.covariance = first.covariance() * std::exp(first.square() / square), .square = square};
+  const auto is_on = [&](const Ring& ring) {
+    const double ratio = ring.covariance() / (gaussian.covariance * std::exp(-ring.square() / square));
+    return ratio >= k_clear_share && ratio * k_clear_share <= 1;
+  };
+  return std::ranges::all_of(rings, is_on) ? std::optional(gaussian) : std::nullopt;
+}
+
 }  // namespace
 
 double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise) {
   // Smoothing leaves hardly any error that is not shared with the neighbours.
   constexpr double k_shared = k_clear_share;
-  // The rings are at one and two spacings. From one to the other, the covariance falls by a quarter at this distance,
-  // and by an eighth at 4 spacings, as for form errors.
+  // The rings reach over two spacings. They do not tell a longer distance from a form error.
   constexpr double k_most_spacings = 3;
+  constexpr double k_least_noise = 0.5;  // of what detection assumes, which is more than the rounding of exact clouds
   const GrownSurface* plane = largest_plane(surfaces);
   if (plane == nullptr || plane->points.size() < k_sample) return 0;
   const std::vector<double> errors = clamped(distances_of(plane->surface, cloud, plane->points));
   double variance = 0;
   for (const double error : errors) variance += error * error / static_cast<double>(errors.size());
-  const auto [inner, outer] = rings_on(*plane, cloud, errors);
-  if (!(inner.covariance() > outer.covariance() && outer.covariance() > 0)) return 0;
-  const double square = (outer.square() - inner.square()) / std::log(inner.covariance() / outer.covariance());
-  const double shared = inner.covariance() * std::exp(inner.square() / square) / variance;
-  // The eight nearest points are within a disc of eight squared spacings.
-  const double spacing = std::sqrt(2 * inner.square() * std::numbers::pi / k_nearest);
-  const bool is_measured = std::sqrt(variance) > 0.5 * noise && shared > k_shared;
-  return is_measured && square < k_most_spacings * k_most_spacings * spacing * spacing ? std::sqrt(square) : 0;
+  const Rings rings = rings_on(*plane, cloud, errors);
+  const std::optional<Correlation> gaussian = gaussian_through(rings);
+  // Rounding of an exact cloud is no noise.
+  if (!gaussian || std::sqrt(variance) <= k_least_noise * noise) return 0;
+  // The nearest points are within a disc of as many squared spacings.
+  const double spacing = std::sqrt(2 * rings.front().square() * std::numbers::pi / k_ring_points);
+  const double length = std::sqrt(gaussian->square);
+  return gaussian->covariance > k_shared * variance && length < k_most_spacings * spacing ? length : 0;
 }
 
 std::vector<GrownSurface> without_smoothed_edges(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
@@ -174,7 +201,7 @@ std::vector<GrownSurface> without_smoothed_edges(std::vector<GrownSurface> surfa
   std::ranges::stable_sort(surfaces, std::ranges::greater{}, [](const GrownSurface& s) { return s.points.size(); });
   Edges edges(surfaces, cloud, length);
   const auto is_edge = [&](std::uint32_t k) {
-    // A sample tells most faces.
+    // A sample shows that most surfaces are no edges.
     const std::vector<std::uint32_t> sample = some_of(surfaces[k].points, k_sample);
     const auto is_at = [&](std::uint32_t i) { return edges.is_at(i, k); };
     if (2 * those(sample, run, is_at).size() < sample.size()) return false;
@@ -187,7 +214,7 @@ std::vector<GrownSurface> without_smoothed_edges(std::vector<GrownSurface> surfa
     if (is_edge(k)) {
       edges.forget(k);
     } else {
-      kept.push_back(surfaces[k]);
+      kept.push_back(std::move(surfaces[k]));
     }
   }
   std::ranges::reverse(kept);
