@@ -4,15 +4,20 @@
     bench/inversecsg.py FOLDER [--program build/release/cloud2csg] [--variants clean noise scan]
 
 For each mesh of the folder, or .scad file, which OpenSCAD makes a mesh of: 100 000 points without noise, with noise of 0.2 % of
-the diagonal, and a virtual scan from 20 viewpoints without normals; with the variant "table" such a scan from above only, of a
-part that lies on a table. The tree is written as .scad, rendered by OpenSCAD, and that mesh is compared with the input. Prints a
-table; nothing is known of a model but its mesh.
+the diagonal, and a virtual scan from 20 viewpoints without normals. The tree is written as .scad, rendered by OpenSCAD, and that
+mesh is compared with the input. Prints a table; nothing is known of a model but its mesh. More variants:
+
+    table            a scan from above only, of a part that lies on a table
+    noise=PERCENT    noise of so much of the diagonal
+    normals=KIND     noise of 0.2 %, and normals that are wrong: none, inward, patches, halfspace, up, noisy or random
 """
 
 import argparse
 import json
+import math
 import os
 import pathlib
+import random
 import statistics
 import subprocess
 import sys
@@ -50,18 +55,70 @@ def make_mesh(script, folder):
     return mesh
 
 
+def flipped_if(wrong, normal):
+    return [-x for x in normal] if wrong else normal
+
+
+def blurred(normal, amount, chance):
+    """The normal, and `amount` times an error of deviation 1 in each coordinate."""
+    values = [x + amount * chance.gauss(0, 1) for x in normal]
+    length = math.hypot(*values)
+    return [x / length for x in values]
+
+
+def damage(kind, diagonal, chance):
+    """A function that damages the normal of a place."""
+    if kind == "patches":
+        waves = [[chance.gauss(0, 12 / diagonal) for _ in range(3)] + [chance.uniform(0, 6)] for _ in range(3)]
+        return lambda place, normal: flipped_if(
+            math.prod(math.sin(sum(w * x for w, x in zip(wave, [*place, 1]))) for wave in waves) < 0, normal)
+    return {
+        "inward": lambda _, normal: flipped_if(True, normal),
+        "halfspace": lambda _, normal: flipped_if(sum(normal) < 0, normal),
+        "up": lambda _, normal: flipped_if(normal[2] < 0, normal),
+        "noisy": lambda _, normal: blurred(normal, 0.6, chance),
+        "random": lambda _, normal: blurred([0, 0, 0], 1, chance),
+    }[kind]
+
+
+NORMALS = ("none", "inward", "patches", "halfspace", "up", "noisy", "random")
+
+
+def damage_normals(cloud, kind, seed):
+    """The cloud, an .xyzn file, with normals of that kind, or without any."""
+    rows = [[float(x) for x in line.split()] for line in cloud.read_text().splitlines()]
+    if kind == "none":
+        lines = [row[:3] for row in rows]
+    else:
+        sides = [max(axis) - min(axis) for axis in zip(*(row[:3] for row in rows))]
+        wrong = damage(kind, math.hypot(*sides), random.Random(seed))
+        lines = [row[:3] + wrong(row[:3], row[3:6]) for row in rows]
+    result = cloud.with_name("damaged.xyz" if kind == "none" else "damaged.xyzn")
+    result.write_text("".join(" ".join(f"{x:.9g}" for x in line) + "\n" for line in lines))
+    return result
+
+
 def make_cloud(program, mesh, variant, points, seed, folder):
     """What `extract` is given: the mesh itself, or a cloud made of it."""
-    cloud = folder / f"{variant}.ply"
-    if variant == "clean":
-        run([program, "sample", mesh, "-n", str(points), "--seed", str(seed), "-o", cloud, "-q"])
-    elif variant == "noise":
-        run([program, "sample", mesh, "-n", str(points), "--seed", str(seed), "--relative-noise", "0.002",
-             "-o", cloud, "-q"])
-    else:
-        above = ["--on-table"] if variant == "table" else []
+    name, _, value = variant.partition("=")
+    cloud = folder / f"{name}.{'xyzn' if name == 'normals' else 'ply'}"
+    if name in ("scan", "table"):
+        above = ["--on-table"] if name == "table" else []
         run([program, "scan", mesh, "--seed", str(seed), *above, "-o", cloud, "-q"])
-    return cloud
+        return cloud
+    percent = {"clean": 0, "noise": value or 0.2, "normals": 0.2}[name]
+    run([program, "sample", mesh, "-n", str(points), "--seed", str(seed), "--relative-noise", str(float(percent) / 100),
+         "-o", cloud, "-q"])
+    return damage_normals(cloud, value, seed) if name == "normals" else cloud
+
+
+def variant_of(text):
+    """Refuses variants that there are not."""
+    name, _, value = text.partition("=")
+    known = text in ("clean", "noise", "scan", "table") or (name == "normals" and value in NORMALS)
+    if not known and not (name == "noise" and float(value) >= 0):
+        raise ValueError
+    return text
 
 
 def judge(program, openscad, mesh, tree, folder):
@@ -121,13 +178,18 @@ def print_table(rows):
 
 
 def print_summary(rows, variants):
-    for variant in variants:
-        done = [r for r in rows if r["variant"] == variant]
-        iou = [r.get("iou", 0) for r in done]
-        seconds = [r["seconds"] for r in done if "seconds" in r]
-        print(f"\n{variant}: {len(done)} models, IoU >= 0.99 on {sum(x >= 0.99 for x in iou)}, >= 0.97 on "
-              f"{sum(x >= 0.97 for x in iou)}, >= 0.95 on {sum(x >= 0.95 for x in iou)}, least {min(iou, default=0):.4f}; "
+    by_variant = {variant: {r["model"]: r.get("iou", 0) for r in rows if r["variant"] == variant} for variant in variants}
+    for variant, ious in by_variant.items():
+        iou = list(ious.values())
+        seconds = [r["seconds"] for r in rows if r["variant"] == variant and "seconds" in r]
+        print(f"\n{variant}: {len(iou)} models, mean IoU {statistics.mean(iou):.4f}, >= 0.99 on {sum(x >= 0.99 for x in iou)}, "
+              f">= 0.97 on {sum(x >= 0.97 for x in iou)}, >= 0.95 on {sum(x >= 0.95 for x in iou)}, least {min(iou):.4f}; "
               f"seconds: median {statistics.median(seconds) if seconds else 0:.2f}, most {max(seconds, default=0):.2f}")
+        without = by_variant.get("normals=none") if variant.startswith("normals=") else None
+        if without:
+            worst = min(ious, key=lambda model: ious[model] - without[model])
+            kept = sum(ious[model] >= without[model] - 0.005 for model in ious)
+            print(f"    at most 0.005 below normals=none on {kept}, the worst {worst}: {ious[worst] - without[worst]:+.4f}")
 
 
 def main():
@@ -135,8 +197,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--program", default="build/release/cloud2csg")
     parser.add_argument("--openscad", default="openscad", help="the program; '' to judge without it, which is faster")
-    parser.add_argument("--variants", nargs="+", choices=["clean", "noise", "scan", "table"],
-                        default=["clean", "noise", "scan"])
+    parser.add_argument("--variants", nargs="+", type=variant_of, default=["clean", "noise", "scan"])
     parser.add_argument("--models", nargs="+", help="only these, by the file's name without its ending")
     parser.add_argument("--points", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
