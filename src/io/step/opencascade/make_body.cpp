@@ -297,7 +297,9 @@ Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, boo
   const bool is_sphere = std::abs(arc.centre.x()) < Precision::Confusion();
   if (!is_turned || is_sphere || arc.centre.x() > (1 + k_pinhole) * arc.radius) return circle;
   // A parameter close to the angle: with others, the kernel's measure of the volume is off by up to .4 %.
-  return GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
+  Handle(Geom_Curve) spline =
+      GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
+  return spline;
 }
 
 /// Whether two arcs make a circle.
