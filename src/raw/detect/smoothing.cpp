@@ -33,7 +33,7 @@ using Rings = std::array<Ring, 4>;
 class Edges {
  public:
   Edges(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double length)
-      : surfaces_(surfaces), positions_(positions_of(cloud)), tree_(positions_), length_(length) {
+      : surfaces_(surfaces), positions_(cloud.positions()), tree_(positions_), length_(length) {
     owners_.assign(cloud.size(), k_no_surface);
     for (std::uint32_t k = 0; k < surfaces.size(); ++k) own(surfaces[k].points, k);
   }
@@ -64,11 +64,6 @@ class Edges {
  private:
   static constexpr std::uint32_t k_no_surface = std::numeric_limits<std::uint32_t>::max();
 
-  static Points positions_of(const WorkCloud& cloud) {
-    Points positions(cloud.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) positions.set(i, cloud.points[i].position);
-    return positions;
-  }
   void own(const std::vector<std::uint32_t>& points, std::uint32_t surface) {
     for (const std::uint32_t i : points) owners_[i] = surface;
   }

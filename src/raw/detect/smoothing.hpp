@@ -10,8 +10,8 @@ namespace cloud2csg {
 
 /// Distance over which a program has smoothed the points, such as one that joins the views of a scanner into a mesh:
 /// the errors of points so far apart correlate with 1/e. 0 if the errors are independent, or correlate over more than
-/// some spacings, as form errors do. Rings of neighbours on the largest plane must lie on a Gaussian; 0 if no
-/// plane is large enough. O(n log n)
+/// some spacings, as form errors do. Rings of neighbours on the largest plane must lie on a Gaussian; 0 if no plane
+/// is large enough. O(n log n)
 [[nodiscard]] double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise);
 
 /// The surfaces without those that have no group of points of their own: all others lie at edges of larger surfaces, or

@@ -24,6 +24,12 @@ double WorkCloud::extent_of(const std::vector<std::uint32_t>& indices) const {
   return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
+Points WorkCloud::positions() const {
+  Points all(size());
+  for (std::uint32_t i = 0; i < size(); ++i) all.set(i, points[i].position);
+  return all;
+}
+
 Points WorkCloud::positions_of(const std::vector<std::uint32_t>& indices) const {
   Points positions(indices.size());
   for (std::size_t k = 0; k < indices.size(); ++k) positions.set(k, points[indices[k]].position);
@@ -31,9 +37,8 @@ Points WorkCloud::positions_of(const std::vector<std::uint32_t>& indices) const 
 }
 
 NeighbourTable WorkCloud::neighbours(const RunContext& run) const {
-  Points positions(size());
-  for (std::uint32_t i = 0; i < size(); ++i) positions.set(i, points[i].position);
-  return find_neighbours(positions, NeighbourTree(positions), k_around, run);
+  const Points all = positions();
+  return find_neighbours(all, NeighbourTree(all), k_around, run);
 }
 
 std::vector<OrientedPoint> WorkCloud::some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const {

@@ -37,6 +37,8 @@ struct WorkCloud {
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> cell_of(std::uint32_t i, int level) const;
   /// Diagonal of the points' bounding box. O(n)
   [[nodiscard]] double extent_of(const std::vector<std::uint32_t>& indices) const;
+  /// Of all points. O(n)
+  [[nodiscard]] Points positions() const;
   /// O(indices)
   [[nodiscard]] Points positions_of(const std::vector<std::uint32_t>& indices) const;
   /// The k_around nearest of each point. They stay while normals change. O(n log n) @throws Cancelled

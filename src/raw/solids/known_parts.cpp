@@ -167,8 +167,8 @@ class GivenValues {
     const double measured = surface.*radius;
     const auto difference = [&](double given) { return std::abs(given - std::abs(measured)); };
     surface.*radius = std::copysign(*std::ranges::min_element(options_.radii, {}, difference), measured);
-    const bool is_any = surface.type != SurfaceType::torus || surface.radius + surface.minor_radius > 0;
-    if (!is_any || candidate.try_taking(surface, tolerance_)) {
+    const bool is_valid = surface.type != SurfaceType::torus || surface.radius + surface.minor_radius > 0;
+    if (!is_valid || candidate.try_taking(surface, tolerance_)) {
       other_radii_.push_back(
           fmt::format("{} {} of {:.4g}", type_name(surface.type), place_of(candidate.surface()), std::abs(measured)));
       return false;

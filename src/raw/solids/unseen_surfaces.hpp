@@ -22,9 +22,8 @@ struct UnseenSide {
 /// the one whose layers show a missing one best: along it, up- and down-facing areas balance, except for one more up
 /// over the side. The side is at the lowest points. Absent if little is missing, if there are scattered holes rather
 /// than a side, if a sensor was on that side, or if the cloud is a sheet that encloses nothing. If the cloud has sensor
-/// positions, each new point gets one straight in front of it. Needs outward normals and the
-/// area around each point, by point_areas(). O(points x surfaces)
-/// @throws Cancelled
+/// positions, each new point gets one straight in front of it. Needs outward normals and the area around
+/// each point, by point_areas(). O(points x surfaces) @throws Cancelled
 [[nodiscard]] std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud, std::span<const double> areas,
                                                          std::span<const DetectedSurface> surfaces, const Scale& scale,
                                                          const RunContext& run = {});
