@@ -42,6 +42,23 @@ Curve line_along(Eigen::AlignedBox2d box, std::size_t side) {
   return {.normal = Vector2d::Unit(across), .offset = place, .points = {box.min(), box.max()}};
 }
 
+/// How often surfaces agree on a direction, beyond those that define it: a plane across it, a cylinder along it, or two
+/// planes along it that are not parallel. Any two planes share a direction.
+std::size_t agreements(std::span<const Curve> curves, bool has_caps) {
+  std::size_t constraints = has_caps ? 2 : 0;
+  std::vector<Vector3d> normals;
+  for (const Curve& curve : curves) {
+    const Vector3d normal(curve.normal.x(), curve.normal.y(), 0);
+    if (curve.is_circle) {
+      constraints += 2;
+    } else if (std::ranges::none_of(normals, [&](const Vector3d& known) { return are_parallel(known, normal); })) {
+      constraints += 1;
+      normals.push_back(normal);
+    }
+  }
+  return constraints - std::min<std::size_t>(constraints, 2);
+}
+
 class ChartMaker {
  public:
   ChartMaker(const Points& positions, std::span<const DetectedSurface> surfaces, const ChartOptions& options)
@@ -208,13 +225,15 @@ class ChartMaker {
     return {.curve = Curve{.normal = normal, .offset = normal.dot(centre)}};
   }
 
-  /// The charts whose curves have the most points, without those that have hardly any.
+  /// The charts on whose direction the most surfaces agree, then those whose curves have the most points, without those
+  /// that have hardly any.
   [[nodiscard]] std::vector<Chart> best_of(const std::vector<Pose>& frames, bool is_turned, std::size_t most) const {
     struct Candidate {
       Chart chart;
       std::vector<Curve> curves = {};
       std::vector<Cap> caps = {};
       std::vector<const DetectedSurface*> revolved = {};
+      std::size_t agreements = 0;
       std::size_t count = 0;
     };
     std::vector<Candidate> candidates;
@@ -233,9 +252,11 @@ class ChartMaker {
         candidate.curves.push_back(std::move(*trace.curve));
       }
       if (static_cast<double>(candidate.count) < k_least_share * static_cast<double>(positions_.size())) continue;
+      if (!is_turned) candidate.agreements = agreements(candidate.curves, !candidate.caps.empty());
       if (candidate.count > 0) candidates.push_back(std::move(candidate));
     }
-    std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::count);
+    std::ranges::stable_sort(candidates, std::greater<>(),
+                             [](const Candidate& c) { return std::pair(c.agreements, c.count); });
     candidates.resize(std::min(candidates.size(), most));
     std::vector<Chart> charts;
     charts.reserve(candidates.size());
