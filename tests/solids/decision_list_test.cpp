@@ -49,11 +49,14 @@ BinRange any_range(std::uint32_t bins) {
   return {first, *rc::gen::inRange(first, bins)};
 }
 
-/// The profile of all faces between two slabs, counted from both ends.
+/// The profile of all faces between two of the most slabs, counted from both ends.
 TermPart everything_within(const TermSpace& space, std::uint32_t slabs) {
-  const ProfileFamily& family = space.profiles[0];
-  TermPart part{.kind = PartKind::profile, .range = {slabs, family.slabs.count() - 1 - slabs}};
-  part.faces.assign(family.chart.drawing.arrangement.areas.size(), 1);
+  const auto family =
+      std::ranges::max_element(space.profiles, {}, [](const ProfileFamily& f) { return f.slabs.count(); });
+  TermPart part{.kind = PartKind::profile,
+                .family = static_cast<std::uint32_t>(family - space.profiles.begin()),
+                .range = {slabs, family->slabs.count() - 1 - slabs}};
+  part.faces.assign(family->chart.drawing.arrangement.areas.size(), 1);
   part.faces[0] = 0;
   return part;
 }
