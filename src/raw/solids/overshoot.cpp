@@ -108,20 +108,35 @@ class Indifference {
 
   [[nodiscard]] bool holds_at(const Points& points, PrimitiveIndex solid) const {
     const AlignedBox box = bounds_of(points);
-    std::vector<std::vector<bool>> is_inside(points.size(), std::vector<bool>(solids_.size()));
+    std::vector<PrimitiveIndex> near;
+    std::vector<std::vector<double>> distances;
     for (const PrimitiveIndex other : used_) {
       if (other == solid || !bounds_[other].intersects(box)) continue;
-      const std::vector<double> distances = signed_distance(solids_[other], points);
-      for (std::size_t i = 0; i < points.size(); ++i) is_inside[i][other] = distances[i] < 0;
+      near.push_back(other);
+      distances.push_back(signed_distance(solids_[other], points));
     }
-    return std::ranges::all_of(is_inside, [&](std::vector<bool>& inside) {
-      const bool without = contains(tree_, inside);
-      inside[solid] = true;
-      return contains(tree_, inside) == without;
-    });
+    std::vector<bool> is_inside(solids_.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      // Points follow each other in rows, so most are inside the same solids as the one before.
+      bool is_new = i == 0;
+      for (std::size_t k = 0; k < near.size(); ++k) {
+        if (is_inside[near[k]] == (distances[k][i] < 0)) continue;
+        is_inside[near[k]].flip();
+        is_new = true;
+      }
+      if (is_new && !is_same_with_and_without(solid, is_inside)) return false;
+    }
+    return true;
   }
 
  private:
+  [[nodiscard]] bool is_same_with_and_without(PrimitiveIndex solid, std::vector<bool> is_inside) const {
+    is_inside[solid] = false;
+    const bool without = contains(tree_, is_inside);
+    is_inside[solid] = true;
+    return contains(tree_, is_inside) == without;
+  }
+
   const PrimitiveSet& solids_;
   const CsgTree& tree_;
   std::vector<PrimitiveIndex> used_;
