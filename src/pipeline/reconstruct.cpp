@@ -12,6 +12,7 @@
 #include "pipeline/extraction_run.hpp"
 #include "pipeline/find_primitives.hpp"
 #include "pipeline/frame.hpp"
+#include "pipeline/time_limit.hpp"
 #include "pipeline/verdict.hpp"
 #include "raw/solids/overshoot.hpp"
 
@@ -57,11 +58,17 @@ Extraction extract_over(const FoundPrimitives& found, const ExtractOptions& opti
   return result;
 }
 
-/// Separates the surfaces of the solids in the tree. This comes last: a search for other trees would need evidence for
-/// cells between them.
-void let_overshoot(Extraction& result, const ReconstructOptions& options, const RunContext& run) {
+/// Separates the surfaces of the solids in the tree, as far as the time allows. This comes last: a search for other
+/// trees would need evidence for cells between them. Counts as choice of solids.
+void let_overshoot(Extraction& result, const ReconstructOptions& options, std::optional<double> limit_seconds,
+                   const RunContext& run) {
+  const Stopwatch watch;
+  const TimeLimit limit(run.stop, limit_seconds);
+  RunContext limited = run;
+  limited.stop = limit.token();
   result.model.primitives = with_overshoots(std::move(result.model.primitives), result.tree(), options.known.size(),
-                                            bounds_of(result.cloud.positions));
+                                            bounds_of(result.cloud.positions), limited);
+  result.statistics.seconds.solids += watch.seconds();
   result.statistics.fit =
       measure_fit(result.model, result.cloud, result.statistics.noise, options.extraction, without_stop(run));
 }
@@ -84,6 +91,7 @@ void note_seconds(const FoundPrimitives& found, StageSeconds& seconds) {
 
 Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   validate(options);
+  const Stopwatch watch;
   FoundPrimitives found = find_in_time(cloud, options, run);
   append(found.warnings, unused_known_warnings(found.choice.tree, found, options.known, found.warnings));
   Extraction result = with_tree_of_choice(found, options.extraction, run);
@@ -92,9 +100,13 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   result.statistics.verdict = judge_detection(found);
   if (found.no_solid) found.warnings.emplace_back(found.no_solid->what());
   take_finding(result, found);
-  if (!found.no_solid) let_overshoot(result, options, run);
-  result.statistics.warnings = std::move(found.warnings);
   note_seconds(found, result.statistics.seconds);
+  if (!found.no_solid) {
+    std::optional<double> limit = options.extraction.time_limit_seconds;
+    if (limit) limit = seconds_left(*limit, watch.seconds());
+    let_overshoot(result, options, limit, run);
+  }
+  result.statistics.warnings = std::move(found.warnings);
   return moved_back(std::move(result), found.origin, options.known);
 }
 
@@ -126,8 +138,9 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   append(found.warnings, unused_known_warnings(result.tree(), found, options.known, found.warnings));
   statistics.warnings = std::move(found.warnings);
   take_finding(result, found);
-  let_overshoot(result, rest, run);
   note_seconds(found, statistics.seconds);
+  if (limit) limit = seconds_left(*options.extraction.time_limit_seconds, watch.seconds());
+  let_overshoot(result, rest, limit, run);
   result = judged(std::move(result), found.choice.places, found.origin, without_stop(run));
   return moved_back(std::move(result), found.origin, options.known);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,20 @@ TEST(Overshoot, ASlotReachesBeyondThePartWhereItIsOpen) {
     expect_box(bounds(solids[0]), k_part.min(), k_part.max());
     expect_box(bounds(solids[1]), low - Vector3d(k_percent, 0, 0), high + Vector3d(0, 0, k_percent));
   }
+}
+
+TEST(Overshoot, AStoppedRunLeavesTheSolidsAsTheyAre) {
+  const PrimitiveSet solids{test::placed("plate", Box{{8, 6, 2}}, {0, 0, 0}),
+                            test::placed("bore", Cylinder{.radius = 1, .height = 2}, {1, 1, 0})};
+  const CsgTree tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1));
+  std::stop_source stop;
+  const auto height_of_bore = [&] {
+    const PrimitiveSet result = with_overshoots(solids, tree, 0, k_part, {.stop = stop.get_token()});
+    return std::get<Cylinder>(result[1].shape).height;
+  };
+  EXPECT_GT(height_of_bore(), 2);
+  stop.request_stop();
+  EXPECT_EQ(height_of_bore(), 2);
 }
 
 TEST(Overshoot, BoresAndCountersinksReachBeyondThePart) {

@@ -206,8 +206,10 @@ class SolidOvershoot {
 
 }  // namespace
 
-PrimitiveSet with_overshoots(PrimitiveSet solids, const CsgTree& tree, std::size_t fixed, const AlignedBox& part) {
+PrimitiveSet with_overshoots(PrimitiveSet solids, const CsgTree& tree, std::size_t fixed, const AlignedBox& part,
+                             const RunContext& run) {
   for (const PrimitiveIndex index : primitives_of(tree)) {
+    if (run.stop.stop_requested()) break;
     if (index < fixed || !is_plain(solids[index])) continue;
     const Indifference indifference(solids, tree);
     const std::function<bool(const Points&)> is_free = [&](const Points& points) {
