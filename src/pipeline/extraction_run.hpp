@@ -23,9 +23,7 @@ class ExtractionRun {
   }
   /// One search, maybe with a parallel population.
   [[nodiscard]] RunContext search() const {
-    RunContext run = with_threads(parallel_ == Parallel::population || parallel_ == Parallel::both);
-    run.stop = limit_.token();
-    return run;
+    return limit_.limited(with_threads(parallel_ == Parallel::population || parallel_ == Parallel::both));
   }
   void enforce_limit() const { limit_.enforce(); }
 

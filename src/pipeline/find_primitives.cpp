@@ -260,11 +260,9 @@ RestDetection detect_rest(const PointCloud& cloud, const Scale& scale, const Pri
 FoundPrimitives find_in_time(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   const std::optional<double>& seconds = options.extraction.time_limit_seconds;
   const TimeLimit limit(run.stop, seconds);
-  RunContext limited = run;
-  limited.stop = limit.token();
   const Stopwatch watch;
   try {
-    FoundPrimitives found = find_all(cloud, options, limited);
+    FoundPrimitives found = find_all(cloud, options, limit.limited(run));
     if (seconds && *seconds <= watch.seconds()) {
       found.warnings.emplace_back("the time limit ended the choice of solids: these are the best so far");
     }

@@ -1,6 +1,5 @@
 #include "cloud2csg/reconstruct.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -38,11 +37,6 @@ Extraction with_tree_of_choice(const FoundPrimitives& found, const ExtractOption
   return result;
 }
 
-double seconds_left(double limit, double gone) {
-  constexpr double k_next_to_nothing = 1e-9;
-  return std::max(k_next_to_nothing, limit - gone);
-}
-
 /// The tree of the choice, measured against the cloud, or that of a strategy that was asked for.
 Extraction extract_over(const FoundPrimitives& found, const ExtractOptions& options, const RunContext& run) {
   if (options.strategy != Strategy::automatic) {
@@ -64,10 +58,8 @@ void let_overshoot(Extraction& result, const ReconstructOptions& options, std::o
                    const RunContext& run) {
   const Stopwatch watch;
   const TimeLimit limit(run.stop, limit_seconds);
-  RunContext limited = run;
-  limited.stop = limit.token();
   result.model.primitives = with_overshoots(std::move(result.model.primitives), result.tree(), options.known.size(),
-                                            bounds_of(result.cloud.positions), limited);
+                                            bounds_of(result.cloud.positions), limit.limited(run));
   result.statistics.seconds.solids += watch.seconds();
   result.statistics.fit =
       measure_fit(result.model, result.cloud, result.statistics.noise, options.extraction, without_stop(run));
@@ -102,9 +94,7 @@ Extraction find_primitives(const PointCloud& cloud, const ReconstructOptions& op
   take_finding(result, found);
   note_seconds(found, result.statistics.seconds);
   if (!found.no_solid) {
-    std::optional<double> limit = options.extraction.time_limit_seconds;
-    if (limit) limit = seconds_left(*limit, watch.seconds());
-    let_overshoot(result, options, limit, run);
+    let_overshoot(result, options, seconds_left(options.extraction.time_limit_seconds, watch), run);
   }
   result.statistics.warnings = std::move(found.warnings);
   return moved_back(std::move(result), found.origin, options.known);
@@ -124,13 +114,13 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   std::optional<double>& tolerance = rest.extraction.segmentation.distance_tolerance;
   if (!tolerance) tolerance = detection_tolerance(options.detection, found.prepared.scale);
   const bool is_over = limit && *limit <= watch.seconds();
-  if (limit) limit = seconds_left(*limit, watch.seconds());
+  limit = seconds_left(limit, watch);
   const Stopwatch extracting;
   Extraction result = extract_over(found, rest.extraction, run);
   ExtractStatistics& statistics = result.statistics;
   if (is_over) statistics.complete = false;
   if (options.refine) {
-    if (limit) limit = seconds_left(*limit, extracting.seconds());
+    limit = seconds_left(limit, extracting);
     result = refined(std::move(result), found.prepared.cloud, rest.extraction, *options.refine, run);
   }
   statistics.finding = statistics_of(found, options.known.size(), cloud.size());
@@ -139,8 +129,7 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   statistics.warnings = std::move(found.warnings);
   take_finding(result, found);
   note_seconds(found, statistics.seconds);
-  if (limit) limit = seconds_left(*options.extraction.time_limit_seconds, watch.seconds());
-  let_overshoot(result, rest, limit, run);
+  let_overshoot(result, rest, seconds_left(options.extraction.time_limit_seconds, watch), run);
   result = judged(std::move(result), found.choice.places, found.origin, without_stop(run));
   return moved_back(std::move(result), found.origin, options.known);
 }

@@ -34,25 +34,18 @@ void note_incomplete(ExtractStatistics& statistics) {
 std::optional<Refinement> refinement_of(const Extraction& result, const PointCloud& cloud, const RefineOptions& options,
                                         std::optional<double> seconds, const RunContext& run) {
   const TimeLimit limit(run.stop, seconds);
-  RunContext limited = run;
-  limited.stop = limit.token();
   limit.enforce();
   try {
-    return refine_primitives(cloud, result.model.primitives, result.tree(), options, limited);
+    return refine_primitives(cloud, result.model.primitives, result.tree(), options, limit.limited(run));
   } catch (const Cancelled&) {
     return std::nullopt;
   }
 }
 
-std::optional<double> seconds_left(std::optional<double> limit, const Stopwatch& watch) {
-  if (limit) limit = std::max(0.0, *limit - watch.seconds());
-  return limit;
-}
-
 /// Absent when stopped or without time left.
 std::optional<Extraction> extracted_again(const PointCloud& cloud, const PrimitiveSet& primitives,
                                           const ExtractOptions& options, const RunContext& run) {
-  if (options.time_limit_seconds && *options.time_limit_seconds <= 0) return std::nullopt;
+  if (options.time_limit_seconds && *options.time_limit_seconds <= k_next_to_nothing) return std::nullopt;
   try {
     return extract_csg(cloud, primitives, options, run);
   } catch (const Cancelled&) {

@@ -1,5 +1,7 @@
 #include "pipeline/time_limit.hpp"
 
+#include <algorithm>
+
 namespace cloud2csg {
 
 TimeLimit::TimeLimit(const std::stop_token& caller, std::optional<double> seconds)
@@ -18,6 +20,11 @@ TimeLimit::TimeLimit(const std::stop_token& caller, std::optional<double> second
 
 void TimeLimit::enforce() const {
   if (end_ && std::chrono::steady_clock::now() >= *end_) source_.request_stop();
+}
+
+std::optional<double> seconds_left(std::optional<double> limit, const Stopwatch& watch) {
+  if (limit) limit = std::max(k_next_to_nothing, *limit - watch.seconds());
+  return limit;
 }
 
 }  // namespace cloud2csg

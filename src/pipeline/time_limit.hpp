@@ -7,6 +7,9 @@
 #include <stop_token>
 #include <thread>
 
+#include "cloud2csg/run_context.hpp"
+#include "core/base/run.hpp"
+
 namespace cloud2csg {
 
 /// A stop token that triggers with another one or at the end of a time limit, whichever comes first.
@@ -15,6 +18,11 @@ class TimeLimit {
   TimeLimit(const std::stop_token& caller, std::optional<double> seconds);
 
   [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+  /// The run, which stops with the token.
+  [[nodiscard]] RunContext limited(RunContext run) const {
+    run.stop = token();
+    return run;
+  }
   /// Triggers the token if the limit is over. The watching thread may be late on a busy machine.
   void enforce() const;
 
@@ -31,5 +39,11 @@ class TimeLimit {
   std::condition_variable_any timer_;
   std::jthread watch_;  // last member: stops and joins before the others are destroyed
 };
+
+/// In seconds. Options refuse a limit of zero.
+inline constexpr double k_next_to_nothing = 1e-9;
+
+/// What the watch has left of a limit, at least next to nothing.
+[[nodiscard]] std::optional<double> seconds_left(std::optional<double> limit, const Stopwatch& watch);
 
 }  // namespace cloud2csg
