@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "cloud2csg/advanced/solids.hpp"
+#include "core/base/random.hpp"
 #include "solids/known_surfaces.hpp"
 
 namespace cloud2csg {
@@ -70,6 +72,39 @@ TEST(Regularise, TurnsWhatIsUnsureFarther) {
   bore.surface.axis = turned(k_z, k_x, 4);
   bore.turn_deg = 10;
   EXPECT_TRUE(regularise(std::vector{face, bore}, k_tolerance).snaps.empty()) << "what is not known is not made up";
+}
+
+/// A cone is turned about its apex, which is far from its points.
+TEST(Regularise, SurfacesStayOnTheirPointsWhenTheyAreTurned) {
+  const double noise = 0.002;
+  const Eigen::Vector3d apex(0, 0, 12);
+  Points positions;
+  DetectedSurface cone = with_points({.type = SurfaceType::cone, .position = apex, .axis = -k_z, .half_angle = 0.1}, 0);
+  RandomStream random(3);
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const double height = random.uniform(0, 2);
+    const double radius = (12 - height) * std::tan(0.1) + noise * random.normal();
+    positions.push_back({radius * std::cos(angle), radius * std::sin(angle), height});
+    cone.points.push_back(i);
+  }
+  cone.rms = noise;
+  cone.surface.position = turned(apex, k_x, 0.5);
+  cone.surface.axis = turned(-k_z, k_x, 0.5);
+  const DetectedSurface face = with_points(test::plane_at({0, 0, 0}, -k_z), 5000);
+  const std::vector<FixedValues> fixed{{.direction = true}, {}};
+  const auto rms_of = [&](const Surface& surface) {
+    double squares = 0;
+    for (const double distance : signed_distance(surface, positions)) squares += distance * distance;
+    return std::sqrt(squares / static_cast<double>(positions.size()));
+  };
+  const auto turned_cone = [&](const Points& known) {
+    const Surface result = regularise(std::vector{face, cone}, k_tolerance, 1, fixed, known).surfaces[1].surface;
+    EXPECT_LT(result.axis.cross(k_z).norm(), 1e-12);
+    return result;
+  };
+  EXPECT_GT(rms_of(turned_cone({})), 10 * noise);
+  EXPECT_LT(rms_of(turned_cone(positions)), 1.1 * noise);
 }
 
 /// Six bores with counterbores around a hub of another radius, all off by some: they move together.

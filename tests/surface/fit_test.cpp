@@ -142,6 +142,35 @@ TEST_P(EachSurface, KnowsHowUncertainItIs) {
   }
 }
 
+TEST_P(EachSurface, KeepsItsDirectionOrAxisAndFindsTheRest) {
+  const test::PatchOptions options{.arc_deg = 60, .length = 0.3, .noise = k_noise};
+  double off_alone = 0;
+  double off_held = 0;
+  for (int repeat = 0; repeat < k_repeats; ++repeat) {
+    const Case sample = make_case(GetParam(), repeat, options);
+    const auto alone = fit_surface(sample.truth, sample.patch.points);
+    ASSERT_TRUE(alone);
+    Surface start = sample.truth;
+    start.position += 3 * k_noise * start.axis.unitOrthogonal();
+    start.radius += 2 * k_noise;
+    const auto turned = fit_surface(start, sample.patch.points, {.held = HeldValue::direction});
+    ASSERT_TRUE(turned);
+    EXPECT_LT((turned->surface.axis - start.axis).norm(), 1e-12);
+    EXPECT_EQ(turned->uncertainty.axis, 0);
+    EXPECT_LE(turned->uncertainty.position, 1.1 * alone->uncertainty.position);
+    off_alone += (alone->surface.position - sample.truth.position).norm();
+    off_held += (turned->surface.position - sample.truth.position).norm();
+
+    const auto moved = fit_surface(start, sample.patch.points, {.held = HeldValue::axis});
+    ASSERT_TRUE(moved);
+    const Eigen::Vector3d offset = moved->surface.position - start.position;
+    if (GetParam() == SurfaceType::plane || GetParam() == SurfaceType::sphere) continue;
+    EXPECT_LT((moved->surface.axis - start.axis).norm(), 1e-12);
+    EXPECT_LT(offset.cross(start.axis).norm(), 1e-9) << "it stays on its axis";
+  }
+  EXPECT_LE(off_held, 1.01 * off_alone) << "a known direction tells where it is";
+}
+
 TEST_P(EachSurface, NeedsAsManyPointsAsUnknowns) {
   const Case sample = make_case(GetParam(), 0, {.count = 7});
   const std::size_t unknowns = std::array<std::size_t, 5>{3, 4, 5, 6, 7}[static_cast<std::size_t>(GetParam())];

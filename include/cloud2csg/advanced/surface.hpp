@@ -43,6 +43,9 @@ struct Surface {
 [[nodiscard]] std::vector<double> signed_distance(const Surface& surface, PointsView points);
 [[nodiscard]] Points normal(const Surface& surface, PointsView points);
 
+/// What a fit leaves as it is: the direction of the axis or plane, or the line of the axis, of surfaces that have one.
+enum class HeldValue { none, direction, axis };
+
 struct FitOptions {
   /// Standard deviation of the points' distances from the surface, in their units. Points beyond about five of it lose
   /// their influence, however many they are; points of the right surface must lie within about thirty of the start.
@@ -50,9 +53,11 @@ struct FitOptions {
   std::optional<double> noise = {};
   /// A larger set is thinned evenly: takes a few milliseconds, and adds uncertainty far below that of the noise.
   std::size_t most_points = 4000;
+  HeldValue held = HeldValue::none;
 };
 
-/// Standard deviations of the fitted values; infinite for undetermined values, zero for values outside of the type.
+/// Standard deviations of the fitted values; infinite for undetermined values, zero for held ones and those outside of
+/// the type.
 struct SurfaceUncertainty {
   double position = 0;    ///< worst direction; for cylinders and cones, across the axis at the middle of the points
   double axis = 0;        ///< worst direction, in radians; 0 for spheres

@@ -55,7 +55,7 @@ GivenSurfaces made_regular(const PointCloud& cloud, std::span<const DetectedSurf
   all.insert(all.end(), of_known.begin(), of_known.end());
   std::vector<FixedValues> fixed = result.fixed;
   fixed.resize(all.size(), {.direction = true, .position = true, .radius = true});
-  RegularSurfaces regular = regularise(all, tolerance, options.angle_tolerance_deg, fixed);
+  RegularSurfaces regular = regularise(all, tolerance, options.angle_tolerance_deg, fixed, cloud.positions);
   regular.surfaces.resize(found.size());
   result.surfaces = std::move(regular.surfaces);
   result.snaps.insert(result.snaps.end(), regular.snaps.begin(), regular.snaps.end());

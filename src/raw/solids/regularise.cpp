@@ -5,16 +5,20 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "cloud2csg/advanced/solids.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/solids/regular_places.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr double k_deviations = 3;       // allowed error of a direction
-constexpr double k_most_tolerances = 3;  // upper limit of that error, in tolerances of well determined directions
+constexpr double k_most_tolerances = 3;  // upper limit of that error, in tolerances of well determined values
+/// Points that a changed surface is fitted to. No fewer than in detection (4096), or small changes make it less exact.
+constexpr std::size_t k_most_fitted = 16384;
 
 bool has_direction(SurfaceType type) {
   return type != SurfaceType::sphere;
@@ -43,9 +47,11 @@ struct DirectionCluster {
 class Regulariser {
  public:
   Regulariser(std::span<const DetectedSurface> surfaces, double distance_tolerance, double angle_tolerance_deg,
-              std::span<const FixedValues> fixed)
+              std::span<const FixedValues> fixed, const Points& positions)
       : result_{.surfaces = {surfaces.begin(), surfaces.end()}, .snaps = {}},
         fixed_(fixed.begin(), fixed.end()),
+        positions_(positions),
+        shifts_(surfaces.size(), 0.0),
         distance_tolerance_(distance_tolerance),
         sine_tolerance_(std::sin(angle_tolerance_deg * std::numbers::pi / 180)),
         by_weight_(surfaces.size()) {
@@ -76,6 +82,25 @@ class Regulariser {
     std::vector<std::uint32_t> result = by_weight_;
     std::stable_partition(result.begin(), result.end(), [&](std::uint32_t i) { return fixed_[i].*value; });
     return result;
+  }
+
+  /// Fits the surface to its points with a new direction or axis, which its other values must follow: the apex of a
+  /// cone may be far from its points, and a short piece of a pipe leaves much open.
+  void adapt(std::uint32_t i, HeldValue held) {
+    DetectedSurface& detected = result_.surfaces[i];
+    if (positions_.size() == 0 || fixed_[i].position || fixed_[i].radius) return;
+    std::vector<Eigen::Vector3d> points;
+    for (const std::uint32_t index : some_of(detected.points, k_most_fitted)) points.push_back(positions_[index]);
+    const std::optional<SurfaceFit> fit =
+        fit_surface(detected.surface, points, {.most_points = k_most_fitted, .held = held});
+    if (!fit) return;
+    detected.surface = fit->surface;
+    shifts_[i] = fit->uncertainty.position;
+  }
+
+  /// Larger if the surface's points leave its position more uncertain.
+  [[nodiscard]] double distance_tolerance_of(std::uint32_t i) const {
+    return std::clamp(k_deviations * shifts_[i], distance_tolerance_, k_most_tolerances * distance_tolerance_);
   }
 
   void note(RegularityKind kind, std::uint32_t i, double change) {
@@ -123,6 +148,7 @@ class Regulariser {
         const double sine = std::min(surface(i).axis.cross(axis).norm(), 1.0);
         note(RegularityKind::direction, i, std::asin(sine) * 180 / std::numbers::pi);
         surface(i).axis = axis;
+        if (sine > 0) adapt(i, HeldValue::direction);
       }
     }
   }
@@ -213,7 +239,7 @@ class Regulariser {
 
   void snap_axes() {
     const auto are_coaxial = [this](std::uint32_t a, std::uint32_t b) {
-      return are_parallel(a, b) && across(surface(a), surface(b)).norm() <= distance_tolerance_;
+      return are_parallel(a, b) && across(surface(a), surface(b)).norm() <= distance_tolerance_of(b);
     };
     for (const std::vector<std::uint32_t>& group : groups(has_axis, &FixedValues::position, are_coaxial)) {
       const Surface anchor = surface(group[0]);
@@ -224,6 +250,7 @@ class Regulariser {
         const Eigen::Vector3d change = shared - shift(i);
         note(RegularityKind::axis, i, change.norm());
         surface(i).position += change;
+        if (change.norm() > 0) adapt(i, HeldValue::axis);
       }
     }
   }
@@ -327,6 +354,8 @@ class Regulariser {
 
   RegularSurfaces result_;
   std::vector<FixedValues> fixed_;
+  const Points& positions_;     ///< those of the cloud; none: surfaces do not adapt
+  std::vector<double> shifts_;  ///< standard deviations of the positions, where known
   double distance_tolerance_;
   double sine_tolerance_;
   double upright_sine_ = 0;  ///< angle at which no surface moves farther than the distance tolerance
@@ -352,8 +381,8 @@ LargestChange largest_change(std::span<const Snap> snaps) {
 }
 
 RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
-                           double angle_tolerance_deg, std::span<const FixedValues> fixed) {
-  return Regulariser(surfaces, distance_tolerance, angle_tolerance_deg, fixed).run();
+                           double angle_tolerance_deg, std::span<const FixedValues> fixed, const Points& positions) {
+  return Regulariser(surfaces, distance_tolerance, angle_tolerance_deg, fixed, positions).run();
 }
 
 }  // namespace cloud2csg

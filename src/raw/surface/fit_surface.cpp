@@ -31,15 +31,24 @@ struct RobustDistances {
   std::span<const Eigen::Vector3d> points;
   double noise;
   RobustLoss loss;
+  std::size_t held;
 
   // NOLINTBEGIN(readability-identifier-naming): the solver's names
   [[nodiscard]] int NumResiduals() const { return static_cast<int>(points.size()); }
-  [[nodiscard]] int NumParameters() const { return static_cast<int>(chart.unknowns()); }
+  [[nodiscard]] int NumParameters() const { return static_cast<int>(chart.unknowns() - held); }
   // NOLINTEND(readability-identifier-naming)
 
-  bool operator()(const double* unknowns, double* residuals, double* jacobian) const {
+  /// All unknowns, from those that are not held.
+  [[nodiscard]] Chart::Row all(const double* free) const {
+    Chart::Row row = chart.start();
+    std::copy_n(free, chart.unknowns() - held, row.begin() + static_cast<std::ptrdiff_t>(held));
+    return row;
+  }
+
+  bool operator()(const double* free, double* residuals, double* jacobian) const {
     const std::size_t count = chart.unknowns();
-    const Chart::Place place = chart.at({unknowns, count});
+    const Chart::Row unknowns = all(free);
+    const Chart::Place place = chart.at({unknowns.data(), count});
     Chart::Row slopes = {};
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double distance =
@@ -47,7 +56,7 @@ struct RobustDistances {
       const auto [value, slope] = loss(distance / noise);
       residuals[i] = value;
       if (jacobian == nullptr) continue;
-      for (std::size_t k = 0; k < count; ++k) jacobian[k * points.size() + i] = slope * slopes[k] / noise;
+      for (std::size_t k = held; k < count; ++k) jacobian[(k - held) * points.size() + i] = slope * slopes[k] / noise;
     }
     return true;
   }
@@ -59,15 +68,15 @@ using Unknowns = Eigen::VectorXd;
 constexpr double k_rough = 1e-2;
 constexpr double k_precise = 1e-6;
 
-Unknowns solve(const Chart& chart, std::span<const Eigen::Vector3d> points, double noise, const RobustLoss& loss,
-               double tolerance) {
-  const Chart::Row start = chart.start();
-  Unknowns unknowns = Eigen::Map<const Unknowns>(start.data(), static_cast<Eigen::Index>(chart.unknowns()));
+/// The unknowns that fit best. `distances` tells which are held.
+Chart::Row solve(const RobustDistances& distances, double tolerance) {
+  const Chart::Row start = distances.chart.start();
+  Unknowns free = Eigen::Map<const Unknowns>(start.data() + distances.held, distances.NumParameters());
   ceres::TinySolver<RobustDistances> solver;
   solver.options.function_tolerance = tolerance;
   solver.options.max_num_iterations = 50;
-  solver.Solve({.chart = chart, .points = points, .noise = noise, .loss = loss}, &unknowns);
-  return unknowns;
+  solver.Solve(distances, &free);
+  return distances.all(free.data());
 }
 
 double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> points) {
@@ -84,8 +93,8 @@ struct Solution {
 
 class Fitter {
  public:
-  Fitter(std::vector<Eigen::Vector3d> points, double floor, std::optional<double> noise)
-      : points_(std::move(points)), floor_(floor), given_(noise) {}
+  Fitter(std::vector<Eigen::Vector3d> points, double floor, std::optional<double> noise, HeldValue held)
+      : points_(std::move(points)), floor_(floor), given_(noise), held_(held) {}
 
   [[nodiscard]] std::optional<Solution> fit(const Surface& start) const {
     return given_ ? fit_within(start, *given_) : fit_and_measure(start);
@@ -124,8 +133,9 @@ class Fitter {
   [[nodiscard]] std::optional<Surface> improved(const Surface& surface, double noise, const RobustLoss& loss,
                                                 double tolerance) const {
     const Chart chart(surface);
-    const Unknowns unknowns = solve(chart, points_, noise, loss, tolerance);
-    const Chart::Place place = chart.at({unknowns.data(), static_cast<std::size_t>(unknowns.size())});
+    const Chart::Row unknowns =
+        solve({.chart = chart, .points = points_, .noise = noise, .loss = loss, .held = chart.held(held_)}, tolerance);
+    const Chart::Place place = chart.at({unknowns.data(), chart.unknowns()});
     if (!chart.is_surface(place)) return std::nullopt;
     return chart.surface(place);
   }
@@ -133,6 +143,7 @@ class Fitter {
   std::vector<Eigen::Vector3d> points_;
   double floor_;
   std::optional<double> given_;
+  HeldValue held_;
 };
 
 /// Standard deviation in the worst direction of some unknowns; infinite without a covariance.
@@ -168,9 +179,16 @@ SurfaceUncertainty Fitter::uncertainty(const Solution& solution, double rms) con
     information += row * row.transpose();
     ++inliers;
   }
+  const auto held = static_cast<Eigen::Index>(chart.held(held_));
+  const Eigen::Index free = count - held;
   std::optional<Eigen::MatrixXd> covariance;
-  if (inliers > count) covariance = inverse_of(information);
-  if (covariance) *covariance *= rms * rms * static_cast<double>(inliers) / static_cast<double>(inliers - count);
+  if (inliers > free) covariance = inverse_of(information.bottomRightCorner(free, free));
+  if (covariance) *covariance *= rms * rms * static_cast<double>(inliers) / static_cast<double>(inliers - free);
+  if (covariance) {
+    Eigen::MatrixXd of_all = Eigen::MatrixXd::Zero(count, count);
+    of_all.bottomRightCorner(free, free) = *covariance;
+    covariance = of_all;
+  }
 
   const auto tilts = static_cast<Eigen::Index>(chart.tilts());
   const auto shifts = static_cast<Eigen::Index>(chart.shifts());
@@ -198,7 +216,7 @@ std::optional<SurfaceFit> fit_surface(const Surface& start, std::span<const Eige
   const double rounding = std::numeric_limits<double>::epsilon() * frame.origin.norm() / frame.scale;
   const double floor = std::max(k_smallest_noise, 4 * rounding);
   const auto noise = options.noise ? std::optional(std::max(*options.noise / frame.scale, floor)) : std::nullopt;
-  const Fitter fitter(to_frame(frame, some), floor, noise);
+  const Fitter fitter(to_frame(frame, some), floor, noise, options.held);
   const std::optional<Solution> solution = fitter.fit(to_frame(frame, start));
   if (!solution) return std::nullopt;
 
