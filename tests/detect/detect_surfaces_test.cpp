@@ -249,7 +249,7 @@ TEST(DetectSurfaces, FindsANarrowBandBetweenTwoFaces) {
   EXPECT_EQ(detection.unexplained, 0U);
 }
 
-/// Sixteen points of an exact surface are no chance; in noise that exceeds the spacing, they are.
+/// Ten points of an exact plane are no chance; in noise that exceeds the spacing, they are.
 TEST(DetectSurfaces, NeedsMorePointsInMoreNoise) {
   const auto patch = [](double noise) {
     RandomStream random(5);
@@ -259,7 +259,7 @@ TEST(DetectSurfaces, NeedsMorePointsInMoreNoise) {
       cloud.normals.push_back(normal);
     };
     for (int i = 0; i < 2000; ++i) add({random.uniform(-1, 1), random.uniform(-1, 1), 0}, {0, 0, 1});
-    for (int i = 0; i < 16; ++i) add({random.uniform(0.9, 1), 1.1, random.uniform(0.2, 0.3)}, {0, 1, 0});
+    for (int i = 0; i < 10; ++i) add({random.uniform(0.9, 1), 1.1, random.uniform(0.2, 0.3)}, {0, 1, 0});
     return cloud;
   };
   const auto found = [&](double noise) {

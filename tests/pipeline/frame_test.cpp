@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
@@ -119,6 +121,44 @@ TEST(Frame, DoesNotChangeAReconstruction) {
     const Points own = select_points(there.cloud, there.surfaces[0].points).positions;
     EXPECT_LT(std::abs(signed_distance(surface, own[0])), 0.1 * motion.unit);
   }
+}
+
+/// Blocks from which solids of any type are cut, in any unit and place.
+TEST(Frame, DoesNotChangeTheSurfacesOfAnything) {
+  RandomStream random(7);
+  std::size_t same = 0;
+  std::size_t changed = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    Model model{.primitives = {test::placed("block", Box{{6, 5, 4}}, {0, 0, 0})}, .tree = CsgTree::leaf(0)};
+    for (PrimitiveIndex p = 1; p <= 3; ++p) {
+      Shape shape = test::random_shape(random);
+      while (std::holds_alternative<HalfSpace>(shape)) shape = test::random_shape(random);  // cuts off too much
+      model.primitives.push_back({.id = std::to_string(p), .shape = std::move(shape)});
+      model.primitives.back().pose = test::random_pose(random);
+      model.primitives.back().pose.position = test::random_within(3, random);
+      model.tree = subtract(*model.tree, CsgTree::leaf(p));
+    }
+    const PointCloud cloud = sample_surface(model, {.count = 4000, .noise = 0.005, .seed = 2});
+    const double diagonal = bounds_of(cloud.positions).diagonal().norm();
+    const double unit = std::pow(10, random.uniform(-9, 9));
+    const double shift = unit * diagonal * std::pow(10, random.uniform(0, 9));
+    const Motion motion{unit, shift * test::random_direction(random)};
+    const std::vector<DetectedSurface> here = reconstruct(cloud).surfaces;
+    const std::vector<DetectedSurface> there = reconstruct(moved(cloud, motion)).surfaces;
+    ASSERT_EQ(there.size(), here.size()) << trial;
+    const double tolerance = 1e-6 * unit * diagonal + 4 * 2.3e-16 * shift;
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      const Surface& one = here[k].surface;
+      const Surface& other = there[k].surface;
+      const bool is_same = one.type == other.type &&
+                           (unit * one.position + motion.shift - other.position).norm() <= tolerance &&
+                           one.axis.cross(other.axis).norm() <= tolerance / (unit * diagonal) &&
+                           std::abs(unit * one.radius - other.radius) <= tolerance;
+      ++(is_same ? same : changed);
+    }
+  }
+  EXPECT_GT(same, 300U);
+  EXPECT_LE(changed, same / 100) << "rounding decides where two surfaces explain a few points equally well";
 }
 
 TEST(Frame, DoesNotChangeAnExtractionOverGivenPrimitives) {

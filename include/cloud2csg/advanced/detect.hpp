@@ -35,7 +35,9 @@ void option_table(OptionsOf<DetectOptions>, auto&& field) {
         above_to(0, 90), {.unit = "DEG", .option = "normal-tolerance"});
   field(
       &O::least_points, "least_points", "Ignore surfaces with fewer points", at_least(1),
-      {.absent = "as many as cannot be chance: 13 in a sparse exact cloud, more the more spacings the tolerance has"});
+      {.absent =
+           "as many as cannot be chance: 10 (a plane) to 14 (a torus) in a sparse exact cloud, more the more spacings "
+           "the tolerance has"});
   field(&O::least_size, "least_size",
         "Leave out surfaces with a smaller radius or extent, in the cloud's units. The radius is that of a sphere or "
         "cylinder, or that of a torus' tube; the extent is the diagonal of the box around the largest connected piece "

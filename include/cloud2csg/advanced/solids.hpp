@@ -146,9 +146,9 @@ struct FixedValues {
 /// Puts parallel axes of cylinders of equal radius into rows and grids of equal steps and circles of equal angles
 /// (regular_places.hpp). Turned surfaces keep their position, which should be near their points. Where a surface's own
 /// points leave its direction uncertain (DetectedSurface::turn_deg), it turns by up to three standard deviations, at
-/// most three times the angle. `fixed` has one entry per surface, or none. With `positions`, those of the cloud, a
-/// surface whose direction or axis changes is fitted anew with it, and axes move by three standard deviations as well.
-/// O(surfaces^2 + points).
+/// most three times the angle. With `positions`, those of the cloud, a surface that leaves its points when its
+/// direction or axis changes is fitted to them anew, and axes move by up to three standard deviations as well. `fixed`
+/// has one entry per surface, or none. O(surfaces^2 + points).
 [[nodiscard]] RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
                                          double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
                                          std::span<const FixedValues> fixed = {}, const Points& positions = {});

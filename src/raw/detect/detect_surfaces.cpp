@@ -94,7 +94,7 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
     ++in_vain;
     if (!surface) continue;
     const auto evidence = std::count_if(surface->points.begin(), surface->points.end(), is_evidence);
-    const bool is_enough = static_cast<std::size_t>(evidence) >= limits.least_points;
+    const bool is_enough = static_cast<std::size_t>(evidence) >= limits.least_points_of(surface->surface.type);
     if (!is_enough) std::erase_if(surface->points, is_evidence);
     points.take(surface->points);
     if (!is_enough) continue;
@@ -116,13 +116,13 @@ double detection_noise(const DetectOptions& options, const Scale& scale) {
   return std::max(scale.noise, k_exact_share * scale.diagonal);
 }
 
-/// The option's value, or the fewest points that are no chance. A patch of n points is sqrt(n) spacings wide. A point
-/// at random in it lies within the tolerance of a surface with the chance of the band's share of the width. The
-/// parameters fit some of the points anyway; all others must be as unlikely as one in a million.
+/// The option's value, or the fewest points of a plane that are no chance. A patch of n points is sqrt(n) spacings
+/// wide. A point at random in it lies within the tolerance of a surface with the chance of the band's share of the
+/// width. The parameters fit some of the points anyway; all others must be as unlikely as one in a million.
 std::size_t least_points_of(const DetectOptions& options, const Scale& scale, std::size_t cloud_points) {
-  // 13 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 10 do; with
-  // double, 18.
-  constexpr std::size_t k_parameters = 7;  // of a torus
+  // 10 points suffice in an exact cloud whose spacing is 1 % of the diagonal. With half the evidence, 7 do; with
+  // double, 15.
+  constexpr std::size_t k_parameters = count_parameters(SurfaceType::plane);
   if (options.least_points) return *options.least_points;
   const double band = 2 * detection_tolerance(options, scale);
   std::size_t points = k_parameters + 1;
@@ -147,7 +147,8 @@ SearchLimits limits_of(const DetectOptions& options, const Scale& scale, const W
                         .cosine = std::cos(options.angle_tolerance_deg * std::numbers::pi / 180),
                         .most_radius = most_radius_of(options, work.diagonal)},
           .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
-          .least_points = least_points_of(options, scale, work.size())};
+          .least_points = least_points_of(options, scale, work.size()),
+          .is_least_given = options.least_points.has_value()};
 }
 
 /// Noise of the points of the median plane, which is weighted by points; absent if planes have few points. Other

@@ -19,8 +19,14 @@ namespace cloud2csg {
 
 struct SearchLimits {
   AgreementLimits agreement;
-  double link;               ///< edge for connected_groups()
-  std::size_t least_points;  ///< in a surface
+  double link;                  ///< edge for connected_groups()
+  std::size_t least_points;     ///< in a plane, the simplest surface
+  bool is_least_given = false;  ///< whether all types need as many
+
+  /// A surface with more parameters needs as many more points.
+  [[nodiscard]] std::size_t least_points_of(SurfaceType type) const {
+    return is_least_given ? least_points : least_points + count_parameters(type) - count_parameters(SurfaceType::plane);
+  }
 };
 
 /// A surface with its points: ascending indices into the WorkCloud.

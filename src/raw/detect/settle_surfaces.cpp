@@ -72,8 +72,7 @@ std::vector<Piece> pieces_of(const std::vector<std::uint32_t>& points, const Wor
 
 /// The least evidence for a surface of `points` points: what its parameters fit by chance does not count (BIC).
 double least_evidence(SurfaceType type, std::size_t points) {
-  constexpr std::array k_parameters{3, 4, 5, 6, 7};
-  return k_evidence + 0.5 * k_parameters[static_cast<std::size_t>(type)] * std::log(static_cast<double>(points));
+  return k_evidence + 0.5 * static_cast<double>(count_parameters(type)) * std::log(static_cast<double>(points));
 }
 
 /// Logarithm of the ratio of the likelihoods of the samples: each piece on the one of the two that explains it better,

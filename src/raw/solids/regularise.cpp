@@ -36,6 +36,17 @@ double weight_of(const DetectedSurface& detected) {
   return static_cast<double>(std::max<std::size_t>(detected.points.size(), 1));
 }
 
+/// Whether the points are less likely on a surface than they were before it changed. Their distances are normally
+/// distributed.
+bool leaves(std::span<const Eigen::Vector3d> points, const Surface& before, const Surface& changed) {
+  constexpr double k_less = 1;  // logarithm of the ratio: a change within the uncertainty costs about a half a value
+  const auto squares = [points](const Surface& surface) {
+    const auto square = [&](const Eigen::Vector3d& point) { return std::pow(signed_distance(surface, point), 2); };
+    return std::transform_reduce(points.begin(), points.end(), 0.0, std::plus{}, square);
+  };
+  return 0.5 * static_cast<double>(points.size()) * std::log(squares(changed) / squares(before)) > k_less;
+}
+
 struct DirectionCluster {
   Eigen::Vector3d direction;
   double weight;
@@ -84,13 +95,16 @@ class Regulariser {
     return result;
   }
 
-  /// Fits the surface to its points with a new direction or axis, which its other values must follow: the apex of a
-  /// cone may be far from its points, and a short piece of a pipe leaves much open.
-  void adapt(std::uint32_t i, HeldValue held) {
+  /// Gives the surface a new direction or axis. If it leaves its points, its other values follow: the apex of a cone
+  /// may be far from its points, and a short piece of a pipe leaves much open.
+  void change(std::uint32_t i, HeldValue held, const std::function<void(Surface&)>& make_change) {
     DetectedSurface& detected = result_.surfaces[i];
+    const Surface before = detected.surface;
+    make_change(detected.surface);
     if (positions_.size() == 0 || fixed_[i].position || fixed_[i].radius) return;
     std::vector<Eigen::Vector3d> points;
     for (const std::uint32_t index : some_of(detected.points, k_most_fitted)) points.push_back(positions_[index]);
+    if (!leaves(points, before, detected.surface)) return;
     const std::optional<SurfaceFit> fit =
         fit_surface(detected.surface, points, {.most_points = k_most_fitted, .held = held});
     if (!fit) return;
@@ -147,8 +161,7 @@ class Regulariser {
         const Eigen::Vector3d axis = surface(i).axis.dot(direction) < 0 ? Eigen::Vector3d(-direction) : direction;
         const double sine = std::min(surface(i).axis.cross(axis).norm(), 1.0);
         note(RegularityKind::direction, i, std::asin(sine) * 180 / std::numbers::pi);
-        surface(i).axis = axis;
-        if (sine > 0) adapt(i, HeldValue::direction);
+        change(i, HeldValue::direction, [&](Surface& turned) { turned.axis = axis; });
       }
     }
   }
@@ -247,10 +260,9 @@ class Regulariser {
       const Eigen::Vector3d shared = common(group, &FixedValues::position, shift);
       for (const std::uint32_t i : group) {
         if (fixed_[i].position) continue;
-        const Eigen::Vector3d change = shared - shift(i);
-        note(RegularityKind::axis, i, change.norm());
-        surface(i).position += change;
-        if (change.norm() > 0) adapt(i, HeldValue::axis);
+        const Eigen::Vector3d offset = shared - shift(i);
+        note(RegularityKind::axis, i, offset.norm());
+        change(i, HeldValue::axis, [&](Surface& moved) { moved.position += offset; });
       }
     }
   }
