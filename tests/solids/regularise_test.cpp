@@ -12,7 +12,7 @@ namespace {
 
 constexpr double k_tolerance = 0.01;
 
-DetectedSurface with_points(Surface surface, std::size_t points) {
+DetectedSurface with_points(const Surface& surface, std::size_t points) {
   return {.surface = surface, .points = std::vector<std::uint32_t>(points, 0), .rms = 0};
 }
 
@@ -99,7 +99,7 @@ TEST(Regularise, SurfacesStayOnTheirPointsWhenTheyAreTurned) {
     return std::sqrt(squares / static_cast<double>(positions.size()));
   };
   const auto turned_cone = [&](const Points& known) {
-    const Surface result = regularise(std::vector{face, cone}, k_tolerance, 1, fixed, known).surfaces[1].surface;
+    Surface result = regularise(std::vector{face, cone}, k_tolerance, 1, fixed, known).surfaces[1].surface;
     EXPECT_LT(result.axis.cross(k_z).norm(), 1e-12);
     return result;
   };
