@@ -112,16 +112,6 @@ struct KnownSolid {
        .tree = intersect(a, b),
        .area = 2 * k_pi,
        .volume = 2 * k_pi * 0.25 * (3 - 0.5) / 3},
-      {.name = "eighth of a ball in the corner of a far larger box",
-       .primitives = {at("a", Sphere{1}, {0, 0, 0}), at("b", Box{{1e4, 1e4, 1e4}}, {5e3, 5e3, 5e3})},
-       .tree = intersect(a, b),
-       .area = 1.25 * k_pi,
-       .volume = k_pi / 6},
-      {.name = "cube cut by a far larger cylinder",
-       .primitives = {at("a", cube, {0, 0, 0}), at("b", Cylinder{1e4, 3e4}, {1e4, 0, 0})},
-       .tree = subtract(a, b),
-       .area = 16,
-       .volume = 4},
   };
 }
 

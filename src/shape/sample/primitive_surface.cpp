@@ -23,17 +23,10 @@ int mesh_resolution(const Primitive& primitive, const AlignedBox& bounds) {
   return static_cast<int>(std::clamp(k_cells_per_wave * waves, k_plain, k_most));
 }
 
-/// Whether hardly a point drawn from the whole surface would lie in the region. Half-spaces are cut in closed form.
-bool is_far_larger(const Primitive& primitive, const AlignedBox& region) {
-  constexpr double k_much = 8;  // one point in 64 is left of a face; with half of it, more solids get a mesh
-  const AlignedBox box = bounds(primitive);
-  return is_finite(box) && box.diagonal().stableNorm() > k_much * region.diagonal().stableNorm();
-}
-
 }  // namespace
 
 PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region, const RunContext& run) {
-  if (is_plain(primitive) && !is_far_larger(primitive, region)) return make_plain_surface(primitive, region);
+  if (is_plain(primitive)) return make_plain_surface(primitive, region);
   // Room around the region keeps the cap of a cut solid outside.
   constexpr double k_room = 0.05;
   const double room = k_room * region.diagonal().norm();

@@ -5,10 +5,9 @@
 
 namespace cloud2csg {
 
-/// Closed forms for plain shapes; a half-space gives the part of its plane around `region` (finite). Expressions,
-/// displaced solids and those far larger than the region get a fine mesh of what lies in it, sampled uniformly by area,
-/// which takes a tenth of a second each. For thousands that need not be quite uniform, see sample_surfaces() in cells.
-/// @throws Cancelled
+/// Closed forms for all plain shapes; a half-space gives the part of its plane around `region` (finite). Expressions
+/// and displaced solids get a fine mesh, sampled uniformly by area, which takes a tenth of a second each. For thousands
+/// that need not be quite uniform, see sample_surfaces() in cells. @throws Cancelled
 [[nodiscard]] PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region,
                                             const RunContext& run);
 
