@@ -157,12 +157,14 @@ TEST_P(EachSurface, KeepsItsDirectionOrAxisAndFindsTheRest) {
     ASSERT_TRUE(turned);
     EXPECT_LT((turned->surface.axis - start.axis).norm(), 1e-12);
     EXPECT_EQ(turned->uncertainty.axis, 0);
+    EXPECT_LE(turned->rms, 1.1 * alone->rms);
     EXPECT_LE(turned->uncertainty.position, 1.1 * alone->uncertainty.position);
     off_alone += (alone->surface.position - sample.truth.position).norm();
     off_held += (turned->surface.position - sample.truth.position).norm();
 
     const auto moved = fit_surface(start, sample.patch.points, {.held = HeldValue::axis});
     ASSERT_TRUE(moved);
+    EXPECT_LE(moved->uncertainty.radius, 1.1 * alone->uncertainty.radius);
     const Eigen::Vector3d offset = moved->surface.position - start.position;
     if (GetParam() == SurfaceType::plane || GetParam() == SurfaceType::sphere) continue;
     EXPECT_LT((moved->surface.axis - start.axis).norm(), 1e-12);

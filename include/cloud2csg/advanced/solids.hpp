@@ -147,8 +147,9 @@ struct FixedValues {
 /// (regular_places.hpp). Turned surfaces keep their position, which should be near their points. Where a surface's own
 /// points leave its direction uncertain (DetectedSurface::turn_deg), it turns by up to three standard deviations, at
 /// most three times the angle. With `positions`, those of the cloud, a surface that leaves its points when its
-/// direction or axis changes is fitted to them anew, and axes move by up to three standard deviations as well. `fixed`
-/// has one entry per surface, or none. O(surfaces^2 + points).
+/// direction or axis changes is fitted to them anew, and its axis may then move by three standard deviations, at most
+/// three tolerances. `fixed` has one entry per surface, or none. Surfaces with a fixed position or radius are not
+/// fitted. O(surfaces^2 + points).
 [[nodiscard]] RegularSurfaces regularise(std::span<const DetectedSurface> surfaces, double distance_tolerance,
                                          double angle_tolerance_deg = RegularityOptions{}.angle_tolerance_deg,
                                          std::span<const FixedValues> fixed = {}, const Points& positions = {});

@@ -26,7 +26,7 @@ struct Agreement {
 /// A surface is no chance if the logarithm of its likelihood ratio is at least this. e^14 is about a million.
 constexpr double k_evidence = 14;
 
-/// Of a surface, as many as the points must determine: 3 of a plane to 7 of a torus.
+/// How many values of a surface the points must determine: 3 for a plane to 7 for a torus.
 constexpr std::size_t count_parameters(SurfaceType type) {
   constexpr std::array<std::size_t, 5> k_counts{3, 4, 5, 6, 7};
   return k_counts[static_cast<std::size_t>(type)];

@@ -1,7 +1,6 @@
 #include "raw/detect/settle_surfaces.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>

@@ -23,7 +23,7 @@ class Chart {
   [[nodiscard]] std::size_t unknowns() const { return tilts_ + shifts_ + sizes_; }
   [[nodiscard]] std::size_t tilts() const { return tilts_; }
   [[nodiscard]] std::size_t shifts() const { return shifts_; }
-  /// How many of the first unknowns a fit holds. Planes and spheres have no axis that could be held.
+  /// How many of the first unknowns a fit holds: of a plane, `axis` holds the direction, and of a sphere nothing.
   [[nodiscard]] std::size_t held(HeldValue value) const {
     if (value == HeldValue::none) return 0;
     const bool has_axis = tilts_ > 0 && sizes_ > 0;

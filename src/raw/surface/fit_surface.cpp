@@ -181,23 +181,22 @@ SurfaceUncertainty Fitter::uncertainty(const Solution& solution, double rms) con
   }
   const auto held = static_cast<Eigen::Index>(chart.held(held_));
   const Eigen::Index free = count - held;
-  std::optional<Eigen::MatrixXd> covariance;
+  std::optional<Eigen::MatrixXd> covariance;  // of those that are not held
   if (inliers > free) covariance = inverse_of(information.bottomRightCorner(free, free));
   if (covariance) *covariance *= rms * rms * static_cast<double>(inliers) / static_cast<double>(inliers - free);
-  if (covariance) {
-    Eigen::MatrixXd of_all = Eigen::MatrixXd::Zero(count, count);
-    of_all.bottomRightCorner(free, free) = *covariance;
-    covariance = of_all;
-  }
 
   const auto tilts = static_cast<Eigen::Index>(chart.tilts());
   const auto shifts = static_cast<Eigen::Index>(chart.shifts());
   const auto sizes = tilts + shifts;
-  const double first = worst_deviation(covariance, sizes, std::min<Eigen::Index>(count - sizes, 1));
-  const double second = worst_deviation(covariance, sizes + 1, count - sizes == 2 ? 1 : 0);
+  const auto worst = [&](Eigen::Index begin, Eigen::Index end) {
+    return worst_deviation(covariance, std::max<Eigen::Index>(begin - held, 0),
+                           std::max<Eigen::Index>(end - std::max(begin, held), 0));
+  };
+  const double first = worst(sizes, std::min(count, sizes + 1));
+  const double second = worst(sizes + 1, count);
   const bool is_cone = solution.surface.type == SurfaceType::cone;
-  return {.position = worst_deviation(covariance, tilts, shifts),
-          .axis = worst_deviation(covariance, 0, tilts),
+  return {.position = worst(tilts, sizes),
+          .axis = worst(0, tilts),
           .radius = is_cone ? first / std::cos(solution.surface.half_angle) : first,
           .half_angle = is_cone ? second : 0,
           .minor_radius = is_cone ? 0 : second};
