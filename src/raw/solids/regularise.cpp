@@ -39,8 +39,7 @@ double weight_of(const DetectedSurface& detected) {
 /// Whether the points are less likely on a surface than they were before it changed. Their distances are normally
 /// distributed.
 bool leaves(std::span<const Eigen::Vector3d> points, const Surface& before, const Surface& changed) {
-  constexpr double k_less =
-      1;  // logarithm of the ratio: a change within the uncertainty costs about 0.5 for each value
+  constexpr double k_less = 1;  // logarithm of the ratio: a change within the uncertainty costs 0.5 for each value
   const auto squares = [points](const Surface& surface) {
     const auto square = [&](const Eigen::Vector3d& point) { return std::pow(signed_distance(surface, point), 2); };
     return std::transform_reduce(points.begin(), points.end(), 0.0, std::plus{}, square);
