@@ -57,7 +57,7 @@ double iou(const Shape3d& truth, const Shape3d& result) {
 }
 
 TEST(Compare, EqualSolidsAreExactlyEqual) {
-  for (const std::vector<KnownSolid>& solids : {plain_solids(), combined_solids(), field_solids()}) {
+  for (const std::vector<KnownSolid>& solids : {plain_solids(), combined_solids(), cut_cubes(), field_solids()}) {
     for (const KnownSolid& solid : solids) {
       const Comparison same = compare(model_of(solid), model_of(solid), {.resolution = 48, .surface_samples = 500});
       EXPECT_EQ(same.intersection_over_union, 1.0) << solid.name;
@@ -69,7 +69,7 @@ TEST(Compare, EqualSolidsAreExactlyEqual) {
 }
 
 TEST(Compare, VolumesAreThoseOfClosedForms) {
-  for (const std::vector<KnownSolid>& solids : {plain_solids(), combined_solids(), field_solids()}) {
+  for (const std::vector<KnownSolid>& solids : {plain_solids(), combined_solids(), cut_cubes(), field_solids()}) {
     for (const KnownSolid& solid : solids) {
       EXPECT_NEAR(volume(model_of(solid)) / solid.volume, 1.0, 2e-4) << solid.name;
     }

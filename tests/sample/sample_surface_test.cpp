@@ -21,6 +21,7 @@ PointCloud sample(const KnownSolid& solid, const SampleOptions& options = {}) {
 std::vector<KnownSolid> all_solids() {
   std::vector<KnownSolid> solids = plain_solids();
   std::ranges::copy(combined_solids(), std::back_inserter(solids));
+  std::ranges::copy(cut_cubes(), std::back_inserter(solids));
   std::ranges::copy(field_solids(), std::back_inserter(solids));
   return solids;
 }
@@ -92,7 +93,9 @@ TEST(SampleSurface, PartsGetTheirShareOfTheArea) {
 }
 
 TEST(SampleSurface, DensityGivesThePointsOfTheArea) {
-  for (const KnownSolid& solid : combined_solids()) {
+  std::vector<KnownSolid> solids = combined_solids();
+  std::ranges::copy(cut_cubes(), std::back_inserter(solids));
+  for (const KnownSolid& solid : solids) {
     const PointCloud cloud = sample(solid, {.density = 1000.0});
     EXPECT_NEAR(static_cast<double>(cloud.size()), 1000.0 * solid.area, 0.01 * 1000.0 * solid.area) << solid.name;
   }

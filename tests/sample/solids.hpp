@@ -115,6 +115,38 @@ struct KnownSolid {
   };
 }
 
+/// A cube that a far larger solid cuts, by shape. A surface of radius 1e4 is practically flat.
+[[nodiscard]] inline std::vector<KnownSolid> cut_cubes() {
+  constexpr double k_pi = std::numbers::pi;
+  const auto less = [](Shape shape, const Eigen::Vector3d& position, double area, double volume) {
+    return KnownSolid{.name = "cube less a far larger " + std::string(type_name(shape)),
+                      .primitives = {at("a", Box{{2, 2, 2}}, {0, 0, 0}), at("b", std::move(shape), position)},
+                      .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1)),
+                      .area = area,
+                      .volume = volume};
+  };
+  const Profile disc{{{{{1e4, 0}, 1}, {{-1e4, 0}, 1}}}};
+  const Profile triangle{{{{{1e4, -1e4}}, {{3e4, -1e4}}, {{1e4, 1e4}}}}};
+  const double third = std::sqrt(1.0 / 3);
+  const double half = std::sqrt(0.5);
+  return {
+      less(Box{{1e4, 1e4, 1e4}}, {5e3, 5e3, 5e3}, 24, 7),
+      less(Box{{1e4, 1e4, 0.005}}, {0, 0, 0}, 2 * (8 + 8 * 0.9975), 8 - 4 * 0.005),
+      less(Cylinder{0.1, 1e4}, {0, 0, 0}, 24 + 2 * k_pi * (0.2 - 0.01), 8 - k_pi * 0.02),
+      less(Cylinder{1e4, 3e4}, {1e4, 0, 0}, 16, 4),
+      less(Cone{2e4, 0, 2e4}, {0, 0, -1e4 - 0.5}, 24 + 0.25 * k_pi * (std::sqrt(2.0) - 1), 8 - k_pi / 24),
+      less(Sphere{1e4}, {0, 0, 1e4}, 16, 4),
+      less(Torus{1e4, 0.5}, {1e4, 0, 0}, 24 + 1.5 * k_pi, 8 - 0.5 * k_pi),
+      less(Extrusion{disc, 2e4}, {1e4, 0, 1e4}, 22, 6),
+      less(Revolution{triangle}, {-1e4, 0, 0}, 16, 4),
+      less(Polytope{{{{0, 0, 1}, 0},
+                     {{half, 0, -half}, 1e4},
+                     {{-third, third, -third}, 1e4},
+                     {{-third, -third, -third}, 1e4}}},
+           {0, 0, 0}, 16, 4),
+  };
+}
+
 /// Solids of which only the field is known.
 [[nodiscard]] inline std::vector<KnownSolid> field_solids() {
   constexpr double k_pi = std::numbers::pi;

@@ -267,13 +267,16 @@ Eigen::Vector3d TriangleSampler::normal(std::size_t triangle) const {
   return doubled_area_vector(triangles_[triangle]).normalized();
 }
 
-PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region) {
-  PrimitiveSurface local = std::visit(LocalSurface(primitive.pose, region), primitive.shape);
-  const auto place = [pose = primitive.pose, draw = std::move(local.draw)](RandomStream& random) {
+PrimitiveSurface placed(PrimitiveSurface local, const Pose& pose) {
+  const auto place = [pose, draw = std::move(local.draw)](RandomStream& random) {
     const SurfacePoint point = draw(random);
     return SurfacePoint{.position = pose.to_world(point.position), .normal = pose.orientation * point.normal};
   };
   return {.area = local.area, .draw = place};
+}
+
+PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region) {
+  return placed(std::visit(LocalSurface(primitive.pose, region), primitive.shape), primitive.pose);
 }
 
 }  // namespace cloud2csg

@@ -65,6 +65,9 @@ struct PrimitiveSurface {
   double reach = 0.0;
 };
 
+/// The surface of a primitive whose own frame has this pose. `local` is in that frame; its reach must be 0.
+[[nodiscard]] PrimitiveSurface placed(PrimitiveSurface local, const Pose& pose);
+
 /// The surface of the shape without its displacement, in closed form. A half-space gives the part of its plane around
 /// `region` (finite). Expressions have no area.
 [[nodiscard]] PrimitiveSurface make_plain_surface(const Primitive& primitive, const AlignedBox& region);

@@ -8,6 +8,7 @@
 #include "cloud2csg/mesh.hpp"
 #include "core/geometry/boxes.hpp"
 #include "core/primitive/surface_points.hpp"
+#include "shape/sample/cut_surface.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -23,10 +24,20 @@ int mesh_resolution(const Primitive& primitive, const AlignedBox& bounds) {
   return static_cast<int>(std::clamp(k_cells_per_wave * waves, k_plain, k_most));
 }
 
+/// Whether hardly a point drawn from the whole surface would lie in the region.
+bool is_far_larger(const Primitive& primitive, const AlignedBox& region) {
+  constexpr double k_much = 8;  // one point in 64 of a face lies in the region; with half of it, one in 16
+  const AlignedBox box = bounds(primitive);
+  return is_finite(box) && box.diagonal().stableNorm() > k_much * region.diagonal().stableNorm();
+}
+
 }  // namespace
 
 PrimitiveSurface make_surface(const Primitive& primitive, const AlignedBox& region, const RunContext& run) {
-  if (is_plain(primitive)) return make_plain_surface(primitive, region);
+  if (is_plain(primitive)) {
+    return is_far_larger(primitive, region) ? make_cut_surface(primitive, region)
+                                            : make_plain_surface(primitive, region);
+  }
   // Room around the region keeps the cap of a cut solid outside.
   constexpr double k_room = 0.05;
   const double room = k_room * region.diagonal().norm();

@@ -1,0 +1,272 @@
+#include "shape/sample/cut_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/primitive/polytope.hpp"
+#include "core/primitive/profile.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::AlignedBox2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+/// The middle of a triangle or a line, or of an arc's sweep.
+Vector3d middle_of(const Triangle& triangle) {
+  return (triangle[0] + triangle[1] + triangle[2]) / 3;
+}
+
+Vector2d middle_of(const ProfileSegment& segment) {
+  return segment.at(0.5);
+}
+
+/// No point of the piece is farther from its middle.
+double reach_of(const Triangle& triangle) {
+  const Vector3d middle = middle_of(triangle);
+  double reach = 0;
+  for (const Vector3d& corner : triangle) reach = std::max(reach, (corner - middle).stableNorm());
+  return reach;
+}
+
+double reach_of(const ProfileSegment& segment) {
+  return 0.5 * segment.length();
+}
+
+/// Cuts the longest edge.
+std::array<Triangle, 2> halves_of(const Triangle& triangle) {
+  std::size_t longest = 0;
+  double most = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double length = (triangle[(i + 1) % 3] - triangle[i]).stableNorm();
+    if (length > most) most = length, longest = i;
+  }
+  const auto& [a, b, c] = std::tie(triangle[longest], triangle[(longest + 1) % 3], triangle[(longest + 2) % 3]);
+  const Vector3d middle = 0.5 * a + 0.5 * b;
+  return {Triangle{a, middle, c}, Triangle{middle, b, c}};
+}
+
+std::array<ProfileSegment, 2> halves_of(const ProfileSegment& segment) {
+  const Vector2d middle = middle_of(segment);
+  const double bulge = std::tan(std::atan(segment.bulge) / 2);
+  return {segment_between(segment.start, bulge, middle), segment_between(middle, bulge, segment.end)};
+}
+
+/// The pieces' parts that come within the radius of the centre, and little more. A surface far larger than the solid
+/// yields hardly a point of the solid otherwise. O(log(size / radius)) parts a piece.
+template <class Piece, class Vector>
+std::vector<Piece> near(std::vector<Piece> pieces, const Vector& centre, double radius) {
+  constexpr double k_small = 0.125;  // more leaves more outside, less makes more parts
+  std::vector<Piece> found;
+  while (!pieces.empty()) {
+    const Piece piece = pieces.back();
+    pieces.pop_back();
+    const double distance = (middle_of(piece) - centre).stableNorm();
+    const double reach = reach_of(piece);
+    if (distance > radius + reach) continue;
+    if (distance + reach <= radius || reach <= k_small * radius) {
+      found.push_back(piece);
+    } else {
+      for (const Piece& half : halves_of(piece)) pieces.push_back(half);
+    }
+  }
+  return found;
+}
+
+/// Area to the left of closed paths within the box: Green's theorem for paths that are moved into the box, which leaves
+/// the winding about every place in it.
+double area_within(std::vector<ProfileSegment> segments, const AlignedBox2d& box) {
+  constexpr double k_small = 0.125;  // of the box's diagonal; a longer piece could cut a corner of the box
+  constexpr int k_steps = 256;  // halved, the error of an arc is four times as large; with this, 1e-4 of its circle
+  const auto moved = [&box](const Vector2d& v) -> Vector2d { return v.cwiseMax(box.min()).cwiseMin(box.max()); };
+  double area = 0;
+  while (!segments.empty()) {
+    const ProfileSegment segment = segments.back();
+    segments.pop_back();
+    const AlignedBox2d extent = bounds_of(std::span(&segment, 1));
+    const bool is_aside =
+        (extent.min().array() >= box.max().array()).any() || (extent.max().array() <= box.min().array()).any();
+    if (!is_aside && segment.length() > k_small * box.diagonal().norm()) {
+      for (const ProfileSegment& half : halves_of(segment)) segments.push_back(half);
+      continue;
+    }
+    Vector2d last = moved(segment.start);
+    for (int i = 1; i <= k_steps; ++i) {
+      const Vector2d next = moved(i == k_steps ? segment.end : segment.at(static_cast<double>(i) / k_steps));
+      area -= (next.x() - last.x()) * 0.5 * (last.y() + next.y());
+      last = next;
+    }
+  }
+  // No place is found in an area of rounding errors.
+  constexpr double k_least_share = 1e-9;
+  return area > k_least_share * box.volume() ? area : 0;
+}
+
+/// Makes surfaces in the primitive's own frame. The caller places them in the world.
+class CutSurface {
+ public:
+  CutSurface(const Pose& pose, const AlignedBox& region)
+      // The slack keeps what touches the ball.
+      : centre_(pose.to_local(region.center())), radius_(0.5 * (1 + 1e-9) * region.diagonal().stableNorm()) {}
+
+  PrimitiveSurface operator()(const Box& box) const {
+    std::vector<Triangle> triangles;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-0.5, 0.5}) {
+        const auto corner = [&](double u, double v) -> Vector3d {
+          Vector3d shares;
+          shares[axis] = side;
+          shares[(axis + 1) % 3] = side < 0 ? v : u;
+          shares[(axis + 2) % 3] = side < 0 ? u : v;
+          return box.size.cwiseProduct(shares);
+        };
+        triangles.push_back({corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5)});
+        triangles.push_back({corner(-0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)});
+      }
+    }
+    return of_triangles(std::move(triangles));
+  }
+
+  PrimitiveSurface operator()(const Sphere& sphere) const {
+    return turned({segment_between({0, -sphere.radius}, 1, {0, sphere.radius})});
+  }
+
+  PrimitiveSurface operator()(const Cylinder& cylinder) const {
+    return (*this)(Cone{.radius_bottom = cylinder.radius, .radius_top = cylinder.radius, .height = cylinder.height});
+  }
+
+  PrimitiveSurface operator()(const Cone& cone) const {
+    const double end = 0.5 * cone.height;
+    return turned({segment_between({0, -end}, 0, {cone.radius_bottom, -end}),
+                   segment_between({cone.radius_bottom, -end}, 0, {cone.radius_top, end}),
+                   segment_between({cone.radius_top, end}, 0, {0, end})});
+  }
+
+  PrimitiveSurface operator()(const Torus& torus) const {
+    const Vector2d below(torus.major_radius, -torus.minor_radius);
+    const Vector2d above(torus.major_radius, torus.minor_radius);
+    return turned({segment_between(below, 1, above), segment_between(above, 1, below)});
+  }
+
+  PrimitiveSurface operator()(const Revolution& revolution) const { return turned(segments_of(revolution.profile)); }
+
+  /// The faces as fans.
+  PrimitiveSurface operator()(const Polytope& polytope) const {
+    const auto [corners, faces] = faces_of(polytope);
+    std::vector<Triangle> triangles;
+    for (const std::vector<std::size_t>& face : faces) {
+      for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+        triangles.push_back({corners[face[0]], corners[face[i]], corners[face[i + 1]]});
+      }
+    }
+    return of_triangles(std::move(triangles));
+  }
+
+  PrimitiveSurface operator()(const Extrusion& extrusion) const {
+    const std::vector<ProfileSegment> segments = segments_of(extrusion.profile);
+    const Vector2d middle = centre_.head<2>();
+    const AlignedBox2d whole = bounds_of(extrusion.profile);
+    const AlignedBox2d box =
+        whole.intersection(AlignedBox2d(middle - Vector2d::Constant(radius_), middle + Vector2d::Constant(radius_)));
+    const double end = 0.5 * extrusion.height;
+    const double lower = std::max(-end, centre_.z() - radius_);
+    const double upper = std::min(end, centre_.z() + radius_);
+    const double cap_area = box.isEmpty()         ? 0
+                            : box.contains(whole) ? area_of(extrusion.profile)
+                                                  : area_within(segments, box);
+    const std::vector<ProfileSegment> sides = near(segments, middle, radius_);
+    std::vector<double> areas;
+    for (const double z : {-end, end}) areas.push_back(std::abs(z - centre_.z()) <= radius_ ? cap_area : 0);
+    for (const ProfileSegment& side : sides) areas.push_back(side.length() * std::max(upper - lower, 0.0));
+    const WeightedChoice choice(areas);
+    const auto draw = [=](RandomStream& random) {
+      const std::size_t chosen = choice.draw(random);
+      if (chosen < 2) {
+        const double sign = chosen == 0 ? -1 : 1;
+        Vector2d place;
+        do {
+          for (int axis = 0; axis < 2; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
+        } while (!is_inside(segments, place));
+        return SurfacePoint{.position = {place.x(), place.y(), sign * end}, .normal = sign * Vector3d::UnitZ()};
+      }
+      const ProfileSegment& side = sides[chosen - 2];
+      const double share = random.uniform();
+      const Vector2d place = side.at(share);
+      const Vector2d normal = side.normal(share);
+      return SurfacePoint{.position = {place.x(), place.y(), random.uniform(lower, upper)},
+                          .normal = {normal.x(), normal.y(), 0}};
+    };
+    return {.area = choice.total(), .draw = draw};
+  }
+
+  /// Both are unbounded.
+  PrimitiveSurface operator()(const HalfSpace& /*half_space*/) const { return {}; }
+  PrimitiveSurface operator()(const Expression& /*expression*/) const { return {}; }
+
+ private:
+  /// What a profile's segments sweep when they turn about z.
+  [[nodiscard]] PrimitiveSurface turned(std::vector<ProfileSegment> segments) const {
+    const double off = std::hypot(centre_.x(), centre_.y());
+    const double middle = std::atan2(centre_.y(), centre_.x());
+    const double half = off > radius_ ? std::asin(radius_ / off) : pi;
+    // Turned into one half-plane, the ball becomes a disc.
+    const std::vector<ProfileSegment> parts = near(std::move(segments), Vector2d(off, centre_.z()), radius_);
+    // Draws from a ring as wide as the part's farthest point, then keeps the point in proportion to its own ring.
+    std::vector<double> most_radius;
+    std::vector<double> most_area;
+    double area = 0;
+    for (const ProfileSegment& part : parts) {
+      most_radius.push_back(extent_along(part, Vector2d::UnitX()).second);
+      most_area.push_back(2 * half * part.length() * most_radius.back());
+      area += 2 * half * part.first_moment();
+    }
+    const WeightedChoice choice(most_area);
+    const auto draw = [=](RandomStream& random) {
+      while (true) {
+        const std::size_t i = choice.draw(random);
+        const double share = random.uniform();
+        const Vector2d place = parts[i].at(share);
+        if (!random.chance(place.x() / most_radius[i])) continue;
+        const Vector2d normal = parts[i].normal(share);
+        const double angle = middle + random.uniform(-half, half);
+        const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
+        return SurfacePoint{.position = place.x() * outward + place.y() * Vector3d::UnitZ(),
+                            .normal = normal.x() * outward + normal.y() * Vector3d::UnitZ()};
+      }
+    };
+    return {.area = area, .draw = draw};
+  }
+
+  [[nodiscard]] PrimitiveSurface of_triangles(std::vector<Triangle> triangles) const {
+    TriangleSampler sampler(near(std::move(triangles), centre_, radius_));
+    const double area = sampler.area();
+    const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
+      const TriangleSampler::Draw drawn = sampler.draw(random);
+      return SurfacePoint{.position = drawn.position, .normal = sampler.normal(drawn.triangle)};
+    };
+    return {.area = area, .draw = draw};
+  }
+
+  Vector3d centre_;  ///< of a ball around the region
+  double radius_;
+};
+
+}  // namespace
+
+PrimitiveSurface make_cut_surface(const Primitive& primitive, const AlignedBox& region) {
+  if (!(region.diagonal().stableNorm() > 0)) return {};
+  PrimitiveSurface local = std::visit(CutSurface(primitive.pose, region), primitive.shape);
+  return placed(std::move(local), primitive.pose);
+}
+
+}  // namespace cloud2csg
