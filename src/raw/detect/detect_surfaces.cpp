@@ -242,16 +242,23 @@ std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownS
 }
 
 /// Finds surfaces and settles them. Where surfaces did not last, more points are free than were searched in vain: then
-/// it does so again among the free ones.
+/// it does so again among the free ones. New surfaces may take points from a good one until it does not last. So a
+/// round is undone if it leaves more points free than the one before, at least as many as make a surface.
 std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const NeighbourTable& neighbours, LargestSurfaces largest,
                                           std::uint64_t seed, const RunContext& run, const StageShare& share) {
   const SearchLimits limits = largest.limits;
   std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, neighbours, std::move(largest), seed, run, share);
+  std::vector<GrownSurface> before;
+  std::size_t free_before = 0;
   for (int round = 1;; ++round) {
     const std::size_t searched = free_points(cloud, surfaces).list().size();
     surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
     FreePoints points = free_points(cloud, surfaces);
-    if (round == k_rounds || points.list().size() < searched + limits.least_points) return surfaces;
+    const std::size_t free = points.list().size();
+    if (round > 1 && free >= free_before + limits.least_points) return before;
+    if (round == k_rounds || free < searched + limits.least_points) return surfaces;
+    before = surfaces;
+    free_before = free;
     const std::vector<bool> is_off = are_off_all(points, surfaces);
     const auto is_evidence = [&](std::uint32_t i) { return is_off[i]; };
     std::vector<GrownSurface> more = find_all(points, limits, seed, is_evidence, run, {});
