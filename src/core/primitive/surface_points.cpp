@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/primitive/polytope.hpp"
-#include "core/primitive/profile.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -127,15 +126,7 @@ class LocalSurface {
     return {.area = pi * square, .draw = draw};
   }
 
-  PrimitiveSurface operator()(const Polytope& polytope) const {
-    TriangleSampler sampler(triangles_of(polytope));
-    const double area = sampler.area();
-    const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
-      const TriangleSampler::Draw drawn = sampler.draw(random);
-      return SurfacePoint{.position = drawn.position, .normal = sampler.normal(drawn.triangle)};
-    };
-    return {.area = area, .draw = draw};
-  }
+  PrimitiveSurface operator()(const Polytope& polytope) const { return surface_of(triangles_of(polytope)); }
 
   PrimitiveSurface operator()(const Extrusion& extrusion) const {
     const std::vector<ProfileSegment> segments = segments_of(extrusion.profile);
@@ -167,31 +158,7 @@ class LocalSurface {
   }
 
   PrimitiveSurface operator()(const Revolution& revolution) const {
-    const std::vector<ProfileSegment> segments = segments_of(revolution.profile);
-    // Draws from a ring as wide as the segment's farthest point, then keeps the point in proportion to its own ring.
-    std::vector<double> most_radius;
-    std::vector<double> most_area;
-    double area = 0;
-    for (const ProfileSegment& s : segments) {
-      most_radius.push_back(extent_along(s, Eigen::Vector2d::UnitX()).second);
-      most_area.push_back(2 * pi * s.length() * most_radius.back());
-      area += 2 * pi * s.first_moment();
-    }
-    const WeightedChoice choice(most_area);
-    const auto draw = [=](RandomStream& random) {
-      while (true) {
-        const std::size_t i = choice.draw(random);
-        const double share = random.uniform();
-        const Eigen::Vector2d place = segments[i].at(share);
-        if (!random.chance(place.x() / most_radius[i])) continue;
-        const Eigen::Vector2d normal = segments[i].normal(share);
-        const double angle = random_angle(random);
-        const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
-        return SurfacePoint{.position = place.x() * outward + place.y() * Vector3d::UnitZ(),
-                            .normal = normal.x() * outward + normal.y() * Vector3d::UnitZ()};
-      }
-    };
-    return {.area = area, .draw = draw};
+    return turned_surface(segments_of(revolution.profile), 0, 2 * pi);
   }
 
   PrimitiveSurface operator()(const Expression& /*expression*/) const { return {}; }
@@ -211,18 +178,6 @@ class LocalSurface {
     const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
     return {.position = ring * outward + (share - 0.5) * cone.height * Vector3d::UnitZ(),
             .normal = (cone.height * outward + (bottom - top) * Vector3d::UnitZ()) / slant};
-  }
-
-  /// The faces as fans.
-  static std::vector<Triangle> triangles_of(const Polytope& polytope) {
-    const auto [corners, faces] = faces_of(polytope);
-    std::vector<Triangle> triangles;
-    for (const std::vector<std::size_t>& face : faces) {
-      for (std::size_t i = 1; i + 1 < face.size(); ++i) {
-        triangles.push_back({corners[face[0]], corners[face[i]], corners[face[i + 1]]});
-      }
-    }
-    return triangles;
   }
 
   const Pose& pose_;
@@ -265,6 +220,54 @@ TriangleSampler::Draw TriangleSampler::draw(RandomStream& random) const {
 
 Eigen::Vector3d TriangleSampler::normal(std::size_t triangle) const {
   return doubled_area_vector(triangles_[triangle]).normalized();
+}
+
+std::vector<Triangle> triangles_of(const Polytope& polytope) {
+  const auto [corners, faces] = faces_of(polytope);
+  std::vector<Triangle> triangles;
+  for (const std::vector<std::size_t>& face : faces) {
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      triangles.push_back({corners[face[0]], corners[face[i]], corners[face[i + 1]]});
+    }
+  }
+  return triangles;
+}
+
+PrimitiveSurface surface_of(std::vector<Triangle> triangles) {
+  TriangleSampler sampler(std::move(triangles));
+  const double area = sampler.area();
+  const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
+    const TriangleSampler::Draw drawn = sampler.draw(random);
+    return SurfacePoint{.position = drawn.position, .normal = sampler.normal(drawn.triangle)};
+  };
+  return {.area = area, .draw = draw};
+}
+
+PrimitiveSurface turned_surface(std::vector<ProfileSegment> segments, double from, double to) {
+  // Draws from a ring as wide as the segment's farthest point, then keeps the point in proportion to its own ring.
+  std::vector<double> most_radius;
+  std::vector<double> most_area;
+  double area = 0;
+  for (const ProfileSegment& s : segments) {
+    most_radius.push_back(extent_along(s, Eigen::Vector2d::UnitX()).second);
+    most_area.push_back((to - from) * s.length() * most_radius.back());
+    area += (to - from) * s.first_moment();
+  }
+  const auto draw = [segments = std::move(segments), most_radius = std::move(most_radius),
+                     choice = WeightedChoice(most_area), from, to](RandomStream& random) {
+    while (true) {
+      const std::size_t i = choice.draw(random);
+      const double share = random.uniform();
+      const Eigen::Vector2d place = segments[i].at(share);
+      if (!random.chance(place.x() / most_radius[i])) continue;
+      const Eigen::Vector2d normal = segments[i].normal(share);
+      const double angle = random.uniform(from, to);
+      const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
+      return SurfacePoint{.position = place.x() * outward + place.y() * Vector3d::UnitZ(),
+                          .normal = normal.x() * outward + normal.y() * Vector3d::UnitZ()};
+    }
+  };
+  return {.area = area, .draw = draw};
 }
 
 PrimitiveSurface placed(PrimitiveSurface local, const Pose& pose) {

@@ -10,6 +10,7 @@
 #include "cloud2csg/geometry.hpp"
 #include "cloud2csg/primitive.hpp"
 #include "core/base/random.hpp"
+#include "core/primitive/profile.hpp"
 
 namespace cloud2csg {
 
@@ -64,6 +65,14 @@ struct PrimitiveSurface {
   /// Upper bound of the drawn points' distance from the surface. If not 0, move them by move_onto_surface().
   double reach = 0.0;
 };
+
+/// The faces as fans, counter-clockwise seen from outside.
+[[nodiscard]] std::vector<Triangle> triangles_of(const Polytope& polytope);
+
+[[nodiscard]] PrimitiveSurface surface_of(std::vector<Triangle> triangles);
+
+/// The surface that segments in the half-plane (r, z), r >= 0, sweep about z between two angles in radians.
+[[nodiscard]] PrimitiveSurface turned_surface(std::vector<ProfileSegment> segments, double from, double to);
 
 /// The surface of a primitive whose own frame has this pose. `local` is in that frame; its reach must be 0.
 [[nodiscard]] PrimitiveSurface placed(PrimitiveSurface local, const Pose& pose);

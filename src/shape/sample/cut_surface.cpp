@@ -11,7 +11,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/primitive/polytope.hpp"
 #include "core/primitive/profile.hpp"
 
 namespace cloud2csg {
@@ -160,17 +159,7 @@ class CutSurface {
 
   PrimitiveSurface operator()(const Revolution& revolution) const { return turned(segments_of(revolution.profile)); }
 
-  /// The faces as fans.
-  PrimitiveSurface operator()(const Polytope& polytope) const {
-    const auto [corners, faces] = faces_of(polytope);
-    std::vector<Triangle> triangles;
-    for (const std::vector<std::size_t>& face : faces) {
-      for (std::size_t i = 1; i + 1 < face.size(); ++i) {
-        triangles.push_back({corners[face[0]], corners[face[i]], corners[face[i + 1]]});
-      }
-    }
-    return of_triangles(std::move(triangles));
-  }
+  PrimitiveSurface operator()(const Polytope& polytope) const { return of_triangles(triangles_of(polytope)); }
 
   PrimitiveSurface operator()(const Extrusion& extrusion) const {
     const std::vector<ProfileSegment> segments = segments_of(extrusion.profile);
@@ -220,41 +209,11 @@ class CutSurface {
     const double middle = std::atan2(centre_.y(), centre_.x());
     const double half = off > radius_ ? std::asin(radius_ / off) : pi;
     // Turned into one half-plane, the ball becomes a disc.
-    const std::vector<ProfileSegment> parts = near(std::move(segments), Vector2d(off, centre_.z()), radius_);
-    // Draws from a ring as wide as the part's farthest point, then keeps the point in proportion to its own ring.
-    std::vector<double> most_radius;
-    std::vector<double> most_area;
-    double area = 0;
-    for (const ProfileSegment& part : parts) {
-      most_radius.push_back(extent_along(part, Vector2d::UnitX()).second);
-      most_area.push_back(2 * half * part.length() * most_radius.back());
-      area += 2 * half * part.first_moment();
-    }
-    const WeightedChoice choice(most_area);
-    const auto draw = [=](RandomStream& random) {
-      while (true) {
-        const std::size_t i = choice.draw(random);
-        const double share = random.uniform();
-        const Vector2d place = parts[i].at(share);
-        if (!random.chance(place.x() / most_radius[i])) continue;
-        const Vector2d normal = parts[i].normal(share);
-        const double angle = middle + random.uniform(-half, half);
-        const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
-        return SurfacePoint{.position = place.x() * outward + place.y() * Vector3d::UnitZ(),
-                            .normal = normal.x() * outward + normal.y() * Vector3d::UnitZ()};
-      }
-    };
-    return {.area = area, .draw = draw};
+    return turned_surface(near(std::move(segments), Vector2d(off, centre_.z()), radius_), middle - half, middle + half);
   }
 
   [[nodiscard]] PrimitiveSurface of_triangles(std::vector<Triangle> triangles) const {
-    TriangleSampler sampler(near(std::move(triangles), centre_, radius_));
-    const double area = sampler.area();
-    const auto draw = [sampler = std::move(sampler)](RandomStream& random) {
-      const TriangleSampler::Draw drawn = sampler.draw(random);
-      return SurfacePoint{.position = drawn.position, .normal = sampler.normal(drawn.triangle)};
-    };
-    return {.area = area, .draw = draw};
+    return surface_of(near(std::move(triangles), centre_, radius_));
   }
 
   Vector3d centre_;  ///< of a ball around the region
