@@ -243,7 +243,7 @@ std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownS
 
 /// Finds surfaces and settles them. Where surfaces did not last, more points are free than were searched in vain: then
 /// it does so again among the free ones. New surfaces may take points from a good one until it does not last. So a
-/// round is undone if it leaves more points free than the one before, at least as many as make a surface.
+/// round is undone if it leaves more points free than the one before did, by at least as many as make a surface.
 std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const NeighbourTable& neighbours, LargestSurfaces largest,
                                           std::uint64_t seed, const RunContext& run, const StageShare& share) {
   const SearchLimits limits = largest.limits;

@@ -61,8 +61,15 @@ std::array<ProfileSegment, 2> halves_of(const ProfileSegment& segment) {
   return {segment_between(segment.start, bulge, middle), segment_between(middle, bulge, segment.end)};
 }
 
-/// The pieces' parts that come within the radius of the centre, and little more. A surface far larger than the solid
-/// yields hardly a point of the solid otherwise. O(log(size / radius)) parts a piece.
+/// Whether halves of a piece at this place would differ. Far from the origin, doubles do not resolve smaller ones.
+template <class Vector>
+bool is_divisible(double length, const Vector& place) {
+  constexpr double k_digits = 1e-14;  // some 50 times the rounding
+  return length > k_digits * place.stableNorm();
+}
+
+/// The pieces' parts that come within the radius of the centre, and some beyond it. O(log(size / radius)) parts a
+/// piece.
 template <class Piece, class Vector>
 std::vector<Piece> near(std::vector<Piece> pieces, const Vector& centre, double radius) {
   constexpr double k_small = 0.125;  // more leaves more outside, less makes more parts
@@ -70,13 +77,14 @@ std::vector<Piece> near(std::vector<Piece> pieces, const Vector& centre, double 
   while (!pieces.empty()) {
     const Piece piece = pieces.back();
     pieces.pop_back();
-    const double distance = (middle_of(piece) - centre).stableNorm();
+    const Vector middle = middle_of(piece);
+    const double distance = (middle - centre).stableNorm();
     const double reach = reach_of(piece);
     if (distance > radius + reach) continue;
-    if (distance + reach <= radius || reach <= k_small * radius) {
-      found.push_back(piece);
-    } else {
+    if (distance + reach > radius && reach > k_small * radius && is_divisible(reach, middle)) {
       for (const Piece& half : halves_of(piece)) pieces.push_back(half);
+    } else {
+      found.push_back(piece);
     }
   }
   return found;
@@ -88,6 +96,7 @@ double area_within(std::vector<ProfileSegment> segments, const AlignedBox2d& box
   constexpr double k_small = 0.125;  // of the box's diagonal; a longer piece could cut a corner of the box
   constexpr int k_steps = 256;  // halved, the error of an arc is four times as large; with this, 1e-4 of its circle
   const auto moved = [&box](const Vector2d& v) -> Vector2d { return v.cwiseMax(box.min()).cwiseMin(box.max()); };
+  const double middle = box.center().y();  // about the origin, a far box would lose the digits of its area
   double area = 0;
   while (!segments.empty()) {
     const ProfileSegment segment = segments.back();
@@ -95,14 +104,15 @@ double area_within(std::vector<ProfileSegment> segments, const AlignedBox2d& box
     const AlignedBox2d extent = bounds_of(std::span(&segment, 1));
     const bool is_aside =
         (extent.min().array() >= box.max().array()).any() || (extent.max().array() <= box.min().array()).any();
-    if (!is_aside && segment.length() > k_small * box.diagonal().norm()) {
+    const double length = segment.length();
+    if (!is_aside && length > k_small * box.diagonal().norm() && is_divisible(length, segment.start)) {
       for (const ProfileSegment& half : halves_of(segment)) segments.push_back(half);
       continue;
     }
     Vector2d last = moved(segment.start);
     for (int i = 1; i <= k_steps; ++i) {
       const Vector2d next = moved(i == k_steps ? segment.end : segment.at(static_cast<double>(i) / k_steps));
-      area -= (next.x() - last.x()) * 0.5 * (last.y() + next.y());
+      area -= (next.x() - last.x()) * (0.5 * (last.y() + next.y()) - middle);
       last = next;
     }
   }

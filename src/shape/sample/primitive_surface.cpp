@@ -26,7 +26,7 @@ int mesh_resolution(const Primitive& primitive, const AlignedBox& bounds) {
 
 /// Whether hardly a point drawn from the whole surface would lie in the region.
 bool is_far_larger(const Primitive& primitive, const AlignedBox& region) {
-  constexpr double k_much = 8;  // one point in 64 of a face lies in the region; with half of it, one in 16
+  constexpr double k_much = 8;  // then one point in 64 of a face lies in the region; with 4, one in 16
   const AlignedBox box = bounds(primitive);
   return is_finite(box) && box.diagonal().stableNorm() > k_much * region.diagonal().stableNorm();
 }
