@@ -32,10 +32,10 @@ Surface bent() {
 }
 
 /// `height`: of the surface's place with coordinates -1/2 to 1/2, in standard deviations of the noise.
-Patch make_patch(const Surface& surface, const Height& height, std::uint64_t seed) {
+Patch make_patch(const Surface& surface, const Height& height, std::uint64_t seed, std::size_t points = k_points) {
   RandomStream random(seed);
   PointCloud cloud;
-  for (std::size_t k = 0; k < k_points; ++k) {
+  for (std::size_t k = 0; k < points; ++k) {
     const double x = random.uniform(-0.5, 0.5);
     const double y = random.uniform(-0.5, 0.5);
     const double rise = k_noise * (height(x, y) + random.normal());
@@ -59,11 +59,12 @@ std::vector<GrownSurface> split(const Patch& patch) {
   const SearchLimits limits{.agreement = {.distance = k_deviations * k_noise, .noise = k_noise, .cosine = 0.9},
                             .link = 0.1,
                             .least_points = 15};
-  return split_surfaces({patch.grown}, patch.cloud, limits, {.threads = 2});
+  return split_surfaces({patch.grown}, patch.cloud, 0, limits, {.threads = 2});
 }
 
 // Seeds are fixed, because noise can look like anything, though rarely.
 constexpr std::uint64_t k_seeds = 20;
+constexpr std::uint64_t k_few_seeds = 8;  // where each takes long
 
 TEST(SplitSurfaces, NoiseIsNoStep) {
   const Height none = [](double, double) { return 0.0; };
@@ -116,10 +117,32 @@ void expect_step(const Surface& surface, double rise, std::uint64_t seed) {
 }
 
 TEST(SplitSurfaces, StepsAreFoundWhereTheyAre) {
-  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= k_few_seeds; ++seed) {
     for (const double rise : {-5.0, -3.0, -2.0, 2.0, 3.0, 5.0}) {
       expect_step(flat(), rise, seed);
       expect_step(bent(), rise, seed);
+    }
+  }
+}
+
+/// The one surface is tilted between the halves.
+TEST(SplitSurfaces, HalvesOfAFaceAreFoundFromOneStandardDeviationOn) {
+  constexpr std::size_t k_many_points = 8000;
+  for (std::uint64_t seed = 1; seed <= k_few_seeds; ++seed) {
+    for (const double rise : {1.0, 2.0, 3.0}) {
+      Patch patch = make_patch(
+          flat(), [&](double x, double) { return x > 0 ? rise : 0; }, seed, k_many_points);
+      patch.grown.surface.position.z() = rise * k_noise / 2;
+      patch.grown.surface.axis = Eigen::Vector3d(-1.5 * rise * k_noise, 0, 1).normalized();
+      const std::vector<GrownSurface> parts = split(patch);
+      ASSERT_EQ(parts.size(), 2U) << rise << " standard deviations, seed " << seed;
+      for (const GrownSurface& part : parts) {
+        const auto right =
+            std::ranges::count_if(part.points, [&](std::uint32_t i) { return patch.cloud.points[i].position.x() > 0; });
+        const double share = static_cast<double>(right) / static_cast<double>(part.points.size());
+        EXPECT_GT(std::max(share, 1 - share), 0.9) << rise << " standard deviations, seed " << seed;
+        EXPECT_LT((part.surface.axis - Eigen::Vector3d::UnitZ()).norm(), rise * k_noise / 2);
+      }
     }
   }
 }

@@ -4,39 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
 
-#include "raw/detect/propose.hpp"
+#include "raw/detect/two_surfaces.hpp"
 #include "raw/prepare/constants.hpp"
-#include "raw/prepare/neighbours.hpp"
 
 namespace cloud2csg {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Mean of the successive distances whose mean is least likely by chance, of windows of all powers of two. 0 if none
-/// is off by 3.7 standard errors: this is a cheap first look, and most surfaces end here.
-double strongest_offset(const std::vector<double>& distances, double noise) {
-  const double most = 10 * noise;  // a single outlier is no step
-  std::vector<double> sums{0};
-  for (const double d : distances) sums.push_back(sums.back() + std::clamp(d, -most, most));
-  double best = k_evidence * noise * noise;
-  std::span<const double> strongest;
-  for (std::size_t width = 2 * k_nearest; width <= distances.size(); width *= 2) {
-    for (std::size_t first = 0; first + width <= distances.size(); first += width / 2) {
-      const double sum = sums[first + width] - sums[first];
-      if (sum * sum / static_cast<double>(width) <= best) continue;
-      best = sum * sum / static_cast<double>(width);
-      strongest = std::span(distances).subspan(first, width);
-    }
-  }
-  const double sum = std::accumulate(strongest.begin(), strongest.end(), 0.0);
-  return strongest.empty() ? 0 : sum / static_cast<double>(strongest.size());
-}
 
 /// The least cost of points whose distances are a quadratic function of their places, found by iterated trimming.
 double smooth_cost(std::span<const double> distances, std::span<const Vector3d> places, double noise) {
@@ -75,87 +53,6 @@ double smooth_cost(std::span<const double> distances, std::span<const Vector3d> 
   return least;
 }
 
-/// Points near one surface, on which a step is looked for.
-struct NearPoints {
-  const WorkCloud& cloud;
-  std::vector<std::uint32_t> points;  ///< ascending
-  std::vector<double> distances;      ///< from the one surface
-  NeighbourTable neighbours;          ///< among these points
-  double noise;
-  double offset;  ///< about the height of the step
-  AgreementLimits fit_limits;
-
-  /// Two surfaces are found by these, and tested by the others.
-  static bool is_for_fit(std::size_t k) { return k % 2 == 0; }
-};
-
-/// Two surfaces, and the one on which each point is.
-struct TwoSurfaces {
-  std::array<Surface, 2> surfaces;
-  std::array<std::vector<double>, 2> distances;  ///< of all points from each
-  std::vector<std::uint8_t> side;                ///< of each point: 0 or 1
-
-  [[nodiscard]] double distance(std::size_t k) const { return distances[side[k]][k]; }
-};
-
-double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k) {
-  const std::span<const std::uint32_t> around = near.neighbours.of(k);
-  const auto same = std::ranges::count_if(around, [&](std::uint32_t j) { return two.side[j] == two.side[k]; });
-  return static_cast<double>(same) / static_cast<double>(around.size());
-}
-
-/// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.
-void choose_sides(TwoSurfaces& two, const NearPoints& near, double prior) {
-  for (std::size_t k = 0; k < near.points.size(); ++k) {
-    double for_second = -prior;
-    for (const std::uint32_t j : near.neighbours.of(k)) {
-      if (!NearPoints::is_for_fit(j)) continue;
-      for_second += cost_of(two.distances[0][j], near.noise) - cost_of(two.distances[1][j], near.noise);
-    }
-    two.side[k] = for_second > 0 ? 1 : 0;
-  }
-}
-
-/// Points of each side that are clear of the other, of those with `is_used(k)`.
-template <typename IsUsed>
-std::array<std::vector<std::uint32_t>, 2> clear_points(const TwoSurfaces& two, const NearPoints& near,
-                                                       const IsUsed& is_used) {
-  std::array<std::vector<std::uint32_t>, 2> clear;
-  for (std::size_t k = 0; k < near.points.size(); ++k) {
-    if (is_used(k) && share_on_own_side(two, near, k) >= k_clear_share) clear[two.side[k]].push_back(near.points[k]);
-  }
-  return clear;
-}
-
-/// Fits each surface to its points. @returns whether both fits exist
-bool refit(TwoSurfaces& two, const std::array<std::vector<std::uint32_t>, 2>& points, const NearPoints& near) {
-  for (std::size_t side = 0; side < 2; ++side) {
-    const auto fitted = fit_plausible(two.surfaces[side], near.cloud, points[side], near.fit_limits);
-    if (!fitted) return false;
-    two.surfaces[side] = *fitted;
-    two.distances[side] = distances_of(*fitted, near.cloud, near.points);
-  }
-  return true;
-}
-
-/// Alternates between choosing sides and fitting (classification EM: Celeux and Govaert 1992).
-std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near) {
-  TwoSurfaces two{.surfaces = {one, one},
-                  .distances = {near.distances, near.distances},
-                  .side = std::vector<std::uint8_t>(near.points.size(), 0)};
-  for (double& d : two.distances[1]) d -= near.offset;
-  double prior = 0;
-  std::vector<std::uint8_t> before;
-  for (int round = 0; round < 2 * k_rounds && two.side != before; ++round) {
-    before = two.side;
-    choose_sides(two, near, prior);
-    const auto clear = clear_points(two, near, NearPoints::is_for_fit);
-    if (clear[0].empty() || clear[1].empty() || !refit(two, clear, near)) return std::nullopt;
-    prior = std::log(static_cast<double>(clear[0].size()) / static_cast<double>(clear[1].size()));
-  }
-  return two;
-}
-
 /// Logarithm of the ratio of likelihoods of two surfaces and one.
 double gain_of(const TwoSurfaces& two, const Surface& one, const NearPoints& near) {
   std::vector<double> distances;
@@ -171,20 +68,15 @@ double gain_of(const TwoSurfaces& two, const Surface& one, const NearPoints& nea
   return smooth_cost(distances, places, near.noise) - cost;
 }
 
-std::uint8_t smaller_side(const TwoSurfaces& two) {
-  return 2 * std::ranges::count(two.side, std::uint8_t{1}) <= std::ssize(two.side) ? 1 : 0;
-}
-
 /// Whether the surface of the smaller side explains the points away from the step as well as averages do, which adapt
 /// to form errors. The average of 8 points with noise is an eighth of the variance worse than the true surface. False
 /// if these points are fewer than a surface needs.
 bool matches_averages(const TwoSurfaces& two, const NearPoints& near, std::size_t least_points) {
-  const std::uint8_t smaller = smaller_side(two);
   double excess = 0;
   double squares = 0;
   std::size_t count = 0;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
-    if (two.side[k] != smaller || share_on_own_side(two, near, k) < 1) continue;
+    if (two.side[k] == 0 || share_on_own_side(two, near, k) < 1) continue;
     double sum = 0;
     for (const std::uint32_t j : near.neighbours.of(k).first(k_nearest)) sum += near.distances[j];
     const double more = cost_of(two.distance(k), near.noise) - cost_of(near.distances[k] - sum / k_nearest, near.noise);
@@ -197,12 +89,11 @@ bool matches_averages(const TwoSurfaces& two, const NearPoints& near, std::size_
 
 /// Whether the surfaces are apart where their points meet, too. Else they cross there: a slight bend is no step.
 bool are_apart(const TwoSurfaces& two, const NearPoints& near) {
-  const std::uint8_t smaller = smaller_side(two);
   std::array<double, 2> gaps{};  // of points near the other side, and of clear ones
   std::array<std::size_t, 2> counts{};
   for (std::size_t k = 0; k < near.points.size(); ++k) {
     const std::size_t is_clear = share_on_own_side(two, near, k) >= k_clear_share ? 1 : 0;
-    if (is_clear == 1 && two.side[k] != smaller) continue;
+    if (is_clear == 1 && two.side[k] == 0) continue;
     gaps[is_clear] += std::abs(two.distances[0][k] - two.distances[1][k]);
     ++counts[is_clear];
   }
@@ -234,8 +125,9 @@ std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& n
 std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, const NearPoints& near,
                                                  const SearchLimits& limits) {
   std::optional<TwoSurfaces> two = fit_two(grown.surface, near);
-  if (!two || !(gain_of(*two, grown.surface, near) >= k_evidence)) return std::nullopt;
-  if (!refit(*two, clear_points(*two, near, [](std::size_t) { return true; }), near)) return std::nullopt;
+  if (!two || !(gain_of(*two, grown.surface, near) >= near.evidence)) return std::nullopt;
+  two = fitted_to_all(std::move(*two), near);
+  if (!two) return std::nullopt;
   if (!matches_averages(*two, near, limits.least_points) || !are_apart(*two, near)) return std::nullopt;
   std::array<GrownSurface, 2> parts = parts_of(*two, near, limits.agreement);
   if (std::ranges::any_of(parts, [&](const auto& part) { return part.points.size() < limits.least_points; })) {
@@ -244,33 +136,9 @@ std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, cons
   return parts;
 }
 
-/// Absent if no run of neighbouring points is off the surface.
-std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
-                                      const std::vector<bool>& is_free, const SearchLimits& limits,
-                                      const RunContext& run) {
-  AgreementLimits wide = limits.agreement;
-  wide.distance *= 3;  // a step within could hide in the limits
-  std::vector<std::uint32_t> points = points_near(grown, cloud, wide, [&](std::uint32_t i) { return is_free[i]; });
-  if (points.size() < 2 * limits.least_points || points.size() <= k_around) return std::nullopt;
-  const double least = limits.agreement.noise;
-  const double noise =
-      std::max(least, noise_within_patches(distances_of(grown.surface, cloud, grown.points)).value_or(least));
-  std::vector<double> distances = distances_of(grown.surface, cloud, points);
-  const double offset = strongest_offset(distances, noise);
-  if (offset == 0) return std::nullopt;
-  const Points positions = cloud.positions_of(points);
-  return NearPoints{.cloud = cloud,
-                    .points = std::move(points),
-                    .distances = std::move(distances),
-                    .neighbours = find_neighbours(positions, NeighbourTree(positions), k_around, run),
-                    .noise = noise,
-                    .offset = offset,
-                    .fit_limits = limits.agreement.within(std::min(k_deviations * noise, limits.agreement.distance))};
-}
-
 }  // namespace
 
-std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
+std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud, double smoothing,
                                          const SearchLimits& limits, const RunContext& run) {
   std::vector<bool> is_free(cloud.size(), true);
   const auto set_free = [&](const GrownSurface& surface, bool free) {
@@ -279,7 +147,7 @@ std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, con
   for (const GrownSurface& surface : surfaces) set_free(surface, false);
   for (std::size_t s = 0; s < surfaces.size();) {
     run.throw_if_stopped();
-    const std::optional<NearPoints> near = near_points(surfaces[s], cloud, is_free, limits, run);
+    const std::optional<NearPoints> near = near_points(surfaces[s], cloud, is_free, smoothing, limits, run);
     auto parts = near ? split(surfaces[s], *near, limits) : std::nullopt;
     if (!parts) {
       ++s;

@@ -1,0 +1,253 @@
+#include "raw/detect/two_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "core/base/robust_deviation.hpp"
+#include "raw/detect/propose.hpp"
+#include "raw/prepare/constants.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Sides = std::array<std::vector<std::uint32_t>, 2>;  // points of each surface
+
+/// Means of the successive distances that are least likely by chance on either side, of windows of all powers of two: 0
+/// where none is off by 3.7 standard errors.
+struct Offsets {
+  double below = 0, above = 0;
+  double strongest = 0;  ///< one of the two
+};
+
+Offsets offsets_of(const std::vector<double>& distances, double noise) {
+  const double most = 10 * noise;  // a single outlier is no step
+  std::vector<double> sums{0};
+  for (const double d : distances) sums.push_back(sums.back() + std::clamp(d, -most, most));
+  std::array<double, 2> best{k_evidence * noise * noise, k_evidence * noise * noise};
+  Offsets offsets;
+  for (std::size_t width = 2 * k_nearest; width <= distances.size(); width *= 2) {
+    const auto count = static_cast<double>(width);
+    for (std::size_t first = 0; first + width <= distances.size(); first += width / 2) {
+      const double mean = (sums[first + width] - sums[first]) / count;
+      double& best_there = best[mean > 0 ? 1 : 0];
+      if (count * mean * mean <= best_there) continue;
+      best_there = count * mean * mean;
+      (mean > 0 ? offsets.above : offsets.below) = mean;
+    }
+  }
+  offsets.strongest = best[1] > best[0] ? offsets.above : offsets.below;
+  return offsets;
+}
+
+/// Neighbours that tell the side of a point: k_around for a step of two standard deviations. Their evidence grows with
+/// the square of the height, so a lower step needs more, up to a limit that costs as much time as the fits.
+std::size_t neighbours_for(double deviations) {
+  constexpr double k_most = 8;
+  return static_cast<std::size_t>(k_around * std::clamp(4 / (deviations * deviations), 1.0, k_most));
+}
+
+/// How many points share an error: those within the length over which errors correlate, at least 1.
+double points_of_one_error(const NeighbourTable& neighbours, double smoothing) {
+  std::vector<double> areas;  // squared distance for each neighbour
+  for (std::size_t k = 0; k * neighbours.width < neighbours.indices.size(); ++k) {
+    const double farthest = neighbours.distances_of(k).back();
+    areas.push_back(farthest * farthest / static_cast<double>(neighbours.width));
+  }
+  return std::max(1.0, smoothing * smoothing / median_of(areas));
+}
+
+/// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.
+void choose_sides(TwoSurfaces& two, const NearPoints& near, double prior) {
+  for (std::size_t k = 0; k < near.points.size(); ++k) {
+    double for_second = -prior;
+    for (const std::uint32_t j : near.neighbours.nearest(k, two.around)) {
+      if (!NearPoints::is_for_fit(j)) continue;
+      for_second += cost_of(two.distances[0][j], near.noise) - cost_of(two.distances[1][j], near.noise);
+    }
+    two.side[k] = for_second > 0 ? 1 : 0;
+  }
+}
+
+/// Points of each side that are clear of the other, of those with `is_used(k)`.
+template <typename IsUsed>
+Sides clear_points(const TwoSurfaces& two, const NearPoints& near, const IsUsed& is_used) {
+  Sides clear;
+  for (std::size_t k = 0; k < near.points.size(); ++k) {
+    if (is_used(k) && share_on_own_side(two, near, k) >= k_clear_share) clear[two.side[k]].push_back(near.points[k]);
+  }
+  return clear;
+}
+
+/// The one surface, and the same at another height, where all points are on the first side.
+TwoSurfaces with_offset(const Surface& one, double offset, const NearPoints& near) {
+  TwoSurfaces two{.surfaces = {one, one},
+                  .distances = {},
+                  .side = std::vector<std::uint8_t>(near.points.size(), 0),
+                  .around = neighbours_for(offset / near.noise)};
+  two.distances.fill(distances_of(one, near.cloud, near.points));
+  for (double& d : two.distances[1]) d -= offset;
+  return two;
+}
+
+/// The two, each fitted to its points.
+std::optional<TwoSurfaces> fitted_to(const Sides& points, TwoSurfaces two, const NearPoints& near) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (points[side].empty()) return std::nullopt;
+    const auto fitted = fit_plausible(two.surfaces[side], near.cloud, points[side], near.fit_limits);
+    if (!fitted) return std::nullopt;
+    two.surfaces[side] = *fitted;
+    two.distances[side] = distances_of(*fitted, near.cloud, near.points);
+  }
+  std::vector<double> heights;
+  for (std::size_t k = 0; k < near.points.size(); ++k) {
+    heights.push_back(std::abs(two.distances[0][k] - two.distances[1][k]));
+  }
+  two.around = neighbours_for(median_of(heights) / near.noise);
+  return two;
+}
+
+/// Successive points whose mean shows a low step: one of a standard deviation is four standard errors high. With half
+/// as many, fewer of these steps are found; with double, fewer small parts.
+constexpr std::size_t k_block = 2 * k_around;
+
+/// The points for the fit of the blocks [first, last).
+std::vector<std::uint32_t> block_points(const NearPoints& near, std::size_t first, std::size_t last) {
+  std::vector<std::uint32_t> points;
+  for (std::size_t k = first * k_block; k < last * k_block; ++k) {
+    if (NearPoints::is_for_fit(k)) points.push_back(near.points[k]);
+  }
+  return points;
+}
+
+/// A surface of some blocks. Others on one side of it are on a second one, about parallel to it.
+struct BlockSides {
+  Surface surface;
+  std::vector<double> deviations;  ///< of the mean of each block, in standard errors
+  double height = 0;               ///< of the second surface, in standard errors; 0: there is none
+  double cost = 0;
+
+  [[nodiscard]] bool is_on_second(std::size_t block) const {
+    return cost_of(deviations[block] - height, 1) < cost_of(deviations[block], 1);
+  }
+};
+
+BlockSides sides_of(const Surface& surface, const NearPoints& near) {
+  BlockSides sides{.surface = surface, .deviations = {}};
+  const std::vector<double> distances = distances_of(surface, near.cloud, near.points);
+  std::array<double, 2> sums{};  // of the blocks that are clearly below and above
+  std::array<double, 2> counts{};
+  for (std::size_t b = 0; b < near.points.size() / k_block; ++b) {
+    double sum = 0;
+    for (std::size_t k = b * k_block; k < (b + 1) * k_block; ++k) sum += NearPoints::is_for_fit(k) ? distances[k] : 0;
+    const double deviation = sum / (near.noise * std::sqrt(k_block / 2.0));
+    sides.deviations.push_back(deviation);
+    if (std::abs(deviation) <= k_deviations) continue;
+    sums[deviation > 0 ? 1 : 0] += deviation;
+    ++counts[deviation > 0 ? 1 : 0];
+  }
+  const std::size_t side = counts[1] > counts[0] ? 1 : 0;
+  if (counts[side] > 0) sides.height = sums[side] / counts[side];
+  for (const double d : sides.deviations) sides.cost += std::min(cost_of(d, 1), cost_of(d - sides.height, 1));
+  return sides;
+}
+
+/// Fits the one surface to windows of a half to an eighth of the blocks. The best of these explains all blocks best,
+/// with a second one. So halves of a face begin, between which the one surface is tilted.
+std::optional<TwoSurfaces> with_blocks(const Surface& one, const NearPoints& near) {
+  const std::size_t count = near.points.size() / k_block;
+  BlockSides best = sides_of(one, near);
+  for (std::size_t width = count / 2; width > 0 && width >= count / 8; width /= 2) {
+    for (std::size_t first = 0; first + width <= count; first += (width + 1) / 2) {
+      const std::vector<OrientedPoint> points = near.cloud.some_of(block_points(near, first, first + width), k_sample);
+      const std::optional<Surface> fitted = fit_plausible(one, points, near.fit_limits);
+      if (!fitted) continue;
+      BlockSides sides = sides_of(*fitted, near);
+      if (sides.cost < best.cost) best = std::move(sides);
+    }
+  }
+  Sides points;
+  for (std::size_t b = 0; b < best.deviations.size(); ++b) {
+    std::ranges::copy(block_points(near, b, b + 1), std::back_inserter(points[best.is_on_second(b) ? 1 : 0]));
+  }
+  return fitted_to(points, with_offset(best.surface, 0, near), near);
+}
+
+/// Alternates between choosing sides and fitting (classification EM: Celeux and Govaert 1992).
+std::optional<TwoSurfaces> settled(std::optional<TwoSurfaces> two, const NearPoints& near) {
+  double prior = 0;
+  std::vector<std::uint8_t> before;
+  for (int round = 0; round < 2 * k_rounds && two && two->side != before; ++round) {
+    before = two->side;
+    choose_sides(*two, near, prior);
+    const Sides clear = clear_points(*two, near, NearPoints::is_for_fit);
+    prior = std::log(static_cast<double>(clear[0].size()) / static_cast<double>(clear[1].size()));
+    two = fitted_to(clear, std::move(*two), near);
+  }
+  return two;
+}
+
+/// Of the points for the fit.
+double cost_of_fit(const TwoSurfaces& two, const NearPoints& near) {
+  double cost = 0;
+  for (std::size_t k = 0; k < near.points.size(); ++k) {
+    if (NearPoints::is_for_fit(k)) cost += cost_of(two.distance(k), near.noise);
+  }
+  return cost;
+}
+
+}  // namespace
+
+std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
+                                      const std::vector<bool>& is_free, double smoothing, const SearchLimits& limits,
+                                      const RunContext& run) {
+  AgreementLimits wide = limits.agreement;
+  wide.distance *= 3;  // a step within could hide in the limits
+  std::vector<std::uint32_t> points = points_near(grown, cloud, wide, [&](std::uint32_t i) { return is_free[i]; });
+  if (points.size() < 2 * limits.least_points || points.size() <= k_around) return std::nullopt;
+  const double least = limits.agreement.noise;
+  const double noise =
+      std::max(least, noise_within_patches(distances_of(grown.surface, cloud, grown.points)).value_or(least));
+  std::vector<double> distances = distances_of(grown.surface, cloud, points);
+  const Offsets offsets = offsets_of(distances, noise);
+  if (offsets.strongest == 0) return std::nullopt;
+  const Points positions = cloud.positions_of(points);
+  const std::size_t around = std::min(neighbours_for((offsets.above - offsets.below) / noise), points.size() - 1);
+  NeighbourTable neighbours = find_neighbours(positions, NeighbourTree(positions), around, run);
+  const double evidence = k_evidence * points_of_one_error(neighbours, smoothing);
+  return NearPoints{.cloud = cloud,
+                    .points = std::move(points),
+                    .distances = std::move(distances),
+                    .offset = offsets.strongest,
+                    .neighbours = std::move(neighbours),
+                    .noise = noise,
+                    .evidence = evidence,
+                    .fit_limits = limits.agreement.within(std::min(k_deviations * noise, limits.agreement.distance))};
+}
+
+double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k) {
+  const std::span<const std::uint32_t> around = near.neighbours.nearest(k, two.around);
+  const auto same = std::ranges::count_if(around, [&](std::uint32_t j) { return two.side[j] == two.side[k]; });
+  return static_cast<double>(same) / static_cast<double>(around.size());
+}
+
+std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near) {
+  // A small part begins at its height over the rest.
+  std::optional<TwoSurfaces> two = settled(with_offset(one, near.offset, near), near);
+  std::optional<TwoSurfaces> of_blocks = settled(with_blocks(one, near), near);
+  if (!two || (of_blocks && cost_of_fit(*of_blocks, near) < cost_of_fit(*two, near))) two = std::move(of_blocks);
+  if (two && 2 * std::ranges::count(two->side, std::uint8_t{1}) > std::ssize(two->side)) {
+    std::swap(two->surfaces[0], two->surfaces[1]);
+    std::swap(two->distances[0], two->distances[1]);
+    for (std::uint8_t& side : two->side) side = 1 - side;
+  }
+  return two;
+}
+
+std::optional<TwoSurfaces> fitted_to_all(TwoSurfaces two, const NearPoints& near) {
+  const Sides points = clear_points(two, near, [](std::size_t) { return true; });
+  return fitted_to(points, std::move(two), near);
+}
+
+}  // namespace cloud2csg

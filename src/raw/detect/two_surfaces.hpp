@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "raw/detect/grow.hpp"
+#include "raw/prepare/neighbours.hpp"
+
+namespace cloud2csg {
+
+/// Points near one surface, on which a step is looked for. Successive points are near each other.
+struct NearPoints {
+  const WorkCloud& cloud;
+  std::vector<std::uint32_t> points;  ///< ascending
+  std::vector<double> distances;      ///< from the one surface
+  double offset;                      ///< mean distance of the run of points that is least likely on the one surface
+  NeighbourTable neighbours;          ///< among these points
+  double noise;
+  double evidence;  ///< for two surfaces: k_evidence, where errors are independent
+  AgreementLimits fit_limits;
+
+  /// Two surfaces are found by these, and tested by the others.
+  static bool is_for_fit(std::size_t k) { return k % 2 == 0; }
+};
+
+/// The surface's points and free ones nearby. Absent if no run of points is off the surface. Errors of points within
+/// `smoothing` correlate. O(cloud + n log n) @throws Cancelled
+[[nodiscard]] std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
+                                                    const std::vector<bool>& is_free, double smoothing,
+                                                    const SearchLimits& limits, const RunContext& run);
+
+/// Two surfaces, and the one on which each point is.
+struct TwoSurfaces {
+  std::array<Surface, 2> surfaces;
+  std::array<std::vector<double>, 2> distances;  ///< of all points from each
+  std::vector<std::uint8_t> side;                ///< of each point: 0 or 1
+  std::size_t around;                            ///< neighbours that tell the side of a point
+
+  [[nodiscard]] double distance(std::size_t k) const { return distances[side[k]][k]; }
+};
+
+/// Of the neighbours of point k.
+[[nodiscard]] double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k);
+
+/// Two surfaces of the one's type that explain the points for the fit best; the second has fewer points. Absent if none
+/// are found. O(n)
+[[nodiscard]] std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near);
+
+/// The two, fitted to all points that are clear of the other side. O(n)
+[[nodiscard]] std::optional<TwoSurfaces> fitted_to_all(TwoSurfaces two, const NearPoints& near);
+
+}  // namespace cloud2csg
