@@ -32,12 +32,13 @@ Surface bent() {
 }
 
 /// `height`: of the surface's place with coordinates -1/2 to 1/2, in standard deviations of the noise.
-Patch make_patch(const Surface& surface, const Height& height, std::uint64_t seed, std::size_t points = k_points) {
+Patch make_patch(const Surface& surface, const Height& height, std::uint64_t seed, std::size_t points = k_points,
+                 double width = 1) {
   RandomStream random(seed);
   PointCloud cloud;
   for (std::size_t k = 0; k < points; ++k) {
-    const double x = random.uniform(-0.5, 0.5);
-    const double y = random.uniform(-0.5, 0.5);
+    const double x = width * random.uniform(-0.5, 0.5);
+    const double y = width * random.uniform(-0.5, 0.5);
     const double rise = k_noise * (height(x, y) + random.normal());
     const bool is_flat = surface.type == SurfaceType::plane;
     const Eigen::Vector3d normal = is_flat ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(std::sin(x), 0, std::cos(x));
@@ -71,6 +72,17 @@ TEST(SplitSurfaces, NoiseIsNoStep) {
   for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
     EXPECT_EQ(split(make_patch(flat(), none, seed)).size(), 1U);
     EXPECT_EQ(split(make_patch(bent(), none, seed)).size(), 1U);
+  }
+}
+
+/// Neighbours in space are points with similar errors there.
+TEST(SplitSurfaces, NoiseOfSeveralSpacingsIsNoStep) {
+  const Height none = [](double, double) { return 0.0; };
+  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+    for (const double spacings : {2.0, 3.0}) {
+      const double width = k_noise / spacings * std::sqrt(static_cast<double>(k_points));
+      EXPECT_EQ(split(make_patch(flat(), none, seed, k_points, width)).size(), 1U) << spacings << " spacings, " << seed;
+    }
   }
 }
 
@@ -118,7 +130,7 @@ void expect_step(const Surface& surface, double rise, std::uint64_t seed) {
 
 TEST(SplitSurfaces, StepsAreFoundWhereTheyAre) {
   for (std::uint64_t seed = 1; seed <= k_few_seeds; ++seed) {
-    for (const double rise : {-5.0, -3.0, -2.0, 2.0, 3.0, 5.0}) {
+    for (const double rise : {-30.0, -5.0, -3.0, -2.0, 2.0, 3.0, 5.0, 15.0}) {
       expect_step(flat(), rise, seed);
       expect_step(bent(), rise, seed);
     }

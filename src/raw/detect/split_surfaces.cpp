@@ -123,10 +123,10 @@ std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& n
 
 /// The two parts, if there is a step.
 std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, const NearPoints& near,
-                                                 const SearchLimits& limits) {
-  std::optional<TwoSurfaces> two = fit_two(grown.surface, near);
-  if (!two || !(gain_of(*two, grown.surface, near) >= near.evidence)) return std::nullopt;
-  two = fitted_to_all(std::move(*two), near);
+                                                 const SearchLimits& limits, const RunContext& run) {
+  std::optional<TwoSurfaces> two = fit_two(grown.surface, near, run);
+  if (!two || !(gain_of(*two, grown.surface, near) >= near.evidence) || !are_apart(*two, near)) return std::nullopt;
+  two = with_fits_to_all(std::move(*two), near);
   if (!two) return std::nullopt;
   if (!matches_averages(*two, near, limits.least_points) || !are_apart(*two, near)) return std::nullopt;
   std::array<GrownSurface, 2> parts = parts_of(*two, near, limits.agreement);
@@ -148,7 +148,7 @@ std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, con
   for (std::size_t s = 0; s < surfaces.size();) {
     run.throw_if_stopped();
     const std::optional<NearPoints> near = near_points(surfaces[s], cloud, is_free, smoothing, limits, run);
-    auto parts = near ? split(surfaces[s], *near, limits) : std::nullopt;
+    auto parts = near ? split(surfaces[s], *near, limits, run) : std::nullopt;
     if (!parts) {
       ++s;
       continue;

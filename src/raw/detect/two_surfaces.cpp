@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <span>
 #include <utility>
 
+#include "core/base/parallel.hpp"
 #include "core/base/robust_deviation.hpp"
 #include "raw/detect/propose.hpp"
 #include "raw/prepare/constants.hpp"
@@ -14,35 +17,29 @@ namespace {
 
 using Sides = std::array<std::vector<std::uint32_t>, 2>;  // points of each surface
 
-/// Means of the successive distances that are least likely by chance on either side, of windows of all powers of two: 0
-/// where none is off by 3.7 standard errors.
-struct Offsets {
-  double below = 0, above = 0;
-  double strongest = 0;  ///< one of the two
-};
-
-Offsets offsets_of(const std::vector<double>& distances, double noise) {
+/// Median of the run of successive distances whose mean is farthest off 0 by its standard error, of runs of all powers
+/// of two. 0 if none is off by 3.7 standard errors: this is a cheap first look, and most surfaces end here.
+double strongest_offset(const std::vector<double>& distances, double noise) {
   const double most = 10 * noise;  // a single outlier is no step
   std::vector<double> sums{0};
   for (const double d : distances) sums.push_back(sums.back() + std::clamp(d, -most, most));
-  std::array<double, 2> best{k_evidence * noise * noise, k_evidence * noise * noise};
-  Offsets offsets;
+  double best = k_evidence * noise * noise;
+  std::vector<double> strongest;
   for (std::size_t width = 2 * k_nearest; width <= distances.size(); width *= 2) {
-    const auto count = static_cast<double>(width);
     for (std::size_t first = 0; first + width <= distances.size(); first += width / 2) {
-      const double mean = (sums[first + width] - sums[first]) / count;
-      double& best_there = best[mean > 0 ? 1 : 0];
-      if (count * mean * mean <= best_there) continue;
-      best_there = count * mean * mean;
-      (mean > 0 ? offsets.above : offsets.below) = mean;
+      const double sum = sums[first + width] - sums[first];
+      if (sum * sum / static_cast<double>(width) <= best) continue;
+      best = sum * sum / static_cast<double>(width);
+      const auto begin = distances.begin() + static_cast<std::ptrdiff_t>(first);
+      strongest.assign(begin, begin + static_cast<std::ptrdiff_t>(width));
     }
   }
-  offsets.strongest = best[1] > best[0] ? offsets.above : offsets.below;
-  return offsets;
+  return strongest.empty() ? 0 : median_of(strongest);
 }
 
 /// Neighbours that tell the side of a point: k_around for a step of two standard deviations. Their evidence grows with
-/// the square of the height, so a lower step needs more, up to a limit that costs as much time as the fits.
+/// the square of the height, so a lower step needs more. With half of the limit, fewer steps of one standard deviation
+/// are found; double costs more time than the fits.
 std::size_t neighbours_for(double deviations) {
   constexpr double k_most = 8;
   return static_cast<std::size_t>(k_around * std::clamp(4 / (deviations * deviations), 1.0, k_most));
@@ -52,22 +49,22 @@ std::size_t neighbours_for(double deviations) {
 double points_of_one_error(const NeighbourTable& neighbours, double smoothing) {
   std::vector<double> areas;  // squared distance for each neighbour
   for (std::size_t k = 0; k * neighbours.width < neighbours.indices.size(); ++k) {
-    const double farthest = neighbours.distances_of(k).back();
-    areas.push_back(farthest * farthest / static_cast<double>(neighbours.width));
+    const double distance = neighbours.distances_of(k)[k_nearest - 1];
+    areas.push_back(distance * distance / k_nearest);
   }
   return std::max(1.0, smoothing * smoothing / median_of(areas));
 }
 
 /// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.
-void choose_sides(TwoSurfaces& two, const NearPoints& near, double prior) {
-  for (std::size_t k = 0; k < near.points.size(); ++k) {
+void choose_sides(TwoSurfaces& two, const NearPoints& near, std::size_t around, double prior, const RunContext& run) {
+  for_each_index(near.points.size(), run, [&](std::size_t k) {
     double for_second = -prior;
-    for (const std::uint32_t j : near.neighbours.nearest(k, two.around)) {
+    for (const std::uint32_t j : near.neighbours.nearest(k, around)) {
       if (!NearPoints::is_for_fit(j)) continue;
       for_second += cost_of(two.distances[0][j], near.noise) - cost_of(two.distances[1][j], near.noise);
     }
     two.side[k] = for_second > 0 ? 1 : 0;
-  }
+  });
 }
 
 /// Points of each side that are clear of the other, of those with `is_used(k)`.
@@ -80,31 +77,32 @@ Sides clear_points(const TwoSurfaces& two, const NearPoints& near, const IsUsed&
   return clear;
 }
 
-/// The one surface, and the same at another height, where all points are on the first side.
-TwoSurfaces with_offset(const Surface& one, double offset, const NearPoints& near) {
-  TwoSurfaces two{.surfaces = {one, one},
-                  .distances = {},
-                  .side = std::vector<std::uint8_t>(near.points.size(), 0),
-                  .around = neighbours_for(offset / near.noise)};
-  two.distances.fill(distances_of(one, near.cloud, near.points));
+/// The surface, and the same at another height; all points are on the first side.
+TwoSurfaces with_offset(const Surface& surface, double offset, const NearPoints& near) {
+  TwoSurfaces two{
+      .surfaces = {surface, surface}, .distances = {}, .side = std::vector<std::uint8_t>(near.points.size(), 0)};
+  two.distances.fill(distances_of(surface, near.cloud, near.points));
   for (double& d : two.distances[1]) d -= offset;
   return two;
 }
 
-/// The two, each fitted to its points.
-std::optional<TwoSurfaces> fitted_to(const Sides& points, TwoSurfaces two, const NearPoints& near) {
+/// Whether most of the points have about the surface's normals. Else the surface may cross points that are as noisy as
+/// it is wide.
+bool has_normals_of(const Surface& surface, const std::vector<std::uint32_t>& points, const NearPoints& near) {
+  const AgreementLimits by_normal = near.fit_limits.within(std::numeric_limits<double>::infinity());
+  const std::vector<OrientedPoint> some = near.cloud.some_of(points, k_sample);
+  return 2 * count_agreeing(surface, some, by_normal) > some.size();
+}
+
+/// Each of the two, fitted to its points.
+std::optional<TwoSurfaces> with_fits_to(const Sides& points, TwoSurfaces two, const NearPoints& near) {
   for (std::size_t side = 0; side < 2; ++side) {
     if (points[side].empty()) return std::nullopt;
     const auto fitted = fit_plausible(two.surfaces[side], near.cloud, points[side], near.fit_limits);
-    if (!fitted) return std::nullopt;
+    if (!fitted || !has_normals_of(*fitted, points[side], near)) return std::nullopt;
     two.surfaces[side] = *fitted;
     two.distances[side] = distances_of(*fitted, near.cloud, near.points);
   }
-  std::vector<double> heights;
-  for (std::size_t k = 0; k < near.points.size(); ++k) {
-    heights.push_back(std::abs(two.distances[0][k] - two.distances[1][k]));
-  }
-  two.around = neighbours_for(median_of(heights) / near.noise);
   return two;
 }
 
@@ -140,8 +138,13 @@ BlockSides sides_of(const Surface& surface, const NearPoints& near) {
   std::array<double, 2> counts{};
   for (std::size_t b = 0; b < near.points.size() / k_block; ++b) {
     double sum = 0;
-    for (std::size_t k = b * k_block; k < (b + 1) * k_block; ++k) sum += NearPoints::is_for_fit(k) ? distances[k] : 0;
-    const double deviation = sum / (near.noise * std::sqrt(k_block / 2.0));
+    double count = 0;
+    for (std::size_t k = b * k_block; k < (b + 1) * k_block; ++k) {
+      if (!NearPoints::is_for_fit(k)) continue;
+      sum += distances[k];
+      ++count;
+    }
+    const double deviation = sum / (near.noise * std::sqrt(std::max(count, 1.0)));
     sides.deviations.push_back(deviation);
     if (std::abs(deviation) <= k_deviations) continue;
     sums[deviation > 0 ? 1 : 0] += deviation;
@@ -153,9 +156,10 @@ BlockSides sides_of(const Surface& surface, const NearPoints& near) {
   return sides;
 }
 
-/// Fits the one surface to windows of a half to an eighth of the blocks. The best of these explains all blocks best,
-/// with a second one. So halves of a face begin, between which the one surface is tilted.
-std::optional<TwoSurfaces> with_blocks(const Surface& one, const NearPoints& near) {
+/// Fits the one surface to windows of a half to an eighth of the blocks, and takes the fit that explains all blocks
+/// best together with a second surface. The two halves of a face need this start: the one surface is tilted between
+/// them.
+std::optional<TwoSurfaces> start_from_blocks(const Surface& one, const NearPoints& near) {
   const std::size_t count = near.points.size() / k_block;
   BlockSides best = sides_of(one, near);
   for (std::size_t width = count / 2; width > 0 && width >= count / 8; width /= 2) {
@@ -171,19 +175,32 @@ std::optional<TwoSurfaces> with_blocks(const Surface& one, const NearPoints& nea
   for (std::size_t b = 0; b < best.deviations.size(); ++b) {
     std::ranges::copy(block_points(near, b, b + 1), std::back_inserter(points[best.is_on_second(b) ? 1 : 0]));
   }
-  return fitted_to(points, with_offset(best.surface, 0, near), near);
+  return with_fits_to(points, with_offset(best.surface, 0, near), near);
+}
+
+/// Median height of the second surface over the first, where its points for the fit are. In standard deviations.
+double height_of(const TwoSurfaces& two, const NearPoints& near) {
+  std::vector<double> heights;
+  for (std::size_t k = 0; k < near.points.size(); ++k) {
+    if (two.side[k] == 0 || !NearPoints::is_for_fit(k)) continue;
+    heights.push_back(std::abs(two.distances[0][k] - two.distances[1][k]) / near.noise);
+  }
+  return median_of(heights);
 }
 
 /// Alternates between choosing sides and fitting (classification EM: Celeux and Govaert 1992).
-std::optional<TwoSurfaces> settled(std::optional<TwoSurfaces> two, const NearPoints& near) {
+std::optional<TwoSurfaces> alternate(std::optional<TwoSurfaces> two, const NearPoints& near, const RunContext& run) {
+  std::size_t around = near.neighbours.width;
   double prior = 0;
   std::vector<std::uint8_t> before;
   for (int round = 0; round < 2 * k_rounds && two && two->side != before; ++round) {
     before = two->side;
-    choose_sides(*two, near, prior);
+    choose_sides(*two, near, around, prior, run);
     const Sides clear = clear_points(*two, near, NearPoints::is_for_fit);
+    two = with_fits_to(clear, std::move(*two), near);
+    if (!two) break;
     prior = std::log(static_cast<double>(clear[0].size()) / static_cast<double>(clear[1].size()));
-    two = fitted_to(clear, std::move(*two), near);
+    around = neighbours_for(height_of(*two, near));
   }
   return two;
 }
@@ -210,16 +227,23 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   const double noise =
       std::max(least, noise_within_patches(distances_of(grown.surface, cloud, grown.points)).value_or(least));
   std::vector<double> distances = distances_of(grown.surface, cloud, points);
-  const Offsets offsets = offsets_of(distances, noise);
-  if (offsets.strongest == 0) return std::nullopt;
-  const Points positions = cloud.positions_of(points);
-  const std::size_t around = std::min(neighbours_for((offsets.above - offsets.below) / noise), points.size() - 1);
-  NeighbourTable neighbours = find_neighbours(positions, NeighbourTree(positions), around, run);
+  const double offset = strongest_offset(distances, noise);
+  // Halves of a face that are one standard deviation apart are on average a quarter off a tilted surface. Much lower
+  // steps, the neighbours cannot tell.
+  constexpr double k_least_offset = 0.15;
+  if (std::abs(offset) < k_least_offset * noise) return std::nullopt;
+  // The points' feet: neighbours in space would have similar errors where the noise is more than the spacing.
+  Points feet = cloud.positions_of(points);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    feet.set(k, feet[k] - distances[k] * normal(grown.surface, feet[k]));
+  }
+  const std::size_t around = std::min(neighbours_for(offset / noise), points.size() - 1);
+  NeighbourTable neighbours = find_neighbours(feet, NeighbourTree(feet), around, run);
   const double evidence = k_evidence * points_of_one_error(neighbours, smoothing);
   return NearPoints{.cloud = cloud,
                     .points = std::move(points),
                     .distances = std::move(distances),
-                    .offset = offsets.strongest,
+                    .offset = offset,
                     .neighbours = std::move(neighbours),
                     .noise = noise,
                     .evidence = evidence,
@@ -227,27 +251,27 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
 }
 
 double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k) {
-  const std::span<const std::uint32_t> around = near.neighbours.nearest(k, two.around);
+  const std::span<const std::uint32_t> around = near.neighbours.nearest(k, k_around);
   const auto same = std::ranges::count_if(around, [&](std::uint32_t j) { return two.side[j] == two.side[k]; });
   return static_cast<double>(same) / static_cast<double>(around.size());
 }
 
-std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near) {
+std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run) {
   // A small part begins at its height over the rest.
-  std::optional<TwoSurfaces> two = settled(with_offset(one, near.offset, near), near);
-  std::optional<TwoSurfaces> of_blocks = settled(with_blocks(one, near), near);
+  std::optional<TwoSurfaces> two = alternate(with_offset(one, near.offset, near), near, run);
+  std::optional<TwoSurfaces> of_blocks = alternate(start_from_blocks(one, near), near, run);
   if (!two || (of_blocks && cost_of_fit(*of_blocks, near) < cost_of_fit(*two, near))) two = std::move(of_blocks);
   if (two && 2 * std::ranges::count(two->side, std::uint8_t{1}) > std::ssize(two->side)) {
     std::swap(two->surfaces[0], two->surfaces[1]);
     std::swap(two->distances[0], two->distances[1]);
-    for (std::uint8_t& side : two->side) side = 1 - side;
+    for (std::uint8_t& side : two->side) side ^= 1;
   }
   return two;
 }
 
-std::optional<TwoSurfaces> fitted_to_all(TwoSurfaces two, const NearPoints& near) {
+std::optional<TwoSurfaces> with_fits_to_all(TwoSurfaces two, const NearPoints& near) {
   const Sides points = clear_points(two, near, [](std::size_t) { return true; });
-  return fitted_to(points, std::move(two), near);
+  return with_fits_to(points, std::move(two), near);
 }
 
 }  // namespace cloud2csg

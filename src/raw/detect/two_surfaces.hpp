@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/random.hpp"
 #include "raw/detect/grow.hpp"
 #include "raw/prepare/neighbours.hpp"
 
@@ -16,14 +17,15 @@ struct NearPoints {
   const WorkCloud& cloud;
   std::vector<std::uint32_t> points;  ///< ascending
   std::vector<double> distances;      ///< from the one surface
-  double offset;                      ///< mean distance of the run of points that is least likely on the one surface
-  NeighbourTable neighbours;          ///< among these points
+  double offset;                      ///< median distance of the run of points that is farthest off: about the height
+  NeighbourTable neighbours;          ///< among these points, moved onto the one surface
   double noise;
-  double evidence;  ///< for two surfaces: k_evidence, where errors are independent
+  double evidence;  ///< least gain that shows two surfaces
   AgreementLimits fit_limits;
 
-  /// Two surfaces are found by these, and tested by the others.
-  static bool is_for_fit(std::size_t k) { return k % 2 == 0; }
+  /// Two surfaces are found by these, and tested by the others. By chance: every other point would have a neighbour
+  /// with a similar error among the others.
+  static bool is_for_fit(std::size_t k) { return mix(k) % 2 == 0; }
 };
 
 /// The surface's points and free ones nearby. Absent if no run of points is off the surface. Errors of points within
@@ -37,19 +39,18 @@ struct TwoSurfaces {
   std::array<Surface, 2> surfaces;
   std::array<std::vector<double>, 2> distances;  ///< of all points from each
   std::vector<std::uint8_t> side;                ///< of each point: 0 or 1
-  std::size_t around;                            ///< neighbours that tell the side of a point
 
   [[nodiscard]] double distance(std::size_t k) const { return distances[side[k]][k]; }
 };
 
-/// Of the neighbours of point k.
+/// How many of the nearest neighbours of point k are on its side, of all of these.
 [[nodiscard]] double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k);
 
 /// Two surfaces of the one's type that explain the points for the fit best; the second has fewer points. Absent if none
-/// are found. O(n)
-[[nodiscard]] std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near);
+/// are found. O(n x neighbours) @throws Cancelled
+[[nodiscard]] std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run);
 
 /// The two, fitted to all points that are clear of the other side. O(n)
-[[nodiscard]] std::optional<TwoSurfaces> fitted_to_all(TwoSurfaces two, const NearPoints& near);
+[[nodiscard]] std::optional<TwoSurfaces> with_fits_to_all(TwoSurfaces two, const NearPoints& near);
 
 }  // namespace cloud2csg
