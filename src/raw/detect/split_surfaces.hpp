@@ -7,7 +7,7 @@
 namespace cloud2csg {
 
 /// Splits surfaces whose points show a step. The more points, the lower a step may be: with hundreds, two standard
-/// deviations of the noise; with thousands, one. Both parts have the type of the surface. A step is shown if
+/// deviations of the noise; with thousands on either side, one. Both parts have the type of the surface. It is shown if
 /// - the points are a million times as likely with two surfaces as with one. Two surfaces are fitted to one half of the
 ///   points; the likelihoods are those of the other half (split likelihood ratio test: Wasserman, Ramdas and
 ///   Balakrishnan 2020). Points within the distance `smoothing`, whose errors correlate, count as one. The one surface
