@@ -129,8 +129,17 @@ void expect_step(const Surface& surface, double rise, std::uint64_t seed) {
 }
 
 TEST(SplitSurfaces, StepsAreFoundWhereTheyAre) {
+  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+    for (const double rise : {-5.0, -3.0, -2.0, 2.0, 3.0, 5.0}) {
+      expect_step(flat(), rise, seed);
+      expect_step(bent(), rise, seed);
+    }
+  }
+}
+
+TEST(SplitSurfaces, HighStepsAreFoundWhereTheyAre) {
   for (std::uint64_t seed = 1; seed <= k_few_seeds; ++seed) {
-    for (const double rise : {-30.0, -5.0, -3.0, -2.0, 2.0, 3.0, 5.0, 15.0}) {
+    for (const double rise : {-30.0, 15.0}) {
       expect_step(flat(), rise, seed);
       expect_step(bent(), rise, seed);
     }

@@ -77,12 +77,12 @@ Sides clear_points(const TwoSurfaces& two, const NearPoints& near, const IsUsed&
   return clear;
 }
 
-/// The surface, and the same at another height; all points are on the first side.
-TwoSurfaces with_offset(const Surface& surface, double offset, const NearPoints& near) {
-  TwoSurfaces two{
-      .surfaces = {surface, surface}, .distances = {}, .side = std::vector<std::uint8_t>(near.points.size(), 0)};
-  two.distances.fill(distances_of(surface, near.cloud, near.points));
-  for (double& d : two.distances[1]) d -= offset;
+/// The one surface, and the same at the height of the strongest run; all points are on the first side.
+TwoSurfaces start_from_run(const Surface& one, const NearPoints& near) {
+  TwoSurfaces two{.surfaces = {one, one},
+                  .distances = {near.distances, near.distances},
+                  .side = std::vector<std::uint8_t>(near.points.size(), 0)};
+  for (double& d : two.distances[1]) d -= near.offset;
   return two;
 }
 
@@ -175,10 +175,12 @@ std::optional<TwoSurfaces> start_from_blocks(const Surface& one, const NearPoint
   for (std::size_t b = 0; b < best.deviations.size(); ++b) {
     std::ranges::copy(block_points(near, b, b + 1), std::back_inserter(points[best.is_on_second(b) ? 1 : 0]));
   }
-  return with_fits_to(points, with_offset(best.surface, 0, near), near);
+  TwoSurfaces two = start_from_run(one, near);
+  two.surfaces.fill(best.surface);
+  return with_fits_to(points, std::move(two), near);
 }
 
-/// Median height of the second surface over the first, where its points for the fit are. In standard deviations.
+/// Median height of the second surface over the first in standard deviations, where its points for the fit are.
 double height_of(const TwoSurfaces& two, const NearPoints& near) {
   std::vector<double> heights;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
@@ -205,7 +207,7 @@ std::optional<TwoSurfaces> alternate(std::optional<TwoSurfaces> two, const NearP
   return two;
 }
 
-/// Of the points for the fit.
+/// Cost of the points for the fit.
 double cost_of_fit(const TwoSurfaces& two, const NearPoints& near) {
   double cost = 0;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
@@ -258,7 +260,7 @@ double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::si
 
 std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run) {
   // A small part begins at its height over the rest.
-  std::optional<TwoSurfaces> two = alternate(with_offset(one, near.offset, near), near, run);
+  std::optional<TwoSurfaces> two = alternate(start_from_run(one, near), near, run);
   std::optional<TwoSurfaces> of_blocks = alternate(start_from_blocks(one, near), near, run);
   if (!two || (of_blocks && cost_of_fit(*of_blocks, near) < cost_of_fit(*two, near))) two = std::move(of_blocks);
   if (two && 2 * std::ranges::count(two->side, std::uint8_t{1}) > std::ssize(two->side)) {

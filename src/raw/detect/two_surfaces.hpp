@@ -43,7 +43,7 @@ struct TwoSurfaces {
   [[nodiscard]] double distance(std::size_t k) const { return distances[side[k]][k]; }
 };
 
-/// How many of the nearest neighbours of point k are on its side, of all of these.
+/// Share of the k_around nearest neighbours of point k that are on its side.
 [[nodiscard]] double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k);
 
 /// Two surfaces of the one's type that explain the points for the fit best; the second has fewer points. Absent if none
