@@ -21,6 +21,11 @@ if(CLOUD2CSG_SANITIZERS)
   target_compile_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS}
                                                       -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS})
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # Relative to the folder that the compiler runs in, so that copies of the project share their entries of ccache.
+    file(RELATIVE_PATH ignorelist ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/tests/sanitizers.ignore)
+    target_compile_options(cloud2csg_compiler INTERFACE -fsanitize-ignorelist=${ignorelist})
+  endif()
   # Highway's emulation of vectors takes clang seven minutes for one file with sanitizers. One number at a time instead,
   # as with g++; the real instruction sets stay.
   target_compile_definitions(cloud2csg_compiler INTERFACE HWY_BROKEN_EMU128=1)

@@ -112,40 +112,43 @@ class Lint:
             key.update(pathlib.Path(unit.directory, name).read_bytes())
         return key.hexdigest()
 
-    def parts_of(self, unit, main):
-        """The unit alone when it can be compiled; else what met something in a source before it, and the others."""
-        if len(unit.sources) == 1:
-            return [unit]
-        syntax = run(["clang++", *unit.flags, "-w", "-ferror-limit=0", "-fsyntax-only", main], cwd=unit.directory)
-        if syntax.returncode == 0:
-            return [unit]
-        places = {line.split(":", 1)[0] for line in syntax.stderr.decode().splitlines() if ": error: " in line}
-        second = [source for source in unit.sources if source in places]
-        if not second or len(second) == len(unit.sources):
-            second = unit.sources[1::2]
-        first = [source for source in unit.sources if source not in second]
-        return [unit._replace(sources=first), unit._replace(sources=second)]
+    def tidy(self, unit, main):
+        """Runs clang-tidy: (whether it found nothing, its words)."""
+        flags = [*unit.flags, "-Wno-unknown-warning-option"]
+        # What sources that are looked at together hide of each other, none of them hides alone; the compiler tells that.
+        if len(unit.sources) > 1:
+            flags += ["-Wno-shadow", "-ferror-limit=0"]
+        config = f"--config-file={self.root}/.clang-tidy"
+        result = run(["clang-tidy", "-quiet", config, f"--load={self.plugin}", *self.checks, main, "--", *flags],
+                     cwd=unit.directory)
+        return result.returncode == 0, (result.stdout + result.stderr).decode()
 
     def check(self, unit):
-        """What clang-tidy finds in a unit: (sources with findings, sources that were known to pass, its words)."""
+        """What clang-tidy finds in a unit: (1 if anything, number of sources that were known to pass, its words)."""
         main = self.main_source(unit)
         key = self.key_of(unit, main)
         if key and (self.passed / key).exists():
             (self.passed / key).touch()
             return 0, len(unit.sources), ""
-        parts = self.parts_of(unit, main)
+        passed, words = self.tidy(unit, main)
+        if passed and key:
+            (self.passed / key).touch()
+        parts = parts_of(unit, words)
         if len(parts) > 1:
             return tuple(first + second for first, second in zip(*map(self.check, parts)))
-        flags = [*unit.flags, "-Wno-unknown-warning-option"]
-        # What sources that are looked at together hide of each other, none of them hides alone; the compiler tells that.
-        if len(unit.sources) > 1:
-            flags.append("-Wno-shadow")
-        config = f"--config-file={self.root}/.clang-tidy"
-        result = run(["clang-tidy", "-quiet", config, f"--load={self.plugin}", *self.checks, main, "--", *flags],
-                     cwd=unit.directory)
-        if result.returncode == 0 and key:
-            (self.passed / key).touch()
-        return int(result.returncode != 0), 0, (result.stdout + result.stderr).decode()
+        return int(not passed), 0, words
+
+
+def parts_of(unit, words):
+    """The unit alone when it could be compiled; else what met something in a source before it, and the others."""
+    places = {line.split(":", 1)[0] for line in words.splitlines() if line.endswith("[clang-diagnostic-error]")}
+    if not places or len(unit.sources) == 1:
+        return [unit]
+    second = [source for source in unit.sources if source in places]
+    if not second or len(second) == len(unit.sources):
+        second = unit.sources[1::2]
+    first = [source for source in unit.sources if source not in second]
+    return [unit._replace(sources=first), unit._replace(sources=second)]
 
 
 def main(build, sources, each):

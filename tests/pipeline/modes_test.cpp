@@ -2,6 +2,7 @@
 
 #include <array>
 #include <numbers>
+#include <tuple>
 
 #include "cloud2csg/extract.hpp"
 #include "pipeline/strategies.hpp"
@@ -26,9 +27,10 @@ ExtractOptions short_options(Strategy strategy, std::uint64_t seed) {
   return options;
 }
 
-class Modes : public ::testing::TestWithParam<const char*> {
+/// Points of one of the paper's models.
+class SampledModel {
  protected:
-  Modes() : model_(test::paper_model(GetParam())) {
+  explicit SampledModel(const char* name) : model_(test::paper_model(name)) {
     cloud_ = sample_surface(model_, {.count = 2000, .noise = 0.01, .seed = 5});
   }
 
@@ -36,26 +38,39 @@ class Modes : public ::testing::TestWithParam<const char*> {
     return extract_csg(cloud_, model_.primitives, options, {.threads = threads});
   }
 
+ private:
   Model model_;
   PointCloud cloud_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Paper, Modes, ::testing::Values("m0", "m1", "m2"));
+class Modes : public ::testing::TestWithParam<const char*>, protected SampledModel {
+ protected:
+  Modes() : SampledModel(GetParam()) {}
+};
 
-TEST_P(Modes, GiveTheSameTreeForAnyThreads) {
-  for (const Strategy strategy : {Strategy::cells, Strategy::partition, Strategy::baseline, Strategy::automatic}) {
-    ExtractOptions options = short_options(strategy, 3);
-    options.parallel = Parallel::none;
-    const Extraction expected = extract(options, 1);
-    for (const Parallel parallel : k_parallel) {
-      options.parallel = parallel;
-      for (const int threads : {1, 2, 3, 8}) {
-        const Extraction result = extract(options, threads);
-        EXPECT_EQ(result.tree(), expected.tree()) << to_string(strategy) << to_string(parallel) << threads;
-        EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
-        EXPECT_EQ(result.statistics.merge.evaluations, expected.statistics.merge.evaluations);
-        EXPECT_EQ(result.statistics.threads, threads);
-      }
+class Strategies : public ::testing::TestWithParam<std::tuple<const char*, Strategy>>, protected SampledModel {
+ protected:
+  Strategies() : SampledModel(std::get<0>(GetParam())) {}
+};
+
+INSTANTIATE_TEST_SUITE_P(Paper, Modes, ::testing::Values("m0", "m1", "m2"));
+INSTANTIATE_TEST_SUITE_P(Paper, Strategies,
+                         ::testing::Combine(::testing::Values("m0", "m1", "m2"),
+                                            ::testing::Values(Strategy::cells, Strategy::partition, Strategy::baseline,
+                                                              Strategy::automatic)));
+
+TEST_P(Strategies, GiveTheSameTreeForAnyThreads) {
+  ExtractOptions options = short_options(std::get<1>(GetParam()), 3);
+  options.parallel = Parallel::none;
+  const Extraction expected = extract(options, 1);
+  for (const Parallel parallel : k_parallel) {
+    options.parallel = parallel;
+    for (const int threads : {3, 8}) {
+      const Extraction result = extract(options, threads);
+      EXPECT_EQ(result.tree(), expected.tree()) << to_string(parallel) << threads;
+      EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
+      EXPECT_EQ(result.statistics.merge.evaluations, expected.statistics.merge.evaluations);
+      EXPECT_EQ(result.statistics.threads, threads);
     }
   }
 }
