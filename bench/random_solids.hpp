@@ -9,6 +9,10 @@
 
 namespace cloud2csg::bench {
 
+inline Eigen::Vector3d random_direction(RandomStream& random) {
+  return Eigen::Vector3d{random.normal(), random.normal(), random.normal()}.normalized();
+}
+
 /// Random boxes, cylinders and spheres in a cube that grows with their number: constant degree of the overlap graph.
 inline PrimitiveSet random_solids(std::size_t count, double solids_a_unit) {
   RandomStream random(count);

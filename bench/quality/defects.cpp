@@ -9,6 +9,7 @@
 #include "core/geometry/boxes.hpp"
 #include "core/geometry/subset.hpp"
 #include "core/primitive/shape.hpp"
+#include "random_solids.hpp"
 
 namespace cloud2csg::bench {
 namespace {
@@ -23,13 +24,6 @@ constexpr double k_outlier_share = 0.05;
 constexpr double k_large_outlier_share = 0.3;
 constexpr double k_turned_share = 0.2;
 constexpr double k_enlarged = 0.1;  ///< enlargement of the bounds for outliers
-
-Vector3d random_direction(RandomStream& random) {
-  for (;;) {
-    const Vector3d direction(random.normal(), random.normal(), random.normal());
-    if (direction.norm() > 0) return direction.normalized();
-  }
-}
 
 double radius_around(const Vector3d& middle, const PointCloud& cloud, double share) {
   std::vector<double> distances(cloud.size());

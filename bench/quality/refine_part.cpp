@@ -10,20 +10,15 @@
 #include "measure.hpp"
 #include "pipeline/refine/slots.hpp"
 #include "quality/parts.hpp"
+#include "random_solids.hpp"
 
 namespace cloud2csg::bench {
 namespace {
 
 constexpr double k_share = 0.01;
 constexpr double k_angle = std::numbers::pi / 180;
-constexpr std::size_t k_points = 20'000;
+constexpr std::size_t k_points_refined = 20'000;
 constexpr std::size_t k_most_seeds = 10;
-
-Eigen::Vector3d random_direction(RandomStream& random) {
-  Eigen::Vector3d direction;
-  for (int k = 0; k < 3; ++k) direction[k] = random.normal();
-  return direction.normalized();
-}
 
 /// Displaces each value by up to a share of the size, and turns the primitive.
 Primitive shaken(const Primitive& primitive, RandomStream& random) {
@@ -68,7 +63,7 @@ Errors errors_of(const Model& model, const PrimitiveSet& primitives, const Point
 
 std::vector<TableCell> row_of(const char* name, bool regularise, std::size_t seeds, int threads) {
   const Model model = shipped_model(name);
-  const PointCloud exact = sample_surface(model, {.count = k_points, .seed = 1000});
+  const PointCloud exact = sample_surface(model, {.count = k_points_refined, .seed = 1000});
   Errors before;
   Errors after;
   double worst = 0;
@@ -78,7 +73,7 @@ std::vector<TableCell> row_of(const char* name, bool regularise, std::size_t see
     RandomStream random(seed);
     PrimitiveSet given;
     for (const Primitive& primitive : model.primitives) given.push_back(shaken(primitive, random));
-    const PointCloud cloud = paper_cloud(model, k_points, seed);
+    const PointCloud cloud = paper_cloud(model, k_points_refined, seed);
     const Stopwatch watch;
     const Refinement result =
         refine_primitives(cloud, given, *model.tree, {.regularise = regularise}, {.threads = threads});
@@ -113,7 +108,7 @@ void print_refinement(const QualityOptions& options) {
                           "{} points, noise 0.01; means over {} seeds.\nrms, 99 %: distances of exact points "
                           "from the true tree's surface over the primitives, before and after; worst: largest "
                           "rms after / before.\naxis: mean angle between axes and the true ones, in degrees.",
-                          k_points, seeds),
+                          k_points_refined, seeds),
       .columns = {"model", "regular", "rms", "refined", "worst", "99 %", "refined", "axis", "refined", "ms"}};
   for (const char* name : {"m0", "m1", "m2", "m3"}) {
     for (const bool regularise : {true, false}) {

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double k_tolerance = 1e-9;
+constexpr double k_resolution = 1e-9;
 
 void add_circle(std::vector<ProfileSegment>& pieces, const Vector2d& centre, double radius) {
   const Vector2d arm(radius, 0);
@@ -59,7 +59,7 @@ std::vector<ProfileSegment> random_pieces(RandomStream& random) {
 
 RC_GTEST_PROP(CurveArrangement, HasAsManyFacesAsEulerSays, ()) {
   RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
-  const CurveArrangement found = arrange(random_pieces(random), k_tolerance);
+  const CurveArrangement found = arrange(random_pieces(random), k_resolution);
   DisjointSets parts(found.vertices.size());
   std::set<std::uint32_t> vertices;
   for (const CurveArrangement::Edge& edge : found.edges) {
@@ -75,7 +75,7 @@ RC_GTEST_PROP(CurveArrangement, HasAsManyFacesAsEulerSays, ()) {
 
 RC_GTEST_PROP(CurveArrangement, EdgesHaveTheirFacesBesideThem, ()) {
   RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
-  const CurveArrangement found = arrange(random_pieces(random), k_tolerance);
+  const CurveArrangement found = arrange(random_pieces(random), k_resolution);
   const FaceLocator locator(found);
   for (const CurveArrangement::Edge& edge : found.edges) {
     const Vector2d outward = 1e-7 * edge.segment.normal(0.37);
@@ -87,7 +87,7 @@ RC_GTEST_PROP(CurveArrangement, EdgesHaveTheirFacesBesideThem, ()) {
 
 RC_GTEST_PROP(CurveArrangement, AFaceIsWhereItsEdgesSay, ()) {
   RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
-  const CurveArrangement found = arrange(random_pieces(random), k_tolerance);
+  const CurveArrangement found = arrange(random_pieces(random), k_resolution);
   const FaceLocator locator(found);
   for (int k = 0; k < 100; ++k) {
     const Vector2d place = 4.2 * random_place(random);
@@ -121,11 +121,11 @@ TEST(CurveArrangement, EndsThatBoundNothingAreLeftOut) {
   add_box(pieces, {0, 0}, {2, 2});
   pieces.push_back(segment_between({1, -1}, 0, {1, 3}));     // through
   pieces.push_back(segment_between({0.5, 0.5}, 0, {5, 1}));  // ends in the left face
-  const CurveArrangement found = arrange(pieces, k_tolerance);
+  const CurveArrangement found = arrange(pieces, k_resolution);
   EXPECT_EQ(found.areas.size(), 4U);
-  EXPECT_EQ(arrange({}, k_tolerance).areas.size(), 1U);
+  EXPECT_EQ(arrange({}, k_resolution).areas.size(), 1U);
   pieces.push_back(segment_between({0.3, 0.3}, 0, {0.3, 0.3}));
-  EXPECT_EQ(arrange(pieces, k_tolerance).edges.size(), found.edges.size()) << "a piece without length";
+  EXPECT_EQ(arrange(pieces, k_resolution).edges.size(), found.edges.size()) << "a piece without length";
 }
 
 }  // namespace

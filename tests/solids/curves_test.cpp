@@ -20,7 +20,7 @@ Curve line(const Vector2d& from, const Vector2d& to) {
 }
 
 /// With points between two angles, in degrees.
-Curve circle(const Vector2d& centre, double radius, double from, double to) {
+Curve arc(const Vector2d& centre, double radius, double from, double to) {
   Curve curve{.is_circle = true, .normal = centre, .offset = radius};
   for (int k = 0; k <= 40; ++k) {
     const double angle = (from + k / 40.0 * (to - from)) * std::numbers::pi / 180;
@@ -59,10 +59,10 @@ TEST(ExtentsOf, StayWhereTheyMeetAlready) {
 }
 
 TEST(ExtentsOf, ArcsGoOnAsWell) {
-  const std::vector<Curve> slot{circle({0, 0}, 1, 120, 240), line({0.3, 1}, {2, 1})};
+  const std::vector<Curve> slot{arc({0, 0}, 1, 120, 240), line({0.3, 1}, {2, 1})};
   EXPECT_TRUE(reaches(slot, 0, {0, 1}));
   EXPECT_TRUE(reaches(slot, 1, {0, 1}));
-  const std::vector<Curve> cut{circle({0, 0}, 1, 100, 260), line({0.5, -2}, {0.5, 2})};
+  const std::vector<Curve> cut{arc({0, 0}, 1, 100, 260), line({0.5, -2}, {0.5, 2})};
   const double height = std::sqrt(0.75);
   EXPECT_TRUE(reaches(cut, 0, {0.5, height}));
   EXPECT_TRUE(reaches(cut, 0, {0.5, -height}));
@@ -79,7 +79,7 @@ TEST(Merged, CurvesThatAreNearBecomeTheOneWithMorePoints) {
 }
 
 TEST(WithClosedGaps, CirclesGrowUntilTheyTouch) {
-  const std::vector<Curve> curves{line({-1, 1}, {1, 1}), circle({0, 0}, 0.995, 0, 359)};
+  const std::vector<Curve> curves{line({-1, 1}, {1, 1}), arc({0, 0}, 0.995, 0, 359)};
   EXPECT_NEAR(with_closed_gaps(curves, 0.05, 0.01)[1].offset, 1, 1e-12);
   EXPECT_EQ(with_closed_gaps(curves, 0.05, 0.001)[1].offset, 0.995) << "too far";
 }
