@@ -86,7 +86,7 @@ Report report_of(const Result& result, const std::string& title) {
           .statistics = result.statistics};
 }
 
-std::string repr_of(const Result& self) {
+std::string repr_of_result(const Result& self) {
   return fmt::format("<cloud2csg.Result: {}, rms distance {:.4g}{}>", summary_of(*self.model),
                      self.statistics.fit.rms_distance, self.statistics.complete ? "" : ", stopped early");
 }
@@ -119,7 +119,7 @@ void bind_result_outputs(py::class_<Result>& result) {
           py::kw_only(), py::arg("title") = "", py::arg("options") = py::none(), py::arg("threads") = 0,
           py::arg("progress") = py::none(), "Like Model.report(), with the cloud and the statistics.")
       .def(
-          "_repr_html_", [](const Result& self) { return html_of(report_of(self, {}), repr_of(self)); },
+          "_repr_html_", [](const Result& self) { return html_of(report_of(self, {}), repr_of_result(self)); },
           "The report for notebooks; a line of text if this build has no viewer.");
 }
 
@@ -149,7 +149,7 @@ void bind_extract(py::module_& module) {
       .def_property_readonly(
           "complete", [](const Result& self) { return self.statistics.complete; },
           "False when a time limit ended the search.")
-      .def("__repr__", &repr_of);
+      .def("__repr__", &repr_of_result);
   bind_result_outputs(result);
   module.def(
       "extract", &extract, py::arg("cloud"), py::arg("primitives") = py::none(), py::arg("options") = py::none(),

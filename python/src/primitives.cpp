@@ -190,7 +190,7 @@ Eigen::Vector4d quaternion_of(const Primitive& primitive) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
-std::string repr_of(const Primitive& self) {
+std::string repr_of_primitive(const Primitive& self) {
   const Eigen::Vector4d q = quaternion_of(self);
   return fmt::format(
       "Primitive({}, {}, position={}, quaternion=({}, {}, {}, {}){})", py::repr(py::cast(self.id)).cast<std::string>(),
@@ -241,7 +241,7 @@ void bind_primitive(py::module_& module) {
             return gradients_at(points, {}, [&](PointsView at) { return gradient(self, at); });
           },
           py::arg("points"), "Gradient of distance() at points of shape (n, 3), not normalised: shape (n, 3).")
-      .def("__repr__", &repr_of);
+      .def("__repr__", &repr_of_primitive);
 }
 
 }  // namespace
