@@ -21,9 +21,16 @@ if(CLOUD2CSG_SANITIZERS)
   target_compile_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS}
                                                       -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS})
+  # What undefined behaviour in headers of the standard library would show as: an index out of range.
+  target_compile_definitions(cloud2csg_compiler INTERFACE _GLIBCXX_ASSERTIONS)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    # Relative to the folder that the compiler runs in, so that copies of the project share their entries of ccache.
-    file(RELATIVE_PATH ignorelist ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/tests/sanitizers.ignore)
+    set(ignorelist ${PROJECT_SOURCE_DIR}/tests/sanitizers.ignore)
+    # ccache looks into this file only when told, and finds the entries of other copies of the project only if its path is
+    # relative.
+    set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_EXTRAFILES=${ignorelist} ${CMAKE_CXX_COMPILER_LAUNCHER})
+    if(CMAKE_GENERATOR MATCHES "Ninja")
+      file(RELATIVE_PATH ignorelist ${CMAKE_BINARY_DIR} ${ignorelist})
+    endif()
     target_compile_options(cloud2csg_compiler INTERFACE -fsanitize-ignorelist=${ignorelist})
   endif()
   # Highway's emulation of vectors takes clang seven minutes for one file with sanitizers. One number at a time instead,

@@ -113,7 +113,7 @@ class Lint:
         return key.hexdigest()
 
     def tidy(self, unit, main):
-        """Runs clang-tidy: (whether it found nothing, its words)."""
+        """Runs clang-tidy: (its exit status, its words)."""
         flags = [*unit.flags, "-Wno-unknown-warning-option"]
         # What sources that are looked at together hide of each other, none of them hides alone; the compiler tells that.
         if len(unit.sources) > 1:
@@ -121,7 +121,7 @@ class Lint:
         config = f"--config-file={self.root}/.clang-tidy"
         result = run(["clang-tidy", "-quiet", config, f"--load={self.plugin}", *self.checks, main, "--", *flags],
                      cwd=unit.directory)
-        return result.returncode == 0, (result.stdout + result.stderr).decode()
+        return result.returncode, (result.stdout + result.stderr).decode()
 
     def check(self, unit):
         """What clang-tidy finds in a unit: (1 if anything, number of sources that were known to pass, its words)."""
@@ -130,19 +130,20 @@ class Lint:
         if key and (self.passed / key).exists():
             (self.passed / key).touch()
             return 0, len(unit.sources), ""
-        passed, words = self.tidy(unit, main)
-        if passed and key:
+        status, words = self.tidy(unit, main)
+        if status == 0 and key:
             (self.passed / key).touch()
-        parts = parts_of(unit, words)
+        parts = parts_of(unit, status, words)
         if len(parts) > 1:
             return tuple(first + second for first, second in zip(*map(self.check, parts)))
-        return int(not passed), 0, words
+        return int(status != 0), 0, words
 
 
-def parts_of(unit, words):
-    """The unit alone when it could be compiled; else what met something in a source before it, and the others."""
+def parts_of(unit, status, words):
+    """The unit alone when it could be compiled; else what met something in a source before it, and the others. A negative
+    status is that of a crash, which code that does not compile may cause."""
     places = {line.split(":", 1)[0] for line in words.splitlines() if line.endswith("[clang-diagnostic-error]")}
-    if not places or len(unit.sources) == 1:
+    if len(unit.sources) == 1 or (not places and status >= 0):
         return [unit]
     second = [source for source in unit.sources if source in places]
     if not second or len(second) == len(unit.sources):

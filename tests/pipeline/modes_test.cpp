@@ -65,9 +65,9 @@ TEST_P(Strategies, GiveTheSameTreeForAnyThreads) {
   const Extraction expected = extract(options, 1);
   for (const Parallel parallel : k_parallel) {
     options.parallel = parallel;
-    for (const int threads : {3, 8}) {
+    for (const int threads : {1, 3, 8}) {
       const Extraction result = extract(options, threads);
-      EXPECT_EQ(result.tree(), expected.tree()) << to_string(parallel) << threads;
+      EXPECT_EQ(result.tree(), expected.tree()) << to_string(options.strategy) << to_string(parallel) << threads;
       EXPECT_EQ(result.statistics.fit.objective, expected.statistics.fit.objective);
       EXPECT_EQ(result.statistics.merge.evaluations, expected.statistics.merge.evaluations);
       EXPECT_EQ(result.statistics.threads, threads);
