@@ -9,6 +9,7 @@
 
 namespace cloud2csg::bench {
 
+/// A unit vector, uniform over the sphere.
 inline Eigen::Vector3d random_direction(RandomStream& random) {
   return Eigen::Vector3d{random.normal(), random.normal(), random.normal()}.normalized();
 }

@@ -21,7 +21,7 @@ if(CLOUD2CSG_SANITIZERS)
   target_compile_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS}
                                                       -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(cloud2csg_compiler INTERFACE -fsanitize=${CLOUD2CSG_SANITIZERS})
-  # What undefined behaviour in headers of the standard library would show as: an index out of range.
+  # The standard library checks its indices: undefined behaviour is not looked for in its headers.
   target_compile_definitions(cloud2csg_compiler INTERFACE _GLIBCXX_ASSERTIONS)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     set(ignorelist ${PROJECT_SOURCE_DIR}/tests/sanitizers.ignore)
