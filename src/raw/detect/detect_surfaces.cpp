@@ -194,15 +194,6 @@ LargestSurfaces find_largest(const WorkCloud& cloud, Scale scale, const DetectOp
   }
 }
 
-/// Points on none of the surfaces.
-FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces) {
-  FreePoints points(cloud);
-  std::vector<std::uint32_t> taken;
-  for (const GrownSurface& surface : surfaces) taken.insert(taken.end(), surface.points.begin(), surface.points.end());
-  points.take(taken);
-  return points;
-}
-
 /// Finds all surfaces after the largest, then more among the points that are left, by normals of their own. Points that
 /// the first surfaces explain are no evidence for a later one. Only its other points get the new normals.
 std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const NeighbourTable& neighbours,

@@ -40,6 +40,14 @@ std::vector<std::vector<std::uint32_t>> connected_groups(std::span<const Oriente
   return groups;
 }
 
+FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces) {
+  FreePoints points(cloud);
+  std::vector<std::uint32_t> taken;
+  for (const GrownSurface& surface : surfaces) taken.insert(taken.end(), surface.points.begin(), surface.points.end());
+  points.take(taken);
+  return points;
+}
+
 double support_by(const std::vector<std::uint32_t>& indices, const Surface& surface, const WorkCloud& cloud,
                   const AgreementLimits& limits) {
   return with_agreement(surface, [&, support = limits.support()](const auto& rule) {

@@ -38,6 +38,9 @@ struct GrownSurface {
   std::vector<std::uint32_t> fitted_to = {};  ///< the points of the last fit while surfaces settle
 };
 
+/// Points on none of the surfaces. O(n)
+[[nodiscard]] FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces);
+
 /// Sum of the points' support: see support_of(). O(indices)
 [[nodiscard]] double support_by(const std::vector<std::uint32_t>& indices, const Surface& surface,
                                 const WorkCloud& cloud, const AgreementLimits& limits);

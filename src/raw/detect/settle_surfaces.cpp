@@ -9,6 +9,7 @@
 #include "core/base/parallel.hpp"
 #include "raw/detect/propose.hpp"
 #include "raw/detect/share_points.hpp"
+#include "raw/detect/unexplained.hpp"
 #include "raw/prepare/constants.hpp"
 
 namespace cloud2csg {
@@ -204,10 +205,12 @@ bool fit_all(std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, const 
 
 }  // namespace
 
-std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
+std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, WorkCloud& cloud,
                                           const NeighbourTable& neighbours, const SearchLimits& limits,
                                           const RunContext& run) {
+  std::vector<OwnNormal> own_normals;
   for (int round = 0; round < 2; ++round) {
+    if (round > 0) own_normals = turn_normals(cloud, surfaces, neighbours);
     // A small surface also agrees with points on its far continuation. These would turn it onto its neighbour, so each
     // point counts for one surface only.
     for (int again = 0; again < 5 && fit_all(surfaces, cloud, limits.agreement, run); ++again) {
@@ -220,6 +223,7 @@ std::vector<GrownSurface> settle_surfaces(std::vector<GrownSurface> surfaces, co
     surfaces = share_points(std::move(surfaces), cloud, neighbours, limits.agreement, limits.least_points, run);
     fit_all(surfaces, cloud, limits.agreement, run);
   }
+  turn_back(cloud, own_normals, surfaces);
   return surfaces;
 }
 

@@ -1,6 +1,9 @@
 #include "raw/detect/unexplained.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
 
 #include "raw/prepare/constants.hpp"
 #include "raw/prepare/local_fit.hpp"
@@ -86,6 +89,49 @@ WorkCloud unexplained_part(const FreePoints& points, const NeighbourTable& neigh
   estimate_normals_among(part.points, cloud.positions_of(part.index), noise, run);
   orient_part(part, points, neighbours);
   return part;
+}
+
+std::vector<OwnNormal> turn_normals(WorkCloud& cloud, const std::vector<GrownSurface>& surfaces,
+                                    const NeighbourTable& neighbours) {
+  constexpr std::size_t k_several = std::numeric_limits<std::size_t>::max();
+  const std::vector<std::uint32_t> free = free_points(cloud, surfaces).list();
+  std::vector<std::size_t> surface_of(free.size(), surfaces.size());
+  std::vector<std::uint8_t> is_on(cloud.size(), 0);  // the surface in turn
+  for (std::size_t number = 0; number < surfaces.size(); ++number) {
+    const GrownSurface& s = surfaces[number];
+    const std::vector<double> distances = distances_of(s.surface, cloud, free);
+    const auto mark = [&](bool value) {
+      for (const std::uint32_t i : s.points) is_on[i] = value ? 2 : 0;
+      for (std::size_t k = 0; k < free.size(); ++k) {
+        if (std::abs(distances[k]) <= s.reach) is_on[free[k]] = value ? 1 : 0;
+      }
+    };
+    mark(true);
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      if (is_on[free[k]] == 0) continue;
+      const std::span<const std::uint32_t> near = neighbours.of(free[k]);
+      const auto on = std::ranges::count_if(near, [&](std::uint32_t j) { return is_on[j] != 0; });
+      const bool is_beside = std::ranges::any_of(near, [&](std::uint32_t j) { return is_on[j] == 2; });
+      if (2 * on <= std::ssize(near) || !is_beside) continue;
+      surface_of[k] = surface_of[k] == surfaces.size() ? number : k_several;
+    }
+    mark(false);
+  }
+  std::vector<OwnNormal> turned;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (surface_of[k] >= surfaces.size()) continue;
+    OrientedPoint& point = cloud.points[free[k]];
+    turned.push_back({.point = free[k], .normal = point.normal});
+    point.normal = normal(surfaces[surface_of[k]].surface, point.position);
+  }
+  return turned;
+}
+
+void turn_back(WorkCloud& cloud, const std::vector<OwnNormal>& normals, const std::vector<GrownSurface>& surfaces) {
+  const FreePoints points = free_points(cloud, surfaces);
+  for (const OwnNormal& own : normals) {
+    if (points.is_free(own.point)) cloud.points[own.point].normal = own.normal;
+  }
 }
 
 }  // namespace cloud2csg
