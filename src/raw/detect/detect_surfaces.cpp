@@ -17,6 +17,7 @@
 #include "core/base/robust_deviation.hpp"
 #include "core/base/run.hpp"
 #include "raw/detect/grow.hpp"
+#include "raw/detect/mixed_surfaces.hpp"
 #include "raw/detect/propose.hpp"
 #include "raw/detect/settle_surfaces.hpp"
 #include "raw/detect/smoothing.hpp"
@@ -240,15 +241,26 @@ std::vector<GrownSurface> find_and_settle(WorkCloud& cloud, const NeighbourTable
   const SearchLimits limits = largest.limits;
   std::vector<GrownSurface> surfaces = find_in_two_passes(cloud, neighbours, std::move(largest), seed, run, share);
   std::vector<GrownSurface> before;
+  std::vector<OrientedPoint> points_before;  // with the normals that belong to the surfaces
   std::size_t free_before = 0;
   for (int round = 1;; ++round) {
     const std::size_t searched = free_points(cloud, surfaces).list().size();
     surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
+    MixedSurfaces mixed = replace_mixed_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
+    surfaces = std::move(mixed.surfaces);
+    if (!mixed.turned.empty()) {
+      surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
+      turn_back(cloud, mixed.turned, surfaces);
+    }
     FreePoints points = free_points(cloud, surfaces);
     const std::size_t free = points.list().size();
-    if (round > 1 && free >= free_before + limits.least_points) return before;
+    if (round > 1 && free >= free_before + limits.least_points) {
+      cloud.points = std::move(points_before);
+      return before;
+    }
     if (round == k_rounds || free < searched + limits.least_points) return surfaces;
     before = surfaces;
+    points_before = cloud.points;
     free_before = free;
     const std::vector<bool> is_off = are_off_all(points, surfaces);
     const auto is_evidence = [&](std::uint32_t i) { return is_off[i]; };

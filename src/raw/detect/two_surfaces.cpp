@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -47,12 +48,8 @@ std::size_t neighbours_for(double deviations) {
 
 /// How many points share an error: those within the length over which errors correlate, at least 1.
 double points_of_one_error(const NeighbourTable& neighbours, double smoothing) {
-  std::vector<double> areas;  // squared distance for each neighbour
-  for (std::size_t k = 0; k * neighbours.width < neighbours.indices.size(); ++k) {
-    const double distance = neighbours.distances_of(k)[k_nearest - 1];
-    areas.push_back(distance * distance / k_nearest);
-  }
-  return std::max(1.0, smoothing * smoothing / median_of(areas));
+  std::vector<double> areas = areas_of(neighbours);
+  return std::max(1.0, std::numbers::pi * smoothing * smoothing / median_of(areas));
 }
 
 /// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.

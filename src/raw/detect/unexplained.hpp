@@ -12,7 +12,7 @@ namespace cloud2csg {
 [[nodiscard]] WorkCloud unexplained_part(const FreePoints& points, const NeighbourTable& neighbours, double noise,
                                          const RunContext& run);
 
-/// The normal that a point had before turn_normals().
+/// The normal that a point had before it took that of a surface.
 struct OwnNormal {
   std::uint32_t point;
   Eigen::Vector3d normal;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/parallel.hpp"
 #include "raw/prepare/constants.hpp"
@@ -45,6 +46,17 @@ NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, 
   for_each_index_by_chunks(points.size(), k_chunk_points, run, share,
                            [&](std::size_t place) { fill_row(table, order[place], points, tree); });
   return table;
+}
+
+std::vector<double> areas_of(const NeighbourTable& neighbours) {
+  std::vector<double> areas;
+  if (neighbours.width == 0) return areas;
+  const std::size_t nearest = std::min(k_nearest, neighbours.width);
+  for (std::size_t row = 0; row * neighbours.width < neighbours.indices.size(); ++row) {
+    const double radius = neighbours.distances_of(row)[nearest - 1];
+    areas.push_back(std::numbers::pi * radius * radius / static_cast<double>(nearest));
+  }
+  return areas;
 }
 
 }  // namespace cloud2csg

@@ -43,4 +43,8 @@ struct NeighbourTable {
 [[nodiscard]] NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
                                              const RunContext& run, const StageShare& share = {});
 
+/// Surface area at each point of a table, from the distance to its k_nearest-th neighbour, or the farthest of fewer.
+/// O(n)
+[[nodiscard]] std::vector<double> areas_of(const NeighbourTable& neighbours);
+
 }  // namespace cloud2csg

@@ -23,13 +23,7 @@ std::vector<double> point_areas(const PointCloud& cloud, const RunContext& run) 
   const CentredPoints local = centred(cloud.positions);
   const NeighbourTree tree(local.points);
   const NeighbourTable neighbours = find_neighbours(local.points, tree, k_nearest, run);
-  std::vector<double> areas(cloud.size(), 0.0);
-  if (neighbours.width == 0) return areas;
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    const double radius = neighbours.distances_of(i).back();
-    areas[i] = std::numbers::pi * radius * radius / static_cast<double>(neighbours.width);
-  }
-  return areas;
+  return neighbours.width == 0 ? std::vector<double>(cloud.size(), 0.0) : areas_of(neighbours);
 }
 
 double spacing_of(std::vector<double> areas) {
