@@ -38,8 +38,9 @@ RC_GTEST_PROP(WithAgreement, IsDistanceAndNormalOfTheSurface, ()) {
     const Surface surface = random_surface(type, random);
     const Eigen::Vector3d place = test::random_within(2, random);
     const Eigen::Vector3d direction = test::random_direction(random);
-    const Agreement agreement =
-        with_agreement(surface, [&](const auto& rule) -> Agreement { return rule(place, direction); });
+    const Agreement agreement = with_agreement(surface, [&](const auto& rule) -> Agreement {
+      return rule({place, direction});
+    });
     RC_ASSERT(std::abs(agreement.distance - signed_distance(surface, place)) < 1e-12);
     RC_ASSERT(std::abs(agreement.cosine - normal(surface, place).dot(direction)) < 1e-9);
   }
@@ -56,7 +57,11 @@ RC_GTEST_PROP(ForEachAgreeing, FindsThePointsThatAPlainLoopFinds, ()) {
       cloud.normals.push_back(point.normal);
     }
   }
-  const WorkCloud work = make_work_cloud(cloud);
+  WorkCloud work = make_work_cloud(cloud);
+  if (random.chance(0.5)) {
+    for (OrientedPoint& point : work.points) point.precision = random.uniform(0.1, 1);
+    work.runs = runs_of(work.points);
+  }
   for (const SurfaceType type : k_types) {
     Surface surface = random_surface(type, random);
     if (random.chance(0.5))
@@ -68,7 +73,7 @@ RC_GTEST_PROP(ForEachAgreeing, FindsThePointsThatAPlainLoopFinds, ()) {
     std::vector<std::uint32_t> fast;
     with_agreement(surface, [&](const auto& rule) {
       for (std::uint32_t i = 0; i < work.size(); ++i) {
-        if (is_odd(i) && limits.hold(rule(work.points[i].position, work.points[i].normal))) plain.push_back(i);
+        if (is_odd(i) && limits.hold(rule(work.points[i]))) plain.push_back(i);
       }
     });
     for_each_agreeing(surface, work, limits, is_odd, [&](std::uint32_t i, const Agreement&) { fast.push_back(i); });

@@ -207,6 +207,38 @@ RC_GTEST_PROP(FitSurface, BearsWithAnyPoints, ()) {
   }
 }
 
+TEST_P(EachSurface, FollowsThePrecisePoints) {
+  double off = 0;
+  double off_if_equal = 0;
+  for (int repeat = 0; repeat < k_repeats; ++repeat) {
+    Case sample = make_case(GetParam(), repeat, {.noise = k_noise});
+    RandomStream random(static_cast<std::uint64_t>(repeat));
+    std::vector<double> precisions;
+    for (Eigen::Vector3d& point : sample.patch.points) {
+      precisions.push_back(random.chance(0.5) ? 1 : 0.1);
+      if (precisions.back() < 1) point += 10 * k_noise * random.normal() * normal(sample.truth, point);
+    }
+    const auto fit = fit_surface(sample.truth, sample.patch.points, {.precisions = precisions});
+    const auto equal = fit_surface(sample.truth, sample.patch.points);
+    ASSERT_TRUE(fit && equal);
+    EXPECT_NEAR(fit->noise, k_noise, 0.15 * k_noise);
+    off += test::largest_distance(fit->surface, sample.truth, {});
+    off_if_equal += test::largest_distance(equal->surface, sample.truth, {});
+  }
+  EXPECT_LT(off, 0.7 * off_if_equal);
+}
+
+TEST_P(EachSurface, OfEqualPrecisionsIsThatOfTheirNoise) {
+  const Case sample = make_case(GetParam(), 1, {.noise = k_noise});
+  const std::vector<double> precisions(sample.patch.points.size(), 0.25);
+  const auto fit = fit_surface(sample.truth, sample.patch.points, {.noise = k_noise / 4, .precisions = precisions});
+  const auto plain = fit_surface(sample.truth, sample.patch.points, {.noise = k_noise});
+  ASSERT_TRUE(fit && plain);
+  EXPECT_LT(test::largest_distance(fit->surface, plain->surface, {}), 1e-9);
+  EXPECT_EQ(fit->inliers, plain->inliers);
+  EXPECT_NEAR(fit->uncertainty.position, plain->uncertainty.position, 1e-6 * plain->uncertainty.position);
+}
+
 TEST(FitSurface, TakesSomeOfManyPoints) {
   const Case sample = make_case(SurfaceType::cylinder, 1, {.count = 9000, .noise = k_noise});
   const auto few = fit_surface(sample.truth, sample.patch.points, {.most_points = 300});

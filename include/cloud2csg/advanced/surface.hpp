@@ -54,6 +54,8 @@ struct FitOptions {
   /// A larger set is thinned evenly: takes a few milliseconds, and adds uncertainty far below that of the noise.
   std::size_t most_points = 4000;
   HeldValue held = HeldValue::none;
+  /// By point: the noise over the point's own. A distance counts times this. Empty: all have the same noise.
+  std::span<const double> precisions = {};
 };
 
 /// Standard deviations of the fitted values; infinite for undetermined values, zero for held ones and those outside of
@@ -68,9 +70,9 @@ struct SurfaceUncertainty {
 
 struct SurfaceFit {
   Surface surface;
-  double rms = 0;           ///< root mean square distance of the inliers
+  double rms = 0;           ///< root mean square distance of the inliers, each times its precision
   double noise = 0;         ///< noise that the fit used
-  std::size_t inliers = 0;  ///< given points within 4.685 times the noise
+  std::size_t inliers = 0;  ///< given points within 4.685 times their noise
   SurfaceUncertainty uncertainty = {};
 };
 

@@ -16,9 +16,11 @@ namespace cloud2csg {
 struct OrientedPoint {
   Eigen::Vector3d position;
   Eigen::Vector3d normal;  ///< unit length, outward
+  double precision = 1;    ///< the cloud's noise over the point's own
 };
 
-/// A point's signed distance from a surface, and the cosine between the point's normal and the surface's.
+/// A point's signed distance from a surface times its precision, and the cosine between the point's normal and the
+/// surface's.
 struct Agreement {
   double distance, cosine;
 };
@@ -67,15 +69,29 @@ struct AgreementLimits {
     result.distance = reach;
     return result;
   }
+  /// The same for points of this precision, whose distances do not count times it.
+  [[nodiscard]] AgreementLimits at(double precision) const {
+    AgreementLimits result = *this;
+    result.distance /= precision;
+    result.noise /= precision;
+    return result;
+  }
   [[nodiscard]] bool hold(const Agreement& agreement) const {
     return std::abs(agreement.distance) <= distance && agreement.cosine >= cosine;
   }
 };
 
-/// Calls f(rule) and returns its result. rule(position, normal) gives an Agreement by signed_distance() and normal() of
-/// the surface. This dispatches on the type once, not for each point.
+/// Calls f(rule) and returns its result. rule(point) gives an Agreement by signed_distance() and normal() of the
+/// surface. This dispatches on the type once, not for each point.
 template <class Function>
-auto with_agreement(const Surface& s, const Function& f) {
+auto with_agreement(const Surface& s, const Function& of_points) {
+  const auto f = [&](const auto& rule) {
+    return of_points([&](const OrientedPoint& p) -> Agreement {
+      Agreement agreement = rule(p.position, p.normal);
+      agreement.distance *= p.precision;
+      return agreement;
+    });
+  };
   using Vector = Eigen::Vector3d;
   const double tiny = 1e-300;  // replaces zero where the surface has no normal
   const double side = s.concave && s.type != SurfaceType::plane ? -1 : 1;

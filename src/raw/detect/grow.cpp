@@ -52,7 +52,7 @@ double support_by(const std::vector<std::uint32_t>& indices, const Surface& surf
                   const AgreementLimits& limits) {
   return with_agreement(surface, [&, support = limits.support()](const auto& rule) {
     double sum = 0;
-    for (const std::uint32_t i : indices) sum += support(rule(cloud.points[i].position, cloud.points[i].normal));
+    for (const std::uint32_t i : indices) sum += support(rule(cloud.points[i]));
     return sum;
   });
 }
@@ -63,7 +63,7 @@ std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
     std::vector<double> distances;
     distances.reserve(points.size());
     for (const std::uint32_t i : points) {
-      distances.push_back(rule(cloud.points[i].position, cloud.points[i].normal).distance);
+      distances.push_back(rule(cloud.points[i]).distance);
     }
     return distances;
   });

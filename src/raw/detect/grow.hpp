@@ -45,7 +45,7 @@ struct GrownSurface {
 [[nodiscard]] double support_by(const std::vector<std::uint32_t>& indices, const Surface& surface,
                                 const WorkCloud& cloud, const AgreementLimits& limits);
 
-/// Signed distances of the points from the surface. O(n)
+/// Signed distances of the points from the surface times their precision. O(n)
 [[nodiscard]] std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
                                                std::span<const std::uint32_t> points);
 

@@ -11,6 +11,7 @@
 
 #include "core/base/disjoint_sets.hpp"
 #include "core/base/parallel.hpp"
+#include "core/base/robust_deviation.hpp"
 #include "core/geometry/subset.hpp"
 #include "raw/detect/orient_mixture.hpp"
 #include "raw/detect/surface_mixture.hpp"
@@ -158,6 +159,12 @@ std::vector<Vector3d> positions_of(std::span<const std::uint32_t> points, const 
   return positions;
 }
 
+double median_precision(std::span<const std::uint32_t> points, const WorkCloud& cloud) {
+  std::vector<double> precisions;
+  for (const std::uint32_t i : points) precisions.push_back(cloud.points[i].precision);
+  return median_of(precisions);
+}
+
 /// The surfaces that the group has now.
 SurfaceMixture mixture_of(const Group& group, const std::vector<GrownSurface>& surfaces) {
   SurfaceMixture mixture;
@@ -220,11 +227,12 @@ std::optional<SurfaceMixture> better_mixture(const Group& group, const std::vect
                                              const WorkCloud& cloud, const NeighbourTable& neighbours,
                                              const SearchLimits& limits) {
   if (group.points.size() < limits.least_points) return std::nullopt;
-  const double noise = limits.agreement.noise;
+  const AgreementLimits agreement = limits.agreement.at(median_precision(group.points, cloud));
+  const double noise = agreement.noise;
   const Comparison comparison(group, cloud, neighbours);
   const std::size_t least_of_sample = limits.least_points * comparison.sample().size() / group.points.size();
   std::optional<SurfaceMixture> best =
-      fit_mixture(comparison.sample(), std::max(k_nearest, least_of_sample), limits.agreement);
+      fit_mixture(comparison.sample(), std::max(k_nearest, least_of_sample), agreement);
   if (!best) return std::nullopt;
   best->surface_of = nearest_surfaces(best->surfaces, comparison.all(), k_deviations * noise);
   const SurfaceMixture now = mixture_of(group, surfaces);

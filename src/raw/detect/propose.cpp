@@ -30,15 +30,18 @@ using Neighbourhood = std::span<const OrientedPoint>;
 
 struct Columns {
   std::vector<Eigen::Vector3d> positions, normals;
+  std::vector<double> precisions;
 };
 
 Columns columns_of(std::span<const OrientedPoint> points) {
   Columns columns;
   columns.positions.reserve(points.size());
   columns.normals.reserve(points.size());
+  columns.precisions.reserve(points.size());
   for (const OrientedPoint& p : points) {
     columns.positions.push_back(p.position);
     columns.normals.push_back(p.normal);
+    columns.precisions.push_back(p.precision);
   }
   return columns;
 }
@@ -157,8 +160,9 @@ std::optional<Surface> cone_through(std::span<const OrientedPoint, 3> points) {
 
 std::optional<Surface> fit_plausible(const Surface& start, std::span<const OrientedPoint> points,
                                      const AgreementLimits& limits) {
-  const std::optional<SurfaceFit> fit =
-      fit_surface(start, columns_of(points).positions, {.noise = limits.distance / k_deviations});
+  const Columns columns = columns_of(points);
+  const std::optional<SurfaceFit> fit = fit_surface(
+      start, columns.positions, {.noise = limits.distance / k_deviations, .precisions = columns.precisions});
   return if_plausible(fit ? std::optional(fit->surface) : std::nullopt, limits);
 }
 

@@ -22,13 +22,11 @@ bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, 
 
 /// Costs of the points on a surface with this noise, if their normals are not on another side of an edge.
 std::vector<double> costs_of(const Surface& surface, const std::vector<OrientedPoint>& points, double noise) {
-  // Estimated normals near an edge are between those of its faces: 45 degrees off both, give or take their noise.
-  constexpr double k_edge_cosine = 0.5;
   return with_agreement(surface, [&](const auto& rule) {
     std::vector<double> costs;
     costs.reserve(points.size());
     for (const OrientedPoint& p : points) {
-      const Agreement agreement = rule(p.position, p.normal);
+      const Agreement agreement = rule(p);
       costs.push_back(cost_of(agreement.cosine >= k_edge_cosine ? agreement.distance : k_deviations * noise, noise));
     }
     return costs;

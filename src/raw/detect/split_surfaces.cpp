@@ -62,7 +62,7 @@ double gain_of(const TwoSurfaces& two, const Surface& one, const NearPoints& nea
     if (NearPoints::is_for_fit(k)) continue;
     const Vector3d& position = near.cloud.points[near.points[k]].position;
     distances.push_back(near.distances[k]);
-    places.emplace_back(position - near.distances[k] * normal(one, position));
+    places.emplace_back(position - signed_distance(one, position) * normal(one, position));
     cost += cost_of(two.distance(k), near.noise);
   }
   return smooth_cost(distances, places, near.noise) - cost;
@@ -94,7 +94,8 @@ bool are_apart(const TwoSurfaces& two, const NearPoints& near) {
   for (std::size_t k = 0; k < near.points.size(); ++k) {
     const std::size_t is_clear = share_on_own_side(two, near, k) >= k_clear_share ? 1 : 0;
     if (is_clear == 1 && two.side[k] == 0) continue;
-    gaps[is_clear] += std::abs(two.distances[0][k] - two.distances[1][k]);
+    const double precision = near.cloud.points[near.points[k]].precision;
+    gaps[is_clear] += std::abs(two.distances[0][k] - two.distances[1][k]) / precision;
     ++counts[is_clear];
   }
   if (counts[0] == 0 || counts[1] == 0) return true;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "core/base/parallel.hpp"
 #include "raw/prepare/constants.hpp"
 #include "raw/prepare/local_fit.hpp"
 #include "raw/prepare/orientation.hpp"
@@ -40,11 +41,10 @@ void estimate_normals_among(std::vector<OrientedPoint>& points, const Points& po
                             const RunContext& run) {
   const NeighbourTable near = find_neighbours(positions, NeighbourTree(positions), k_voters, run);
   if (near.width < 3) return;
-  const std::vector<LocalPlane> planes = fit_local_planes(positions, near, noise, k_bend, run);
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Vector3d& normal = planes[k].normal;
+  for_each_index(points.size(), run, [&](std::size_t k) {
+    const Vector3d normal = fit_local_plane(positions, k, near, noise / points[k].precision, k_bend).normal;
     points[k].normal = normal.dot(points[k].normal) < 0 ? Vector3d(-normal) : normal;
-  }
+  });
 }
 
 /// Turns the normals of the part so that they agree with those of the explained points around it, across its edges.

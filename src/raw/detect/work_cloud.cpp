@@ -73,11 +73,16 @@ std::vector<PointRun> runs_of(std::span<const OrientedPoint> points) {
   for (std::size_t first = 0; first < points.size(); first += k_chunk_points) {
     const std::size_t last = std::min(first + k_chunk_points, points.size());
     AlignedBox box;
-    for (const OrientedPoint& p : points.subspan(first, last - first)) box.extend(p.position);
+    double precision = 1;
+    for (const OrientedPoint& p : points.subspan(first, last - first)) {
+      box.extend(p.position);
+      precision = std::min(precision, p.precision);
+    }
     runs.push_back({.first = static_cast<std::uint32_t>(first),
                     .last = static_cast<std::uint32_t>(last),
                     .middle = box.center(),
-                    .radius = 0.5 * box.diagonal().norm() + k_rounding});
+                    .radius = 0.5 * box.diagonal().norm() + k_rounding,
+                    .precision = precision});
   }
   return runs;
 }

@@ -18,6 +18,7 @@ struct PointRun {
   std::uint32_t first, last;
   Eigen::Vector3d middle;
   double radius;
+  double precision;  ///< least of the points
 };
 
 /// A cloud for sampling: centred, scaled to a diagonal of 1 and sorted along a Z curve, so octree cells are runs.
@@ -61,10 +62,11 @@ void for_each_agreeing(const Surface& surface, const WorkCloud& cloud, const Agr
                        const IsWanted& is_wanted, const Function& f) {
   with_agreement(surface, [&](const auto& rule) {
     for (const PointRun& run : cloud.runs) {
-      if (std::abs(rule(run.middle, surface.axis).distance) > limits.distance + run.radius) continue;
+      const double distance = std::abs(rule({run.middle, surface.axis}).distance);
+      if (distance > limits.distance / run.precision + run.radius) continue;
       for (std::uint32_t i = run.first; i < run.last; ++i) {
         if (!is_wanted(i)) continue;
-        const Agreement agreement = rule(cloud.points[i].position, cloud.points[i].normal);
+        const Agreement agreement = rule(cloud.points[i]);
         if (limits.hold(agreement)) f(i, agreement);
       }
     }

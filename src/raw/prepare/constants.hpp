@@ -36,6 +36,9 @@ constexpr double k_wide_gap = 1.4;
 constexpr double k_far_radii = 2.5;
 /// Cosine of two normals that are alike: of one smooth surface, or, with opposite signs, of the sides of a wall.
 constexpr double k_alike_cosine = 0.8;
+/// Least cosine of a point's estimated normal and that of its surface: near an edge, such normals are between those of
+/// its faces, 45 degrees off both, give or take their noise.
+constexpr double k_edge_cosine = 0.5;
 /// Sine of a line's angle to a surface (14 degrees) that is no error of the surface's normal.
 constexpr double k_steep_sine = 0.25;
 /// A clear majority; and a figure below this share of another is clearly less.

@@ -186,14 +186,18 @@ LocalPlane fit_local_plane(const Points& points, std::size_t point, std::span<co
   return fit(places, tolerance, random);
 }
 
+LocalPlane fit_local_plane(const Points& points, std::size_t point, const NeighbourTable& neighbours, double noise,
+                           double bend) {
+  if (neighbours.width < 3) return {};
+  const double radius = neighbours.distances_of(point).back();
+  return fit_local_plane(points, point, neighbours.of(point), std::max(k_deviations * noise, bend * radius));
+}
+
 std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours, double noise,
                                          double bend, const RunContext& run, const StageShare& share) {
   std::vector<LocalPlane> planes(points.size());
-  if (neighbours.width < 3) return planes;
-  for_each_index_by_chunks(points.size(), k_chunk_points, run, share, [&](std::size_t i) {
-    const double radius = neighbours.distances_of(i).back();
-    planes[i] = fit_local_plane(points, i, neighbours.of(i), std::max(k_deviations * noise, bend * radius));
-  });
+  for_each_index_by_chunks(points.size(), k_chunk_points, run, share,
+                           [&](std::size_t i) { planes[i] = fit_local_plane(points, i, neighbours, noise, bend); });
   return planes;
 }
 

@@ -21,8 +21,12 @@ struct LocalPlane {
 [[nodiscard]] LocalPlane fit_local_plane(const Points& points, std::size_t point,
                                          std::span<const std::uint32_t> neighbours, double tolerance);
 
-/// The planes of all points, with a row of neighbours each. The tolerance is that of the noise, or the share `bend` of
-/// the neighbourhood's radius if that is larger, because curved surfaces leave their planes. O(n k) @throws Cancelled
+/// The same with a row of a table. The tolerance is that of the noise, or the share `bend` of the neighbourhood's
+/// radius if that is larger, because curved surfaces leave their planes.
+[[nodiscard]] LocalPlane fit_local_plane(const Points& points, std::size_t point, const NeighbourTable& neighbours,
+                                         double noise, double bend);
+
+/// The same for all points. O(n k) @throws Cancelled
 [[nodiscard]] std::vector<LocalPlane> fit_local_planes(const Points& points, const NeighbourTable& neighbours,
                                                        double noise, double bend, const RunContext& run,
                                                        const StageShare& share = {});

@@ -29,6 +29,7 @@ struct RobustDistances {
 
   const Chart& chart;
   std::span<const Eigen::Vector3d> points;
+  std::span<const double> precisions;
   double noise;
   RobustLoss loss;
   std::size_t held;
@@ -53,10 +54,12 @@ struct RobustDistances {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double distance =
           jacobian == nullptr ? chart.distance(place, points[i]) : chart.distance(place, points[i], slopes);
-      const auto [value, slope] = loss(distance / noise);
+      const auto [value, slope] = loss(distance * precisions[i] / noise);
       residuals[i] = value;
       if (jacobian == nullptr) continue;
-      for (std::size_t k = held; k < count; ++k) jacobian[(k - held) * points.size() + i] = slope * slopes[k] / noise;
+      for (std::size_t k = held; k < count; ++k) {
+        jacobian[(k - held) * points.size() + i] = slope * slopes[k] * precisions[i] / noise;
+      }
     }
     return true;
   }
@@ -79,10 +82,13 @@ Chart::Row solve(const RobustDistances& distances, double tolerance) {
   return distances.all(free.data());
 }
 
-double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> points) {
+double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> points,
+                      std::span<const double> precisions) {
   std::vector<double> distances;
   distances.reserve(points.size());
-  for (const Eigen::Vector3d& point : points) distances.push_back(std::abs(signed_distance(surface, point)));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    distances.push_back(std::abs(signed_distance(surface, points[i])) * precisions[i]);
+  }
   return robust_deviation(distances);
 }
 
@@ -93,8 +99,9 @@ struct Solution {
 
 class Fitter {
  public:
-  Fitter(std::vector<Eigen::Vector3d> points, double floor, std::optional<double> noise, HeldValue held)
-      : points_(std::move(points)), floor_(floor), given_(noise), held_(held) {}
+  Fitter(std::vector<Eigen::Vector3d> points, std::vector<double> precisions, double floor, std::optional<double> noise,
+         HeldValue held)
+      : points_(std::move(points)), precisions_(std::move(precisions)), floor_(floor), given_(noise), held_(held) {}
 
   [[nodiscard]] std::optional<Solution> fit(const Surface& start) const {
     return given_ ? fit_within(start, *given_) : fit_and_measure(start);
@@ -116,11 +123,11 @@ class Fitter {
 
   [[nodiscard]] std::optional<Solution> fit_and_measure(const Surface& start) const {
     // Under Huber's loss every point pulls, which corrects even a distant start.
-    double noise = std::max(measured_noise(start, points_), floor_);
+    double noise = std::max(measured_noise(start, points_, precisions_), floor_);
     std::optional<Surface> surface = improved(start, noise, {LossType::huber, k_huber}, k_rough);
     bool is_settled = false;
     for (int round = 0; surface && !is_settled && round < k_most_rounds; ++round) {
-      const double measured = std::max(measured_noise(*surface, points_), floor_);
+      const double measured = std::max(measured_noise(*surface, points_, precisions_), floor_);
       // Equality with the noise of the first loss means nothing.
       is_settled = round + 1 == k_most_rounds || (round > 0 && std::abs(measured - noise) < k_settled * noise);
       noise = measured;
@@ -133,14 +140,20 @@ class Fitter {
   [[nodiscard]] std::optional<Surface> improved(const Surface& surface, double noise, const RobustLoss& loss,
                                                 double tolerance) const {
     const Chart chart(surface);
-    const Chart::Row unknowns =
-        solve({.chart = chart, .points = points_, .noise = noise, .loss = loss, .held = chart.held(held_)}, tolerance);
+    const Chart::Row unknowns = solve({.chart = chart,
+                                       .points = points_,
+                                       .precisions = precisions_,
+                                       .noise = noise,
+                                       .loss = loss,
+                                       .held = chart.held(held_)},
+                                      tolerance);
     const Chart::Place place = chart.at({unknowns.data(), chart.unknowns()});
     if (!chart.is_surface(place)) return std::nullopt;
     return chart.surface(place);
   }
 
   std::vector<Eigen::Vector3d> points_;
+  std::vector<double> precisions_;
   double floor_;
   std::optional<double> given_;
   HeldValue held_;
@@ -173,9 +186,9 @@ SurfaceUncertainty Fitter::uncertainty(const Solution& solution, double rms) con
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
   Chart::Row slopes = {};
   Eigen::Index inliers = 0;
-  for (const Eigen::Vector3d& point : points_) {
-    if (std::abs(chart.distance(place, point, slopes)) > k_tukey * solution.noise) continue;
-    const auto row = Eigen::Map<const Eigen::VectorXd>(slopes.data(), count);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (std::abs(chart.distance(place, points_[i], slopes)) * precisions_[i] > k_tukey * solution.noise) continue;
+    const Eigen::VectorXd row = precisions_[i] * Eigen::Map<const Eigen::VectorXd>(slopes.data(), count);
     information += row * row.transpose();
     ++inliers;
   }
@@ -208,21 +221,25 @@ std::optional<SurfaceFit> fit_surface(const Surface& start, std::span<const Eige
                                       const FitOptions& options) {
   assert(std::abs(start.axis.norm() - 1) < 1e-6);
   if (points.size() < static_cast<std::size_t>(Chart(start).unknowns())) return std::nullopt;
-  const std::vector<Eigen::Vector3d> some =
-      some_of(points, std::max<std::size_t>(options.most_points, Chart::k_most_unknowns));
+  assert(options.precisions.empty() || options.precisions.size() == points.size());
+  const std::size_t most = std::max<std::size_t>(options.most_points, Chart::k_most_unknowns);
+  const std::vector<Eigen::Vector3d> some = some_of(points, most);
+  const auto precision = [&](std::size_t i) { return options.precisions.empty() ? 1 : options.precisions[i]; };
+  const std::vector<double> precisions =
+      options.precisions.empty() ? std::vector<double>(some.size(), 1) : some_of(options.precisions, most);
   const UnitFrame frame = unit_frame(some);
   // Coordinates far from the origin carry rounding errors, so smaller residuals have no meaning.
   const double rounding = std::numeric_limits<double>::epsilon() * frame.origin.norm() / frame.scale;
   const double floor = std::max(k_smallest_noise, 4 * rounding);
   const auto noise = options.noise ? std::optional(std::max(*options.noise / frame.scale, floor)) : std::nullopt;
-  const Fitter fitter(to_frame(frame, some), floor, noise, options.held);
+  const Fitter fitter(to_frame(frame, some), precisions, floor, noise, options.held);
   const std::optional<Solution> solution = fitter.fit(to_frame(frame, start));
   if (!solution) return std::nullopt;
 
   SurfaceFit fit{.surface = from_frame(frame, solution->surface), .noise = solution->noise * frame.scale};
   double squares = 0;
-  for (const Eigen::Vector3d& point : points) {
-    const double distance = signed_distance(fit.surface, point);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = signed_distance(fit.surface, points[i]) * precision(i);
     if (std::abs(distance) > k_tukey * fit.noise) continue;
     squares += distance * distance;
     ++fit.inliers;

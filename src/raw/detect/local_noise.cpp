@@ -1,0 +1,135 @@
+#include "raw/detect/local_noise.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.hpp"
+#include "raw/prepare/constants.hpp"
+#include "raw/prepare/local_fit.hpp"
+
+namespace cloud2csg {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Successive points near a plane.
+struct Patch {
+  Vector3d middle;
+  double noise;  ///< standard deviation of the distances around a slope
+};
+
+/// Signed distances of points from a plane, each times its precision.
+struct PlanePoints {
+  std::vector<std::uint32_t> points;
+  std::vector<double> distances;
+};
+
+/// The points around a plane that are on no other surface.
+PlanePoints points_around(std::size_t plane, const std::vector<GrownSurface>& surfaces,
+                          const std::vector<std::size_t>& surface_of, const WorkCloud& cloud,
+                          const AgreementLimits& limits) {
+  // With half of it, points with four times the noise seem to have two and a half times; double takes in more detail.
+  constexpr double k_widest = 4;
+  AgreementLimits wide = limits;
+  wide.distance *= k_widest;
+  wide.cosine = k_edge_cosine;
+  const auto is_wanted = [&](std::uint32_t i) { return surface_of[i] == plane || surface_of[i] == surfaces.size(); };
+  PlanePoints around;
+  for_each_agreeing(surfaces[plane].surface, cloud, wide, is_wanted, [&](std::uint32_t i, const Agreement& agreement) {
+    around.points.push_back(i);
+    around.distances.push_back(agreement.distance);
+  });
+  return around;
+}
+
+/// The patch of the points [first, last). The slope is that of a round surface that touches the plane.
+Patch patch_of(const Surface& plane, const PlanePoints& around, std::size_t first, std::size_t last,
+               const WorkCloud& cloud) {
+  const auto count = static_cast<double>(last - first);
+  const Vector3d u = plane.axis.unitOrthogonal();
+  const Vector3d v = plane.axis.cross(u);
+  const Vector3d origin = cloud.points[around.points[first]].position;
+  Vector3d middle = Vector3d::Zero();
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  Vector3d products = Vector3d::Zero();
+  double squares = 0;
+  for (std::size_t k = first; k < last; ++k) {
+    const Vector3d& position = cloud.points[around.points[k]].position;
+    const Vector3d terms(1, u.dot(position - origin), v.dot(position - origin));
+    middle += position / count;
+    scatter += terms * terms.transpose();
+    products += around.distances[k] * terms;
+    squares += around.distances[k] * around.distances[k];
+  }
+  const Vector3d slope = scatter.ldlt().solve(products);
+  return {.middle = middle, .noise = std::sqrt(std::max(0.0, squares - products.dot(slope)) / (count - 3))};
+}
+
+std::vector<Patch> patches_of(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
+                              const AgreementLimits& limits) {
+  constexpr std::size_t k_patch = 2 * k_around;
+  std::vector<std::size_t> surface_of(cloud.size(), surfaces.size());
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    for (const std::uint32_t i : surfaces[s].points) surface_of[i] = s;
+  }
+  std::vector<Patch> patches;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (surfaces[s].surface.type != SurfaceType::plane) continue;
+    const PlanePoints around = points_around(s, surfaces, surface_of, cloud, limits);
+    for (std::size_t first = 0; first + k_patch <= around.points.size(); first += k_patch) {
+      patches.push_back(patch_of(surfaces[s].surface, around, first, first + k_patch, cloud));
+    }
+  }
+  return patches;
+}
+
+}  // namespace
+
+std::vector<double> local_noise(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
+                                const AgreementLimits& limits, const RunContext& run) {
+  const std::vector<Patch> patches = patches_of(surfaces, cloud, limits);
+  if (patches.size() < k_around) return {};
+  Points middles(patches.size());
+  for (std::size_t p = 0; p < patches.size(); ++p) middles.set(p, patches[p].middle);
+  const NeighbourTree tree(middles);
+  const double usual = limits.distance / k_deviations;
+  std::vector<double> noise(cloud.size(), 1);
+  for_each_index(cloud.size(), run, [&](std::size_t i) {
+    std::vector<std::uint32_t> near(k_around);
+    std::vector<double> squares(k_around);
+    near.resize(tree.find(cloud.points[i].position, near, squares));
+    std::vector<double> noises;
+    for (const std::uint32_t p : near) noises.push_back(patches[p].noise);
+    // The lower quartile: patches across steps seem noisy.
+    const auto quartile = noises.begin() + static_cast<std::ptrdiff_t>(noises.size() / 4);
+    std::ranges::nth_element(noises, quartile);
+    if (usual < k_clear_share * *quartile) noise[i] = *quartile / usual;
+  });
+  const auto noisy = static_cast<double>(std::ranges::count_if(noise, [](double factor) { return factor > 1; }));
+  return noisy < k_negligible_share * static_cast<double>(noise.size()) ? std::vector<double>{} : noise;
+}
+
+void account_for_noise(WorkCloud& cloud, const std::vector<double>& local_noise, Scale scale, const RunContext& run) {
+  const double noise = scale.noise / cloud.diagonal;
+  double least = 1;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.points[i].precision /= local_noise[i];
+    least = std::min(least, cloud.points[i].precision);
+  }
+  cloud.runs = runs_of(cloud.points);
+  const Points positions = cloud.positions();
+  scale.noise /= least;
+  const NeighbourTable near = find_neighbours(positions, NeighbourTree(positions), plane_neighbours(scale), run);
+  const std::vector<OrientedPoint> before = cloud.points;
+  for_each_index(cloud.size(), run, [&](std::size_t i) {
+    if (local_noise[i] == 1) return;
+    OrientedPoint& point = cloud.points[i];
+    point.normal = fit_local_plane(positions, i, near, noise / point.precision, k_bend_tolerance).normal;
+    double votes = 0;
+    for (const std::uint32_t j : near.nearest(i, k_voters)) votes += before[j].normal.dot(point.normal);
+    if (votes < 0) point.normal = -point.normal;
+  });
+}
+
+}  // namespace cloud2csg
