@@ -65,7 +65,8 @@ struct Detection {
   /// Standard deviation of the points across the planes among the largest surfaces. That of the scale if there are
   /// none, or if a tolerance is given. In the cloud's units.
   double noise = 0;
-  double distance_tolerance = 0;  ///< the option, or the default by this noise
+  /// The option, or the default by this noise. Points of places that are clearly noisier may lie farther off.
+  double distance_tolerance = 0;
   /// Points on no surface, beside edges that a smoothing of the cloud has rounded; ascending. None if a tolerance is
   /// given.
   std::vector<std::uint32_t> smoothed = {};

@@ -54,7 +54,7 @@ struct FitOptions {
   /// A larger set is thinned evenly: takes a few milliseconds, and adds uncertainty far below that of the noise.
   std::size_t most_points = 4000;
   HeldValue held = HeldValue::none;
-  /// By point: the noise over the point's own. A distance counts times this. Empty: all have the same noise.
+  /// By point: the noise over the point's own, above 0. A distance counts times this. Empty: all have the same noise.
   std::span<const double> precisions = {};
 };
 

@@ -81,12 +81,12 @@ struct AgreementLimits {
   }
 };
 
-/// Calls f(rule) and returns its result. rule(point) gives an Agreement by signed_distance() and normal() of the
+/// Calls function(rule) and returns its result. rule(point) gives an Agreement by signed_distance() and normal() of the
 /// surface. This dispatches on the type once, not for each point.
 template <class Function>
-auto with_agreement(const Surface& s, const Function& of_points) {
+auto with_agreement(const Surface& s, const Function& function) {
   const auto f = [&](const auto& rule) {
-    return of_points([&](const OrientedPoint& p) -> Agreement {
+    return function([&](const OrientedPoint& p) -> Agreement {
       Agreement agreement = rule(p.position, p.normal);
       agreement.distance *= p.precision;
       return agreement;

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "cloud2csg/advanced/detect.hpp"
 #include "cloud2csg/run_context.hpp"
-#include "core/base/parallel.hpp"
-#include "core/base/random.hpp"
-#include "core/base/robust_deviation.hpp"
 #include "core/base/run.hpp"
 #include "raw/detect/find_surfaces.hpp"
 #include "raw/detect/grow.hpp"
@@ -28,23 +23,21 @@
 namespace cloud2csg {
 namespace {
 
-/// By point: whether it is free and beyond the reach of all surfaces. A free point within it has another normal, as
-/// points along an edge may have. O(free points x surfaces)
-std::vector<bool> are_off_all(const FreePoints& points, const std::vector<GrownSurface>& surfaces) {
-  std::vector<bool> is_off(points.cloud().size(), false);
-  for (const std::uint32_t i : points.list()) is_off[i] = true;
-  for (const GrownSurface& surface : surfaces) {
-    const std::vector<double> distances = distances_of(surface.surface, points.cloud(), points.list());
-    for (std::size_t k = 0; k < distances.size(); ++k) {
-      if (std::abs(distances[k]) <= surface.reach) is_off[points.list()[k]] = false;
-    }
-  }
-  return is_off;
+/// Settles all surfaces, and again where mixed ones were replaced.
+std::vector<GrownSurface> settled(std::vector<GrownSurface> surfaces, WorkCloud& cloud,
+                                  const NeighbourTable& neighbours, const SearchLimits& limits, const RunContext& run) {
+  surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
+  MixedSurfaces mixed = replace_mixed_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
+  if (mixed.turned.empty()) return std::move(mixed.surfaces);
+  surfaces = settle_surfaces(std::move(mixed.surfaces), cloud, neighbours, limits, run);
+  turn_back(cloud, mixed.turned, surfaces);
+  return surfaces;
 }
 
-/// Settles surfaces. Where surfaces did not last, more points are free than were searched in vain: then
-/// it finds more among the free ones. New surfaces may take points from a good one until it does not last. So a
-/// round is undone if it leaves more points free than the one before did, by at least as many as make a surface.
+/// Settles surfaces. Where surfaces did not last, more points are free than were searched in vain: then it finds more
+/// among the free ones. A free point within reach of a surface is no evidence: it has another normal, as points along
+/// an edge may have. New surfaces may take points from a good one until it does not last. So a round is undone if it
+/// leaves more points free than the one before did, by at least as many as make a surface.
 std::vector<GrownSurface> settle_and_find_more(std::vector<GrownSurface> surfaces, WorkCloud& cloud,
                                                const NeighbourTable& neighbours, const SearchLimits& limits,
                                                std::uint64_t seed, const RunContext& run) {
@@ -53,13 +46,7 @@ std::vector<GrownSurface> settle_and_find_more(std::vector<GrownSurface> surface
   std::size_t free_before = 0;
   for (int round = 1;; ++round) {
     const std::size_t searched = free_points(cloud, surfaces).list().size();
-    surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
-    MixedSurfaces mixed = replace_mixed_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
-    surfaces = std::move(mixed.surfaces);
-    if (!mixed.turned.empty()) {
-      surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
-      turn_back(cloud, mixed.turned, surfaces);
-    }
+    surfaces = settled(std::move(surfaces), cloud, neighbours, limits, run);
     FreePoints points = free_points(cloud, surfaces);
     const std::size_t free = points.list().size();
     if (round > 1 && free >= free_before + limits.least_points) {
@@ -70,8 +57,8 @@ std::vector<GrownSurface> settle_and_find_more(std::vector<GrownSurface> surface
     before = surfaces;
     points_before = cloud.points;
     free_before = free;
-    const std::vector<bool> is_off = are_off_all(points, surfaces);
-    const auto is_evidence = [&](std::uint32_t i) { return is_off[i]; };
+    const auto off = beyond_reach(points.list(), surfaces, cloud, [](std::size_t) { return true; });
+    const auto is_evidence = [&](std::uint32_t i) { return std::ranges::binary_search(off, i); };
     std::vector<GrownSurface> more = find_all(points, limits, seed, is_evidence, run);
     if (more.empty()) return surfaces;
     std::ranges::move(more, std::back_inserter(surfaces));
@@ -86,9 +73,12 @@ Surface in_the_cloud(Surface surface, const WorkCloud& work) {
 }
 
 double rms_distance(const GrownSurface& grown, const WorkCloud& work) {
+  const std::vector<double> distances = distances_of(grown.surface, work, grown.points);
   double sum = 0;
-  for (const std::uint32_t i : grown.points)
-    sum += std::pow(signed_distance(grown.surface, work.points[i].position), 2);
+  for (std::size_t k = 0; k < distances.size(); ++k) {
+    const double distance = distances[k] / work.points[grown.points[k]].precision;
+    sum += distance * distance;
+  }
   return std::sqrt(sum / static_cast<double>(grown.points.size()));
 }
 

@@ -136,17 +136,17 @@ struct LargestSurfaces {
 /// Half of it may miss the planes of a round part; double takes longer where the noise is more than assumed.
 constexpr std::size_t k_first_surfaces = 4;
 
-/// Measures the noise by the largest surfaces, unless it is known, and finds them again if it is clearly more than
-/// assumed.
-LargestSurfaces find_largest(const WorkCloud& cloud, Scale scale, bool is_noise_known, const DetectOptions& options,
+/// Measures the noise by the largest surfaces, and finds them again if it is clearly more than assumed. It is at least
+/// `least_noise`.
+LargestSurfaces find_largest(const WorkCloud& cloud, Scale scale, double least_noise, const DetectOptions& options,
                              const RunContext& run) {
   for (int round = 1;; ++round) {
     const SearchLimits limits = limits_of(options, scale, cloud);
     FreePoints points(cloud);
     std::vector<GrownSurface> found =
         find_all(points, limits, options.seed, always, run, {}, {.most = k_first_surfaces});
-    const auto noise = is_noise_known ? std::nullopt : noise_of_planes(found, points, limits.agreement);
-    if (noise) scale.noise = *noise * cloud.diagonal;
+    const auto noise = options.distance_tolerance ? std::nullopt : noise_of_planes(found, points, limits.agreement);
+    if (noise) scale.noise = std::max(*noise * cloud.diagonal, least_noise);
     if (noise && limits.agreement.noise < k_clear_share * *noise && round < k_rounds) continue;
     return {.scale = scale, .limits = limits_of(options, scale, cloud), .surfaces = std::move(found)};
   }
@@ -205,11 +205,10 @@ std::vector<GrownSurface> find_all(FreePoints& points, const SearchLimits& limit
 
 FirstSurfaces find_surfaces(WorkCloud& cloud, const NeighbourTable& neighbours, Scale scale,
                             const DetectOptions& options, const RunContext& run, const StageShare& share) {
-  std::optional<Scale> measured;
+  double least_noise = 0;
   for (int round = 1;; ++round) {
-    const bool is_noise_known = options.distance_tolerance || measured;
-    LargestSurfaces largest = find_largest(cloud, scale, is_noise_known, options, run);
-    if (!measured) measured = largest.scale;
+    LargestSurfaces largest = find_largest(cloud, scale, least_noise, options, run);
+    scale = largest.scale;
     const SearchLimits limits = largest.limits;
     const std::vector<OrientedPoint> before = cloud.points;
     std::vector<GrownSurface> surfaces =
@@ -217,9 +216,12 @@ FirstSurfaces find_surfaces(WorkCloud& cloud, const NeighbourTable& neighbours, 
     const std::vector<double> noise = options.distance_tolerance || round == k_rounds
                                           ? std::vector<double>{}
                                           : local_noise(surfaces, cloud, limits.agreement, run);
-    if (noise.empty()) return {.scale = *measured, .limits = limits, .surfaces = std::move(surfaces)};
-    scale.noise = limits.agreement.distance / k_deviations * cloud.diagonal;
+    if (noise.empty()) return {.scale = scale, .limits = limits, .surfaces = std::move(surfaces)};
     cloud.points = before;
+    Scale exact = scale;
+    exact.noise = 0;
+    least_noise = detection_tolerance({}, exact) / k_deviations;
+    scale.noise = std::max(scale.noise, least_noise);
     account_for_noise(cloud, noise, scale, run);
   }
 }

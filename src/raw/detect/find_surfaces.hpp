@@ -29,7 +29,7 @@ struct SearchStart {
                                                  const IsEvidence& is_evidence, const RunContext& run,
                                                  const StageShare& share = {}, SearchStart start = {});
 
-/// All surfaces, before they settle, the limits by which they were found, and the noise where it is least.
+/// All surfaces, before they settle, the limits by which they were found, and the noise of the largest planes.
 struct FirstSurfaces {
   Scale scale;
   SearchLimits limits;
@@ -37,8 +37,9 @@ struct FirstSurfaces {
 };
 
 /// Finds surfaces, and again while they show clearly more noise in a part of the cloud than the limits allow for. From
-/// then on, the least noise counts as that of the limits, so that points of all precisions have the same limits. Where
-/// surfaces had no points left, points get normals of their own. @throws Cancelled
+/// then on, the noise is at least a third of the least tolerance: distances count in units of the noise, and so would
+/// the form errors that the tolerance allows for. Points beyond the first surfaces get normals of their own. @throws
+/// Cancelled
 [[nodiscard]] FirstSurfaces find_surfaces(WorkCloud& cloud, const NeighbourTable& neighbours, Scale scale,
                                           const DetectOptions& options, const RunContext& run, const StageShare& share);
 

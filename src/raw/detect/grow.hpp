@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -53,6 +54,22 @@ struct GrownSurface {
 /// limit. A surface with form errors, such as facets, reaches farther than an exact one. O(n)
 [[nodiscard]] double reach_of(const Surface& surface, const WorkCloud& cloud, std::span<const std::uint32_t> points,
                               const AgreementLimits& limits);
+
+/// Those of the points that lie beyond the reach of all surfaces with counts(number). O(points x surfaces)
+template <class Counts>
+std::vector<std::uint32_t> beyond_reach(std::vector<std::uint32_t> points, const std::vector<GrownSurface>& surfaces,
+                                        const WorkCloud& cloud, const Counts& counts) {
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (!counts(s)) continue;
+    const std::vector<double> distances = distances_of(surfaces[s].surface, cloud, points);
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (std::abs(distances[k]) > surfaces[s].reach) points[left++] = points[k];
+    }
+    points.resize(left);
+  }
+  return points;
+}
 
 /// Standard deviation of the points around the mean of their patch, of the median patch. The distances are those of
 /// successive points, which are near each other. Absent if they are fewer than a patch. O(n)

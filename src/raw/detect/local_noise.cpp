@@ -13,6 +13,13 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Noisy ones of the k_around patches around a point with noise: patches across steps seem noisy, too.
+constexpr std::ptrdiff_t k_least_noisy = k_around - k_around / 4;
+/// A point is beside the patches, not among them, if the square of its distance from the nearest is more than the
+/// square of that from the farthest over this. With 1, the noise of a plane spreads over a round surface; with 4,
+/// points of noisy places stay out.
+constexpr double k_beside = 2;
+
 /// Successive points near a plane.
 struct Patch {
   Vector3d middle;
@@ -89,25 +96,34 @@ std::vector<Patch> patches_of(const std::vector<GrownSurface>& surfaces, const W
 std::vector<double> local_noise(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                                 const AgreementLimits& limits, const RunContext& run) {
   const std::vector<Patch> patches = patches_of(surfaces, cloud, limits);
-  if (patches.size() < k_around) return {};
+  const double usual = limits.distance / k_deviations;
+  const auto is_noisy = [&](double noise) { return usual < k_clear_share * noise; };
+  const auto noisy_patches = std::ranges::count_if(patches, is_noisy, &Patch::noise);
+  if (patches.size() < k_around || noisy_patches < k_least_noisy) return {};
   Points middles(patches.size());
   for (std::size_t p = 0; p < patches.size(); ++p) middles.set(p, patches[p].middle);
   const NeighbourTree tree(middles);
-  const double usual = limits.distance / k_deviations;
   std::vector<double> noise(cloud.size(), 1);
   for_each_index(cloud.size(), run, [&](std::size_t i) {
     std::vector<std::uint32_t> near(k_around);
     std::vector<double> squares(k_around);
-    near.resize(tree.find(cloud.points[i].position, near, squares));
+    tree.find(cloud.points[i].position, near, squares);
+    if (k_beside * squares.front() > squares.back()) return;
     std::vector<double> noises;
+    noises.reserve(near.size());
     for (const std::uint32_t p : near) noises.push_back(patches[p].noise);
-    // The lower quartile: patches across steps seem noisy.
-    const auto quartile = noises.begin() + static_cast<std::ptrdiff_t>(noises.size() / 4);
-    std::ranges::nth_element(noises, quartile);
-    if (usual < k_clear_share * *quartile) noise[i] = *quartile / usual;
+    const auto least = noises.end() - k_least_noisy;
+    std::ranges::nth_element(noises, least);
+    if (is_noisy(*least)) noise[i] = *least / usual;
   });
-  const auto noisy = static_cast<double>(std::ranges::count_if(noise, [](double factor) { return factor > 1; }));
-  return noisy < k_negligible_share * static_cast<double>(noise.size()) ? std::vector<double>{} : noise;
+  // With half of it, undetected detail of scans counts as noise; with double, noise makes false surfaces.
+  constexpr double k_much_more = 2;
+  std::size_t noisy = 0;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    noisy += noise[i] > 1 && noise[i] / cloud.points[i].precision > k_much_more ? 1U : 0U;
+  }
+  return static_cast<double>(noisy) < k_negligible_share * static_cast<double>(noise.size()) ? std::vector<double>{}
+                                                                                             : noise;
 }
 
 void account_for_noise(WorkCloud& cloud, const std::vector<double>& local_noise, Scale scale, const RunContext& run) {
@@ -127,7 +143,7 @@ void account_for_noise(WorkCloud& cloud, const std::vector<double>& local_noise,
     OrientedPoint& point = cloud.points[i];
     point.normal = fit_local_plane(positions, i, near, noise / point.precision, k_bend_tolerance).normal;
     double votes = 0;
-    for (const std::uint32_t j : near.nearest(i, k_voters)) votes += before[j].normal.dot(point.normal);
+    for (const std::uint32_t j : near.of(i)) votes += before[j].normal.dot(point.normal);
     if (votes < 0) point.normal = -point.normal;
   });
 }

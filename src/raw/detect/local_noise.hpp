@@ -9,9 +9,10 @@
 namespace cloud2csg {
 
 /// By point: the noise there in units of the noise that the limits allow for, 1 where it is not clearly more; empty if
-/// that is so for nearly all. Patches of points around the planes among the surfaces tell: detail, which would look like
-/// noise, has surfaces of its own there. Most of the patches around a point must be noisy, so a noisy region has at
-/// least some hundred points. It sees up to about four times the noise of the limits. O(n log n) @throws Cancelled
+/// it is twice that almost nowhere. Patches of points around the planes among the surfaces tell: detail, which would
+/// look like noise, has surfaces of its own there. Most of the patches around a point must be noisy, so a noisy region
+/// has at least some hundred points. Of more than four times the limits' noise, it sees a part. O(n log n)
+/// @throws Cancelled
 [[nodiscard]] std::vector<double> local_noise(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                                               const AgreementLimits& limits, const RunContext& run);
 

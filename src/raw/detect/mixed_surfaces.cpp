@@ -68,17 +68,9 @@ std::vector<Part> surfaces_and_free_groups(const std::vector<GrownSurface>& surf
     const bool sure = is_sure(s, surfaces[s], surface_of, cloud, neighbours, limits.agreement.noise);
     parts[s] = {.points = surfaces[s].points, .surface = s, .is_sure = sure};
   });
-  Indices free = free_points(cloud, surfaces).list();
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    if (!parts[s].is_sure) continue;
-    const std::vector<double> distances = distances_of(surfaces[s].surface, cloud, free);
-    Indices off;
-    for (std::size_t k = 0; k < free.size(); ++k) {
-      if (std::abs(distances[k]) > surfaces[s].reach) off.push_back(free[k]);
-    }
-    free = std::move(off);
-  }
-  for (Indices& group : connected_groups(cloud.points, free, limits.link)) {
+  const Indices unexplained = beyond_reach(free_points(cloud, surfaces).list(), surfaces, cloud,
+                                           [&](std::size_t s) { return parts[s].is_sure; });
+  for (Indices& group : connected_groups(cloud.points, unexplained, limits.link)) {
     parts.push_back({.points = std::move(group), .surface = std::nullopt, .is_sure = false});
   }
   return parts;

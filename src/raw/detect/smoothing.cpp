@@ -33,7 +33,7 @@ using Rings = std::array<Ring, 4>;
 class Edges {
  public:
   Edges(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double length)
-      : surfaces_(surfaces), positions_(cloud.positions()), tree_(positions_), length_(length) {
+      : surfaces_(surfaces), cloud_(cloud), positions_(cloud.positions()), tree_(positions_), length_(length) {
     owners_.assign(cloud.size(), k_no_surface);
     for (std::uint32_t k = 0; k < surfaces.size(); ++k) own(surfaces[k].points, k);
   }
@@ -55,8 +55,9 @@ class Edges {
 
   /// Whether the point is on one of the first `end` surfaces, whatever its normal.
   [[nodiscard]] bool is_on_any(std::uint32_t point, std::uint32_t end) const {
+    const double precision = cloud_.points[point].precision;
     return std::ranges::any_of(around(point, end),
-                               [&](std::uint32_t k) { return distance(point, k) <= surfaces_[k].reach; });
+                               [&](std::uint32_t k) { return distance(point, k) * precision <= surfaces_[k].reach; });
   }
 
   void forget(std::uint32_t surface) { own(surfaces_[surface].points, k_no_surface); }
@@ -84,6 +85,7 @@ class Edges {
   }
 
   const std::vector<GrownSurface>& surfaces_;
+  const WorkCloud& cloud_;
   Points positions_;
   NeighbourTree tree_;
   double length_;

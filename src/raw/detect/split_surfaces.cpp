@@ -16,8 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The least cost of points whose distances are a quadratic function of their places, found by iterated trimming.
-double smooth_cost(std::span<const double> distances, std::span<const Vector3d> places, double noise) {
+/// The least cost of points whose distances are a quadratic function of their places, found by iterated trimming. The
+/// distances are given times the precisions.
+double smooth_cost(std::span<const double> distances, std::span<const double> precisions,
+                   std::span<const Vector3d> places, double noise) {
   using Terms = Eigen::Matrix<double, 10, 1>;
   Vector3d middle = Vector3d::Zero();
   for (const Vector3d& p : places) middle += p / static_cast<double>(places.size());
@@ -36,7 +38,7 @@ double smooth_cost(std::span<const double> distances, std::span<const Vector3d> 
     Terms products = Terms::Zero();
     double cost = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
-      const Terms terms = terms_at(places[k]);
+      const Terms terms = precisions[k] * terms_at(places[k]);
       const double rest = distances[k] - terms.dot(factors);
       cost += cost_of(rest, noise);
       if (trim > 0 && std::abs(rest) > k_deviations * noise) continue;
@@ -56,16 +58,18 @@ double smooth_cost(std::span<const double> distances, std::span<const Vector3d> 
 /// Logarithm of the ratio of likelihoods of two surfaces and one.
 double gain_of(const TwoSurfaces& two, const Surface& one, const NearPoints& near) {
   std::vector<double> distances;
+  std::vector<double> precisions;
   std::vector<Vector3d> places;
   double cost = 0;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
     if (NearPoints::is_for_fit(k)) continue;
-    const Vector3d& position = near.cloud.points[near.points[k]].position;
+    const OrientedPoint& point = near.cloud.points[near.points[k]];
     distances.push_back(near.distances[k]);
-    places.emplace_back(position - signed_distance(one, position) * normal(one, position));
+    precisions.push_back(point.precision);
+    places.emplace_back(point.position - near.distances[k] / point.precision * normal(one, point.position));
     cost += cost_of(two.distance(k), near.noise);
   }
-  return smooth_cost(distances, places, near.noise) - cost;
+  return smooth_cost(distances, precisions, places, near.noise) - cost;
 }
 
 /// Whether the surface of the smaller side explains the points away from the step as well as averages do, which adapt

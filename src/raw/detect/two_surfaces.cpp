@@ -234,7 +234,8 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   // The points' feet: neighbours in space would have similar errors where the noise is more than the spacing.
   Points feet = cloud.positions_of(points);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    feet.set(k, feet[k] - signed_distance(grown.surface, feet[k]) * normal(grown.surface, feet[k]));
+    const double distance = distances[k] / cloud.points[points[k]].precision;
+    feet.set(k, feet[k] - distance * normal(grown.surface, feet[k]));
   }
   const std::size_t around = std::min(neighbours_for(offset / noise), points.size() - 1);
   NeighbourTable neighbours = find_neighbours(feet, NeighbourTree(feet), around, run);

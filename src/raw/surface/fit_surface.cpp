@@ -188,8 +188,8 @@ SurfaceUncertainty Fitter::uncertainty(const Solution& solution, double rms) con
   Eigen::Index inliers = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (std::abs(chart.distance(place, points_[i], slopes)) * precisions_[i] > k_tukey * solution.noise) continue;
-    const Eigen::VectorXd row = precisions_[i] * Eigen::Map<const Eigen::VectorXd>(slopes.data(), count);
-    information += row * row.transpose();
+    const auto row = Eigen::Map<const Eigen::VectorXd>(slopes.data(), count);
+    information += precisions_[i] * precisions_[i] * row * row.transpose();
     ++inliers;
   }
   const auto held = static_cast<Eigen::Index>(chart.held(held_));
@@ -225,14 +225,14 @@ std::optional<SurfaceFit> fit_surface(const Surface& start, std::span<const Eige
   const std::size_t most = std::max<std::size_t>(options.most_points, Chart::k_most_unknowns);
   const std::vector<Eigen::Vector3d> some = some_of(points, most);
   const auto precision = [&](std::size_t i) { return options.precisions.empty() ? 1 : options.precisions[i]; };
-  const std::vector<double> precisions =
+  std::vector<double> precisions =
       options.precisions.empty() ? std::vector<double>(some.size(), 1) : some_of(options.precisions, most);
   const UnitFrame frame = unit_frame(some);
   // Coordinates far from the origin carry rounding errors, so smaller residuals have no meaning.
   const double rounding = std::numeric_limits<double>::epsilon() * frame.origin.norm() / frame.scale;
   const double floor = std::max(k_smallest_noise, 4 * rounding);
   const auto noise = options.noise ? std::optional(std::max(*options.noise / frame.scale, floor)) : std::nullopt;
-  const Fitter fitter(to_frame(frame, some), precisions, floor, noise, options.held);
+  const Fitter fitter(to_frame(frame, some), std::move(precisions), floor, noise, options.held);
   const std::optional<Solution> solution = fitter.fit(to_frame(frame, start));
   if (!solution) return std::nullopt;
 
