@@ -73,10 +73,9 @@ Surface in_the_cloud(Surface surface, const WorkCloud& work) {
 }
 
 double rms_distance(const GrownSurface& grown, const WorkCloud& work) {
-  const std::vector<double> distances = distances_of(grown.surface, work, grown.points);
   double sum = 0;
-  for (std::size_t k = 0; k < distances.size(); ++k) {
-    const double distance = distances[k] / work.points[grown.points[k]].precision;
+  for (const std::uint32_t i : grown.points) {
+    const double distance = signed_distance(grown.surface, work.points[i].position);
     sum += distance * distance;
   }
   return std::sqrt(sum / static_cast<double>(grown.points.size()));

@@ -126,20 +126,13 @@ std::optional<double> noise_of_planes(const std::vector<GrownSurface>& surfaces,
   return noises.size() < k_sample ? std::nullopt : std::optional(median_of(noises));
 }
 
-/// The first few surfaces, and limits by the noise that they show.
-struct LargestSurfaces {
-  Scale scale;
-  SearchLimits limits;
-  std::vector<GrownSurface> surfaces;
-};
-
 /// Half of it may miss the planes of a round part; double takes longer where the noise is more than assumed.
 constexpr std::size_t k_first_surfaces = 4;
 
-/// Measures the noise by the largest surfaces, and finds them again if it is clearly more than assumed. It is at least
-/// `least_noise`.
-LargestSurfaces find_largest(const WorkCloud& cloud, Scale scale, double least_noise, const DetectOptions& options,
-                             const RunContext& run) {
+/// The first few surfaces, and limits by the noise that they show. Finds them again if it is clearly more than assumed.
+/// It is at least `least_noise`.
+FirstSurfaces find_largest(const WorkCloud& cloud, Scale scale, double least_noise, const DetectOptions& options,
+                           const RunContext& run) {
   for (int round = 1;; ++round) {
     const SearchLimits limits = limits_of(options, scale, cloud);
     FreePoints points(cloud);
@@ -155,13 +148,12 @@ LargestSurfaces find_largest(const WorkCloud& cloud, Scale scale, double least_n
 /// Finds all surfaces after the largest, then more among the points that are left, by normals of their own. Points that
 /// the first surfaces explain are no evidence for a later one. Only its other points get the new normals.
 std::vector<GrownSurface> find_in_two_passes(WorkCloud& cloud, const NeighbourTable& neighbours,
-                                             LargestSurfaces largest, std::uint64_t seed, const RunContext& run,
-                                             const StageShare& share) {
+                                             std::vector<GrownSurface> largest, const SearchLimits& limits,
+                                             std::uint64_t seed, const RunContext& run, const StageShare& share) {
   const double first_pass = 0.8;  // of the time, roughly
-  const SearchLimits& limits = largest.limits;
-  FreePoints points = free_points(cloud, largest.surfaces);
+  FreePoints points = free_points(cloud, largest);
   std::vector<GrownSurface> found =
-      find_all(points, limits, seed, always, run, share.part(0, first_pass), {.found = std::move(largest.surfaces)});
+      find_all(points, limits, seed, always, run, share.part(0, first_pass), {.found = std::move(largest)});
   if (points.list().size() < limits.least_points) return found;
   const WorkCloud part = unexplained_part(points, neighbours, limits.agreement.noise, run);
   FreePoints of_part(part);
@@ -207,16 +199,14 @@ FirstSurfaces find_surfaces(WorkCloud& cloud, const NeighbourTable& neighbours, 
                             const DetectOptions& options, const RunContext& run, const StageShare& share) {
   double least_noise = 0;
   for (int round = 1;; ++round) {
-    LargestSurfaces largest = find_largest(cloud, scale, least_noise, options, run);
-    scale = largest.scale;
-    const SearchLimits limits = largest.limits;
+    FirstSurfaces first = find_largest(cloud, scale, least_noise, options, run);
+    scale = first.scale;
     const std::vector<OrientedPoint> before = cloud.points;
-    std::vector<GrownSurface> surfaces =
-        find_in_two_passes(cloud, neighbours, std::move(largest), options.seed, run, round == 1 ? share : StageShare{});
-    const std::vector<double> noise = options.distance_tolerance || round == k_rounds
-                                          ? std::vector<double>{}
-                                          : local_noise(surfaces, cloud, limits.agreement, run);
-    if (noise.empty()) return {.scale = scale, .limits = limits, .surfaces = std::move(surfaces)};
+    first.surfaces = find_in_two_passes(cloud, neighbours, std::move(first.surfaces), first.limits, options.seed, run,
+                                        round == 1 ? share : StageShare{});
+    if (options.distance_tolerance || round == k_rounds) return first;
+    const std::vector<double> noise = local_noise(first.surfaces, cloud, first.limits.agreement, run);
+    if (noise.empty()) return first;
     cloud.points = before;
     Scale exact = scale;
     exact.noise = 0;

@@ -70,17 +70,16 @@ std::vector<double> distances_of(const Surface& surface, const WorkCloud& cloud,
 }
 
 std::optional<double> noise_within_patches(std::span<const double> distances) {
-  const std::size_t patch_size = 2 * k_around;
   std::vector<double> variances;
-  for (std::size_t first = 0; first + patch_size <= distances.size(); first += patch_size) {
-    const auto patch = distances.subspan(first, patch_size);
+  for (std::size_t first = 0; first + k_patch <= distances.size(); first += k_patch) {
+    const auto patch = distances.subspan(first, k_patch);
     double sum = 0;
     double squares = 0;
     for (const double d : patch) {
       sum += d;
       squares += d * d;
     }
-    variances.push_back(std::max(0.0, squares - sum * sum / patch_size) / (patch_size - 1));
+    variances.push_back(std::max(0.0, squares - sum * sum / k_patch) / (k_patch - 1));
   }
   return variances.empty() ? std::nullopt : std::optional(std::sqrt(median_of(variances)));
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/base/parallel.hpp"
 #include "raw/prepare/constants.hpp"
@@ -26,66 +27,45 @@ struct Patch {
   double noise;  ///< standard deviation of the distances around a slope
 };
 
-/// Signed distances of points from a plane, each times its precision.
-struct PlanePoints {
-  std::vector<std::uint32_t> points;
-  std::vector<double> distances;
-};
-
-/// The points around a plane that are on no other surface.
-PlanePoints points_around(std::size_t plane, const std::vector<GrownSurface>& surfaces,
-                          const std::vector<std::size_t>& surface_of, const WorkCloud& cloud,
-                          const AgreementLimits& limits) {
-  // With half of it, points with four times the noise seem to have two and a half times; double takes in more detail.
-  constexpr double k_widest = 4;
-  AgreementLimits wide = limits;
-  wide.distance *= k_widest;
-  wide.cosine = k_edge_cosine;
-  const auto is_wanted = [&](std::uint32_t i) { return surface_of[i] == plane || surface_of[i] == surfaces.size(); };
-  PlanePoints around;
-  for_each_agreeing(surfaces[plane].surface, cloud, wide, is_wanted, [&](std::uint32_t i, const Agreement& agreement) {
-    around.points.push_back(i);
-    around.distances.push_back(agreement.distance);
-  });
-  return around;
-}
-
-/// The patch of the points [first, last). The slope is that of a round surface that touches the plane.
-Patch patch_of(const Surface& plane, const PlanePoints& around, std::size_t first, std::size_t last,
-               const WorkCloud& cloud) {
-  const auto count = static_cast<double>(last - first);
+/// The slope is that of a round surface that touches the plane.
+Patch patch_of(const Surface& plane, std::span<const std::uint32_t> points, const WorkCloud& cloud) {
+  const auto count = static_cast<double>(points.size());
+  const std::vector<double> distances = distances_of(plane, cloud, points);
   const Vector3d u = plane.axis.unitOrthogonal();
   const Vector3d v = plane.axis.cross(u);
-  const Vector3d origin = cloud.points[around.points[first]].position;
+  const Vector3d origin = cloud.points[points.front()].position;
   Vector3d middle = Vector3d::Zero();
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   Vector3d products = Vector3d::Zero();
   double squares = 0;
-  for (std::size_t k = first; k < last; ++k) {
-    const Vector3d& position = cloud.points[around.points[k]].position;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Vector3d& position = cloud.points[points[k]].position;
     const Vector3d terms(1, u.dot(position - origin), v.dot(position - origin));
     middle += position / count;
     scatter += terms * terms.transpose();
-    products += around.distances[k] * terms;
-    squares += around.distances[k] * around.distances[k];
+    products += distances[k] * terms;
+    squares += distances[k] * distances[k];
   }
   const Vector3d slope = scatter.ldlt().solve(products);
   return {.middle = middle, .noise = std::sqrt(std::max(0.0, squares - products.dot(slope)) / (count - 3))};
 }
 
+/// Patches of the points around each plane that are on no other surface.
 std::vector<Patch> patches_of(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                               const AgreementLimits& limits) {
-  constexpr std::size_t k_patch = 2 * k_around;
-  std::vector<std::size_t> surface_of(cloud.size(), surfaces.size());
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    for (const std::uint32_t i : surfaces[s].points) surface_of[i] = s;
-  }
+  // With half of it, points with four times the noise seem to have two and a half times; double takes in more detail.
+  constexpr double k_widest = 4;
+  AgreementLimits wide = limits;
+  wide.distance *= k_widest;
+  wide.cosine = k_edge_cosine;
+  const FreePoints free = free_points(cloud, surfaces);
   std::vector<Patch> patches;
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    if (surfaces[s].surface.type != SurfaceType::plane) continue;
-    const PlanePoints around = points_around(s, surfaces, surface_of, cloud, limits);
-    for (std::size_t first = 0; first + k_patch <= around.points.size(); first += k_patch) {
-      patches.push_back(patch_of(surfaces[s].surface, around, first, first + k_patch, cloud));
+  for (const GrownSurface& plane : surfaces) {
+    if (plane.surface.type != SurfaceType::plane) continue;
+    const std::vector<std::uint32_t> around =
+        points_near(plane, cloud, wide, [&](std::uint32_t i) { return free.is_free(i); });
+    for (std::size_t first = 0; first + k_patch <= around.size(); first += k_patch) {
+      patches.push_back(patch_of(plane.surface, std::span(around).subspan(first, k_patch), cloud));
     }
   }
   return patches;

@@ -56,17 +56,16 @@ double smooth_cost(std::span<const double> distances, std::span<const double> pr
 }
 
 /// Logarithm of the ratio of likelihoods of two surfaces and one.
-double gain_of(const TwoSurfaces& two, const Surface& one, const NearPoints& near) {
+double gain_of(const TwoSurfaces& two, const NearPoints& near) {
   std::vector<double> distances;
   std::vector<double> precisions;
   std::vector<Vector3d> places;
   double cost = 0;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
     if (NearPoints::is_for_fit(k)) continue;
-    const OrientedPoint& point = near.cloud.points[near.points[k]];
     distances.push_back(near.distances[k]);
-    precisions.push_back(point.precision);
-    places.emplace_back(point.position - near.distances[k] / point.precision * normal(one, point.position));
+    precisions.push_back(near.cloud.points[near.points[k]].precision);
+    places.push_back(near.feet[k]);
     cost += cost_of(two.distance(k), near.noise);
   }
   return smooth_cost(distances, precisions, places, near.noise) - cost;
@@ -130,7 +129,7 @@ std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& n
 std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, const NearPoints& near,
                                                  const SearchLimits& limits, const RunContext& run) {
   std::optional<TwoSurfaces> two = fit_two(grown.surface, near, run);
-  if (!two || !(gain_of(*two, grown.surface, near) >= near.evidence) || !are_apart(*two, near)) return std::nullopt;
+  if (!two || !(gain_of(*two, near) >= near.evidence) || !are_apart(*two, near)) return std::nullopt;
   two = with_fits_to_all(std::move(*two), near);
   if (!two) return std::nullopt;
   if (!matches_averages(*two, near, limits.least_points) || !are_apart(*two, near)) return std::nullopt;

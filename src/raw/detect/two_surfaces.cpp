@@ -54,13 +54,15 @@ double points_of_one_error(const NeighbourTable& neighbours, double smoothing) {
 
 /// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.
 void choose_sides(TwoSurfaces& two, const NearPoints& near, std::size_t around, double prior, const RunContext& run) {
+  std::vector<double> votes(near.points.size(), 0);  // for side 1
+  for (std::size_t k = 0; k < votes.size(); ++k) {
+    if (!NearPoints::is_for_fit(k)) continue;
+    votes[k] = cost_of(two.distances[0][k], near.noise) - cost_of(two.distances[1][k], near.noise);
+  }
   for_each_index(near.points.size(), run, [&](std::size_t k) {
-    double for_second = -prior;
-    for (const std::uint32_t j : near.neighbours.nearest(k, around)) {
-      if (!NearPoints::is_for_fit(j)) continue;
-      for_second += cost_of(two.distances[0][j], near.noise) - cost_of(two.distances[1][j], near.noise);
-    }
-    two.side[k] = for_second > 0 ? 1 : 0;
+    double sum = -prior;
+    for (const std::uint32_t j : near.neighbours.nearest(k, around)) sum += votes[j];
+    two.side[k] = sum > 0 ? 1 : 0;
   });
 }
 
@@ -103,40 +105,36 @@ std::optional<TwoSurfaces> with_fits_to(const Sides& points, TwoSurfaces two, co
   return two;
 }
 
-/// Successive points whose mean shows a low step: one of a standard deviation is four standard errors high. With half
-/// as many, fewer of these steps are found; with double, fewer small parts.
-constexpr std::size_t k_block = 2 * k_around;
-
-/// The points for the fit of the blocks [first, last).
-std::vector<std::uint32_t> block_points(const NearPoints& near, std::size_t first, std::size_t last) {
+/// The points for the fit of the patches [first, last).
+std::vector<std::uint32_t> patch_points(const NearPoints& near, std::size_t first, std::size_t last) {
   std::vector<std::uint32_t> points;
-  for (std::size_t k = first * k_block; k < last * k_block; ++k) {
+  for (std::size_t k = first * k_patch; k < last * k_patch; ++k) {
     if (NearPoints::is_for_fit(k)) points.push_back(near.points[k]);
   }
   return points;
 }
 
-/// A surface of some blocks. Others on one side of it are on a second one, about parallel to it.
-struct BlockSides {
+/// A surface of some patches. Others on one side of it are on a second one, about parallel to it.
+struct PatchSides {
   Surface surface;
-  std::vector<double> deviations;  ///< of the mean of each block, in standard errors
+  std::vector<double> deviations;  ///< of the mean of each patch, in standard errors
   double height = 0;               ///< of the second surface, in standard errors; 0: there is none
   double cost = 0;
 
-  [[nodiscard]] bool is_on_second(std::size_t block) const {
-    return cost_of(deviations[block] - height, 1) < cost_of(deviations[block], 1);
+  [[nodiscard]] bool is_on_second(std::size_t patch) const {
+    return cost_of(deviations[patch] - height, 1) < cost_of(deviations[patch], 1);
   }
 };
 
-BlockSides sides_of(const Surface& surface, const NearPoints& near) {
-  BlockSides sides{.surface = surface, .deviations = {}};
+PatchSides sides_of(const Surface& surface, const NearPoints& near) {
+  PatchSides sides{.surface = surface, .deviations = {}};
   const std::vector<double> distances = distances_of(surface, near.cloud, near.points);
-  std::array<double, 2> sums{};  // of the blocks that are clearly below and above
+  std::array<double, 2> sums{};  // of the patches that are clearly below and above
   std::array<double, 2> counts{};
-  for (std::size_t b = 0; b < near.points.size() / k_block; ++b) {
+  for (std::size_t p = 0; p < near.points.size() / k_patch; ++p) {
     double sum = 0;
     double count = 0;
-    for (std::size_t k = b * k_block; k < (b + 1) * k_block; ++k) {
+    for (std::size_t k = p * k_patch; k < (p + 1) * k_patch; ++k) {
       if (!NearPoints::is_for_fit(k)) continue;
       sum += distances[k];
       ++count;
@@ -153,24 +151,24 @@ BlockSides sides_of(const Surface& surface, const NearPoints& near) {
   return sides;
 }
 
-/// Fits the one surface to windows of a half to an eighth of the blocks, and takes the fit that explains all blocks
+/// Fits the one surface to windows of a half to an eighth of the patches, and takes the fit that explains all patches
 /// best together with a second surface. The two halves of a face need this start: the one surface is tilted between
 /// them.
-std::optional<TwoSurfaces> start_from_blocks(const Surface& one, const NearPoints& near) {
-  const std::size_t count = near.points.size() / k_block;
-  BlockSides best = sides_of(one, near);
+std::optional<TwoSurfaces> start_from_patches(const Surface& one, const NearPoints& near) {
+  const std::size_t count = near.points.size() / k_patch;
+  PatchSides best = sides_of(one, near);
   for (std::size_t width = count / 2; width > 0 && width >= count / 8; width /= 2) {
     for (std::size_t first = 0; first + width <= count; first += (width + 1) / 2) {
-      const std::vector<OrientedPoint> points = near.cloud.some_of(block_points(near, first, first + width), k_sample);
+      const std::vector<OrientedPoint> points = near.cloud.some_of(patch_points(near, first, first + width), k_sample);
       const std::optional<Surface> fitted = fit_plausible(one, points, near.fit_limits);
       if (!fitted) continue;
-      BlockSides sides = sides_of(*fitted, near);
+      PatchSides sides = sides_of(*fitted, near);
       if (sides.cost < best.cost) best = std::move(sides);
     }
   }
   Sides points;
-  for (std::size_t b = 0; b < best.deviations.size(); ++b) {
-    std::ranges::copy(block_points(near, b, b + 1), std::back_inserter(points[best.is_on_second(b) ? 1 : 0]));
+  for (std::size_t p = 0; p < best.deviations.size(); ++p) {
+    std::ranges::copy(patch_points(near, p, p + 1), std::back_inserter(points[best.is_on_second(p) ? 1 : 0]));
   }
   TwoSurfaces two = start_from_run(one, near);
   two.surfaces.fill(best.surface);
@@ -231,11 +229,10 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   // steps, the neighbours cannot tell.
   constexpr double k_least_offset = 0.15;
   if (std::abs(offset) < k_least_offset * noise) return std::nullopt;
-  // The points' feet: neighbours in space would have similar errors where the noise is more than the spacing.
+  // Neighbours in space would have similar errors where the noise is more than the spacing.
   Points feet = cloud.positions_of(points);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const double distance = distances[k] / cloud.points[points[k]].precision;
-    feet.set(k, feet[k] - distance * normal(grown.surface, feet[k]));
+    feet.set(k, feet[k] - signed_distance(grown.surface, feet[k]) * normal(grown.surface, feet[k]));
   }
   const std::size_t around = std::min(neighbours_for(offset / noise), points.size() - 1);
   NeighbourTable neighbours = find_neighbours(feet, NeighbourTree(feet), around, run);
@@ -244,6 +241,7 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
                     .points = std::move(points),
                     .distances = std::move(distances),
                     .offset = offset,
+                    .feet = std::move(feet),
                     .neighbours = std::move(neighbours),
                     .noise = noise,
                     .evidence = evidence,
@@ -259,8 +257,8 @@ double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::si
 std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run) {
   // A small part begins at its height over the rest.
   std::optional<TwoSurfaces> two = alternate(start_from_run(one, near), near, run);
-  std::optional<TwoSurfaces> of_blocks = alternate(start_from_blocks(one, near), near, run);
-  if (!two || (of_blocks && cost_of_fit(*of_blocks, near) < cost_of_fit(*two, near))) two = std::move(of_blocks);
+  std::optional<TwoSurfaces> of_patches = alternate(start_from_patches(one, near), near, run);
+  if (!two || (of_patches && cost_of_fit(*of_patches, near) < cost_of_fit(*two, near))) two = std::move(of_patches);
   if (two && 2 * std::ranges::count(two->side, std::uint8_t{1}) > std::ssize(two->side)) {
     std::swap(two->surfaces[0], two->surfaces[1]);
     std::swap(two->distances[0], two->distances[1]);

@@ -18,7 +18,8 @@ struct NearPoints {
   std::vector<std::uint32_t> points;  ///< ascending
   std::vector<double> distances;      ///< from the one surface
   double offset;                      ///< median distance of the run of points that is farthest off: about the height
-  NeighbourTable neighbours;          ///< among these points, moved onto the one surface
+  Points feet;                        ///< the points moved onto the one surface
+  NeighbourTable neighbours;          ///< among the feet
   double noise;
   double evidence;  ///< least gain that shows two surfaces
   AgreementLimits fit_limits;
