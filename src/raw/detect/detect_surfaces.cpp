@@ -36,8 +36,9 @@ std::vector<GrownSurface> settled(std::vector<GrownSurface> surfaces, WorkCloud&
 
 /// Settles surfaces. Where surfaces did not last, more points are free than were searched in vain: then it finds more
 /// among the free ones. A free point within reach of a surface is no evidence: it has another normal, as points along
-/// an edge may have. New surfaces may take points from a good one until it does not last. So a round is undone if it
-/// leaves more points free than the one before did, by at least as many as make a surface.
+/// an edge may have. Ends with a round that leaves about as many points free as the one before did, give or take fewer
+/// than make a surface. New surfaces may take points from a good one until it does not last: a round that leaves more
+/// points free is undone.
 std::vector<GrownSurface> settle_and_find_more(std::vector<GrownSurface> surfaces, WorkCloud& cloud,
                                                const NeighbourTable& neighbours, const SearchLimits& limits,
                                                std::uint64_t seed, const RunContext& run) {
@@ -53,7 +54,8 @@ std::vector<GrownSurface> settle_and_find_more(std::vector<GrownSurface> surface
       cloud.points = std::move(points_before);
       return before;
     }
-    if (round == k_rounds || free < searched + limits.least_points) return surfaces;
+    const bool is_like_before = round > 1 && free + limits.least_points > free_before;
+    if (round == k_rounds || is_like_before || free < searched + limits.least_points) return surfaces;
     before = surfaces;
     points_before = cloud.points;
     free_before = free;
