@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "core/base/random.hpp"
+#include "raw/detect/two_surfaces.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -56,11 +57,14 @@ Patch make_patch(const Surface& surface, const Height& height, std::uint64_t see
   return patch;
 }
 
-std::vector<GrownSurface> split(const Patch& patch) {
-  const SearchLimits limits{.agreement = {.distance = k_deviations * k_noise, .noise = k_noise, .cosine = 0.9},
-                            .link = 0.1,
-                            .least_points = 15};
-  return split_surfaces({patch.grown}, patch.cloud, 0, limits, {.threads = 2});
+SearchLimits limits_by(double noise) {
+  return {.agreement = {.distance = k_deviations * k_noise, .noise = noise, .cosine = 0.9},
+          .link = 0.1,
+          .least_points = 15};
+}
+
+std::vector<GrownSurface> split(const Patch& patch, double noise = k_noise) {
+  return split_surfaces({patch.grown}, patch.cloud, 0, limits_by(noise), {.threads = 2});
 }
 
 // Seeds are fixed, because noise can look like anything, though rarely.
@@ -99,6 +103,29 @@ TEST(SplitSurfaces, GradualFormErrorsAreNoSteps) {
 
 bool is_high(double x, double y) {
   return std::abs(x) < 0.2 && std::abs(y) < 0.25;
+}
+
+/// Facets of a round surface would pass for steps.
+TEST(SplitSurfaces, LeavesARoundSurfaceAloneThatScattersMoreThanTheNoise) {
+  const Height step = [](double x, double y) { return is_high(x, y) ? 5.0 : 0.0; };
+  EXPECT_EQ(split(make_patch(bent(), step, 1), k_noise).size(), 2U);
+  EXPECT_EQ(split(make_patch(bent(), step, 1), k_noise / 2).size(), 1U);
+  EXPECT_EQ(split(make_patch(flat(), step, 1), k_noise / 2).size(), 2U);
+}
+
+/// One of many runs is as far off by chance.
+TEST(SplitSurfaces, LooksNoFurtherWhereNoRunOfPointsIsClearlyOff) {
+  Patch patch = make_patch(
+      flat(), [](double, double) { return 0.0; }, 1);
+  const auto has_run_at = [&](double height) {
+    for (std::uint32_t i = 0; i < patch.cloud.size(); ++i) {
+      patch.cloud.points[i].position.z() = k_noise * ((i % 2 == 0 ? 1 : -1) + (i < 2 * k_nearest ? height : 0.0));
+    }
+    const std::vector<bool> is_free(patch.cloud.size(), false);
+    return near_points(patch.grown, patch.cloud, is_free, 0, limits_by(k_noise), {}).has_value();
+  };
+  EXPECT_FALSE(has_run_at(1.1));
+  EXPECT_TRUE(has_run_at(1.5));
 }
 
 /// How many of these points are on the given side of the step.

@@ -44,17 +44,17 @@ std::vector<GrownSurface> settle_and_find_more(std::vector<GrownSurface> surface
                                                std::uint64_t seed, const RunContext& run) {
   std::vector<GrownSurface> before;
   std::vector<OrientedPoint> points_before;  // with the normals that belong to the surfaces
-  std::size_t free_before = 0;
+  std::size_t free_before = cloud.size() + limits.least_points;
   for (int round = 1;; ++round) {
     const std::size_t searched = free_points(cloud, surfaces).list().size();
     surfaces = settled(std::move(surfaces), cloud, neighbours, limits, run);
     FreePoints points = free_points(cloud, surfaces);
     const std::size_t free = points.list().size();
-    if (round > 1 && free >= free_before + limits.least_points) {
+    if (free >= free_before + limits.least_points) {
       cloud.points = std::move(points_before);
       return before;
     }
-    const bool is_like_before = round > 1 && free + limits.least_points > free_before;
+    const bool is_like_before = free + limits.least_points > free_before;
     if (round == k_rounds || is_like_before || free < searched + limits.least_points) return surfaces;
     before = surfaces;
     points_before = cloud.points;

@@ -22,16 +22,8 @@ namespace {
 constexpr std::uint64_t k_propose_stage = 0x70726f70;
 constexpr std::uint64_t k_subset_stage = 0x73756273;
 
-/// Whether nearly all points that agree with the second surface agree with the first, too.
-bool includes(const Surface& first, const Surface& second, std::span<const OrientedPoint> points,
-              const AgreementLimits& limits) {
-  if (first.type != second.type) return false;
-  const std::vector<OrientedPoint> of_second = agreeing_points(second, points, limits);
-  return static_cast<double>(count_agreeing(first, of_second, limits)) >=
-         k_nearly_all * static_cast<double>(of_second.size());
-}
-
-/// The candidates with the most support in a random subset, the best first, without those that a better one includes.
+/// The candidates with the most support in a random subset, the best first, without those whose points a better one of
+/// their type explains.
 std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimits& limits, std::size_t draws,
                                      std::uint64_t seed, std::uint64_t round, const RunContext& run) {
   std::vector<std::vector<Surface>> proposed(draws);
@@ -54,8 +46,11 @@ std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimit
   std::vector<Surface> best;
   for (std::size_t k = 0; k < std::min(k_best, order.size()); ++k) {
     const Surface& candidate = candidates[order[k]];
-    const auto is_better = [&](const Surface& b) { return includes(b, candidate, subset, limits.agreement); };
-    if (std::ranges::none_of(best, is_better)) best.push_back(candidate);
+    const std::vector<OrientedPoint> own = agreeing_points(candidate, subset, limits.agreement);
+    const auto replaces_it = [&](const Surface& better) {
+      return better.type == candidate.type && explains(better, own, limits.agreement, k_nearly_all);
+    };
+    if (own.empty() || std::ranges::none_of(best, replaces_it)) best.push_back(candidate);
   }
   return best;
 }

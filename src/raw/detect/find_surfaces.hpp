@@ -29,7 +29,7 @@ struct SearchStart {
                                                  const IsEvidence& is_evidence, const RunContext& run,
                                                  const StageShare& share = {}, SearchStart start = {});
 
-/// Surfaces before they settle, the limits by which they were found, and the noise of the largest planes.
+/// Surfaces before they settle, the noise of the largest planes, and limits by it.
 struct FirstSurfaces {
   Scale scale;
   SearchLimits limits;

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Noisy ones of the k_around patches around a point with noise: patches across steps seem noisy, too.
-constexpr std::ptrdiff_t k_least_noisy = k_around - k_around / 4;
+const std::ptrdiff_t k_least_noisy = k_around - k_around / 4;
 /// A point is beside the patches, not among them, if the square of its distance from the nearest is more than the
 /// square of that from the farthest over this. With 1, the noise of a plane spreads over a round surface; with 4,
 /// points of noisy places stay out.
@@ -50,7 +50,7 @@ Patch patch_of(const Surface& plane, std::span<const std::uint32_t> points, cons
   return {.middle = middle, .noise = std::sqrt(std::max(0.0, squares - products.dot(slope)) / (count - 3))};
 }
 
-/// Patches of the points around each plane that are on no other surface.
+/// Patches of the points of each plane and the free ones around it.
 std::vector<Patch> patches_of(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                               const AgreementLimits& limits) {
   // With half of it, points with four times the noise seem to have two and a half times; double takes in more detail.

@@ -26,7 +26,7 @@ struct Ring {
   [[nodiscard]] double square() const { return squares / count; }
 };
 
-constexpr std::size_t k_ring_points = k_nearest / 2;
+const std::size_t k_ring_points = k_nearest / 2;
 using Rings = std::array<Ring, 4>;
 
 /// Surfaces near a point, and whether smoothing has mixed them there.
@@ -134,8 +134,8 @@ Rings rings_on(const GrownSurface& plane, const WorkCloud& cloud, std::span<cons
   }
   const NeighbourTree tree(feet);
   Rings rings;
-  std::array<std::uint32_t, rings.size() * k_ring_points + 1> near{};
-  std::array<double, near.size()> squares{};
+  std::vector<std::uint32_t> near(rings.size() * k_ring_points + 1);
+  std::vector<double> squares(near.size());
   for (std::size_t sample = 0; sample < k_sample; ++sample) {
     const std::size_t k = sample * feet.size() / k_sample;
     tree.find(feet[k], near, squares);
@@ -188,7 +188,7 @@ double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkClo
   // Rounding of an exact cloud is no noise.
   if (!gaussian || std::sqrt(variance) <= k_least_noise * noise) return 0;
   // The nearest points are within a disc of as many squared spacings.
-  const double spacing = std::sqrt(2 * rings.front().square() * std::numbers::pi / k_ring_points);
+  const double spacing = std::sqrt(2 * rings.front().square() * std::numbers::pi / static_cast<double>(k_ring_points));
   const double length = std::sqrt(gaussian->square);
   return gaussian->covariance > k_shared * variance && length < k_most_spacings * spacing ? length : 0;
 }

@@ -42,13 +42,12 @@ double strongest_offset(const std::vector<double>& distances, double noise) {
   return strongest.empty() ? 0 : median_of(strongest);
 }
 
-/// How far away points tell the side of a point, in hops from neighbour to neighbour: one for a step of two standard
-/// deviations. The number of points that are reached grows with the hops, and their evidence with the square of the
-/// height, so a lower step needs more hops. With half of the limit, fewer steps of one standard deviation are found;
-/// double costs more time than the fits.
-int hops_for(double deviations) {
+/// Neighbours that tell the side of a point: k_around for a step of two standard deviations. Their evidence grows with
+/// the square of the height, so a lower step needs more. With half of the limit, fewer steps of one standard deviation
+/// are found; double costs more time than the fits.
+std::size_t neighbours_for(double deviations) {
   constexpr double k_most = 8;
-  return static_cast<int>(std::clamp(4 / (deviations * deviations), 1.0, k_most));
+  return static_cast<std::size_t>(k_around * std::clamp(4 / (deviations * deviations), 1.0, k_most));
 }
 
 /// How many points share an error: those within the length over which errors correlate, at least 1.
@@ -57,30 +56,18 @@ double points_of_one_error(const NeighbourTable& neighbours, double smoothing) {
   return std::max(1.0, std::numbers::pi * smoothing * smoothing / median_of(areas));
 }
 
-/// Means of the values of all neighbours, as many times as there are hops. O(n hops)
-std::vector<double> smoothed(std::vector<double> values, const NearPoints& near, int hops, const RunContext& run) {
-  std::vector<double> before(values.size());
-  for (int hop = 0; hop < hops; ++hop) {
-    std::swap(values, before);
-    for_each_index(values.size(), run, [&](std::size_t k) {
-      double sum = 0;
-      for (const std::uint32_t j : near.neighbours.of(k)) sum += before[j];
-      values[k] = sum / static_cast<double>(near.neighbours.width);
-    });
-  }
-  return values;
-}
-
-/// Puts each point on the side that the points around it are likelier to be on. `prior`: how much likelier side 0 is.
-void choose_sides(TwoSurfaces& two, const NearPoints& near, int hops, double prior, const RunContext& run) {
+/// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.
+void choose_sides(TwoSurfaces& two, const NearPoints& near, std::size_t around, double prior, const RunContext& run) {
   std::vector<double> votes(near.points.size(), 0);  // for side 1
   for (std::size_t k = 0; k < votes.size(); ++k) {
     if (!NearPoints::is_for_fit(k)) continue;
     votes[k] = cost_of(two.distances[0][k], near.noise) - cost_of(two.distances[1][k], near.noise);
   }
-  const double voters = static_cast<double>(near.neighbours.width) * hops;
-  votes = smoothed(std::move(votes), near, hops, run);
-  for (std::size_t k = 0; k < votes.size(); ++k) two.side[k] = voters * votes[k] > prior ? 1 : 0;
+  for_each_index_by_chunks(votes.size(), k_chunk_points, run, [&](std::size_t k) {
+    double sum = -prior;
+    for (const std::uint32_t j : near.neighbours.nearest(k, around)) sum += votes[j];
+    two.side[k] = sum > 0 ? 1 : 0;
+  });
 }
 
 /// Points of each side that are clear of the other, of those with `is_used(k)`.
@@ -204,17 +191,17 @@ double height_of(const TwoSurfaces& two, const NearPoints& near) {
 
 /// Alternates between choosing sides and fitting (classification EM: Celeux and Govaert 1992).
 std::optional<TwoSurfaces> alternate(std::optional<TwoSurfaces> two, const NearPoints& near, const RunContext& run) {
-  int hops = hops_for(near.offset / near.noise);
+  std::size_t around = near.neighbours.width;
   double prior = 0;
   std::vector<std::uint8_t> before;
   for (int round = 0; round < 2 * k_rounds && two && two->side != before; ++round) {
     before = two->side;
-    choose_sides(*two, near, hops, prior, run);
+    choose_sides(*two, near, around, prior, run);
     const Sides clear = clear_points(*two, near, NearPoints::is_for_fit);
     two = with_fits_to(clear, std::move(*two), near);
     if (!two) break;
     prior = std::log(static_cast<double>(clear[0].size()) / static_cast<double>(clear[1].size()));
-    hops = hops_for(height_of(*two, near));
+    around = neighbours_for(height_of(*two, near));
   }
   return two;
 }
@@ -233,14 +220,14 @@ double cost_of_fit(const TwoSurfaces& two, const NearPoints& near) {
 std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
                                       const std::vector<bool>& is_free, double smoothing, const SearchLimits& limits,
                                       const RunContext& run) {
+  const double usual = limits.agreement.noise;
+  const double noise =
+      std::max(usual, noise_within_patches(distances_of(grown.surface, cloud, grown.points)).value_or(usual));
+  if (grown.surface.type != SurfaceType::plane && usual < k_clear_share * noise) return std::nullopt;
   AgreementLimits wide = limits.agreement;
   wide.distance *= 3;  // a step within could hide in the limits
   std::vector<std::uint32_t> points = points_near(grown, cloud, wide, [&](std::uint32_t i) { return is_free[i]; });
   if (points.size() < 2 * limits.least_points || points.size() <= k_around) return std::nullopt;
-  const double usual = limits.agreement.noise;
-  const double noise =
-      std::max(usual, noise_within_patches(distances_of(grown.surface, cloud, grown.points)).value_or(usual));
-  if (usual < k_clear_share * noise) return std::nullopt;
   std::vector<double> distances = distances_of(grown.surface, cloud, points);
   const double offset = strongest_offset(distances, noise);
   // Halves of a face that are one standard deviation apart are on average a quarter off a tilted surface. Much lower
@@ -252,7 +239,8 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   for (std::size_t k = 0; k < points.size(); ++k) {
     feet.set(k, feet[k] - signed_distance(grown.surface, feet[k]) * normal(grown.surface, feet[k]));
   }
-  NeighbourTable neighbours = find_neighbours(feet, NeighbourTree(feet), k_around, run);
+  const std::size_t around = std::min(neighbours_for(offset / noise), points.size() - 1);
+  NeighbourTable neighbours = find_neighbours(feet, NeighbourTree(feet), around, run);
   const double evidence = k_evidence * points_of_one_error(neighbours, smoothing);
   return NearPoints{.cloud = cloud,
                     .points = std::move(points),
@@ -266,7 +254,7 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
 }
 
 double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k) {
-  const std::span<const std::uint32_t> around = near.neighbours.of(k);
+  const std::span<const std::uint32_t> around = near.neighbours.nearest(k, k_around);
   const auto same = std::ranges::count_if(around, [&](std::uint32_t j) { return two.side[j] == two.side[k]; });
   return static_cast<double>(same) / static_cast<double>(around.size());
 }

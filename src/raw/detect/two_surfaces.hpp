@@ -17,9 +17,9 @@ struct NearPoints {
   const WorkCloud& cloud;
   std::vector<std::uint32_t> points;  ///< ascending
   std::vector<double> distances;      ///< from the one surface
-  double offset;                      ///< median distance of the run of points that is farthest off: about the height
-  Points feet;                        ///< the points moved onto the one surface
-  NeighbourTable neighbours;          ///< among the feet, k_around of each
+  double offset;              ///< median distance of the run of points that is likeliest to be off: about the height
+  Points feet;                ///< the points moved onto the one surface
+  NeighbourTable neighbours;  ///< among the feet
   double noise;
   double evidence;  ///< least gain that shows two surfaces
   AgreementLimits fit_limits;
@@ -29,9 +29,9 @@ struct NearPoints {
   static bool is_for_fit(std::size_t k) { return mix(k) % 2 == 0; }
 };
 
-/// The surface's points and free ones nearby. Absent if no run of points is off the surface, or if form errors, such as
-/// facets, are clearly more than the noise: they would pass for steps. Errors of points within `smoothing` correlate.
-/// O(cloud + n log n) @throws Cancelled
+/// The surface's points and free ones nearby. Absent if no run of points is off the surface, or if the points of a
+/// round one scatter clearly more than the noise: facets would pass for steps. Errors of points within `smoothing`
+/// correlate. O(cloud + n log n) @throws Cancelled
 [[nodiscard]] std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
                                                     const std::vector<bool>& is_free, double smoothing,
                                                     const SearchLimits& limits, const RunContext& run);
@@ -45,11 +45,11 @@ struct TwoSurfaces {
   [[nodiscard]] double distance(std::size_t k) const { return distances[side[k]][k]; }
 };
 
-/// Share of the neighbours of point k that are on its side.
+/// Share of the k_around nearest neighbours of point k that are on its side.
 [[nodiscard]] double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k);
 
 /// Two surfaces of the one's type that explain the points for the fit best; the second has fewer points. Absent if none
-/// are found. O(n k_around) @throws Cancelled
+/// are found. O(n x neighbours) @throws Cancelled
 [[nodiscard]] std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run);
 
 /// The two, fitted to all points that are clear of the other side. O(n)

@@ -16,8 +16,8 @@ constexpr std::size_t k_voters = 12;
 /// Neighbours that a local plane or a proposal is fitted to, and whose planes judge a point.
 constexpr std::size_t k_around = 16;
 /// Points of a patch: successive ones, so near each other. Their mean shows a low step, and their scatter the noise of
-/// the place. With half as many, fewer steps of a standard deviation are found; with double, fewer small parts.
-constexpr std::size_t k_patch = 2 * k_around;
+/// the place.
+constexpr std::size_t k_patch = 32;
 /// Points for a share, whose standard error is at most 2.2 % then, for a median or for a first fit.
 constexpr std::size_t k_sample = 512;
 /// The same where more precision is worth its time, as for final fits.
