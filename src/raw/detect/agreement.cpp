@@ -19,11 +19,6 @@ std::size_t count_agreeing(const Surface& surface, std::span<const OrientedPoint
   });
 }
 
-bool explains(const Surface& surface, std::span<const OrientedPoint> points, const AgreementLimits& limits,
-              double share) {
-  return static_cast<double>(count_agreeing(surface, points, limits)) >= share * static_cast<double>(points.size());
-}
-
 std::vector<OrientedPoint> agreeing_points(const Surface& surface, std::span<const OrientedPoint> points,
                                            const AgreementLimits& limits) {
   return with_agreement(surface, [&](const auto& rule) {

@@ -145,10 +145,6 @@ auto with_agreement(const Surface& s, const Function& function) {
 [[nodiscard]] std::size_t count_agreeing(const Surface& surface, std::span<const OrientedPoint> points,
                                          const AgreementLimits& limits);
 
-/// Whether at least this share of the points is on the surface. O(n)
-[[nodiscard]] bool explains(const Surface& surface, std::span<const OrientedPoint> points,
-                            const AgreementLimits& limits, double share);
-
 [[nodiscard]] std::vector<OrientedPoint> agreeing_points(const Surface& surface, std::span<const OrientedPoint> points,
                                                          const AgreementLimits& limits);
 

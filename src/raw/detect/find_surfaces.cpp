@@ -5,7 +5,6 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "core/base/parallel.hpp"
@@ -22,8 +21,7 @@ namespace {
 constexpr std::uint64_t k_propose_stage = 0x70726f70;
 constexpr std::uint64_t k_subset_stage = 0x73756273;
 
-/// The candidates with the most support in a random subset, the best first, without those whose points a better one of
-/// their type explains.
+/// The candidates with the most support in a random subset, the best first.
 std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimits& limits, std::size_t draws,
                                      std::uint64_t seed, std::uint64_t round, const RunContext& run) {
   std::vector<std::vector<Surface>> proposed(draws);
@@ -44,14 +42,7 @@ std::vector<Surface> best_candidates(const FreePoints& points, const SearchLimit
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
   std::vector<Surface> best;
-  for (std::size_t k = 0; k < std::min(k_best, order.size()); ++k) {
-    const Surface& candidate = candidates[order[k]];
-    const std::vector<OrientedPoint> own = agreeing_points(candidate, subset, limits.agreement);
-    const auto replaces_it = [&](const Surface& better) {
-      return better.type == candidate.type && explains(better, own, limits.agreement, k_nearly_all);
-    };
-    if (own.empty() || std::ranges::none_of(best, replaces_it)) best.push_back(candidate);
-  }
+  for (std::size_t k = 0; k < std::min(k_best, order.size()); ++k) best.push_back(candidates[order[k]]);
   return best;
 }
 

@@ -15,6 +15,11 @@
 namespace cloud2csg {
 namespace {
 
+bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, const AgreementLimits& limits,
+              double share) {
+  return static_cast<double>(count_agreeing(surface, points, limits)) >= share * static_cast<double>(points.size());
+}
+
 /// Costs of the points on a surface with this noise, if their normals are not on another side of an edge.
 std::vector<double> costs_of(const Surface& surface, const std::vector<OrientedPoint>& points, double noise) {
   return with_agreement(surface, [&](const auto& rule) {
