@@ -4,40 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "raw/surface/profile.hpp"
-
 namespace cloud2csg {
 namespace {
 
 constexpr double k_least_half_angle = 1e-4;  // a narrower cone is a cylinder, whose apex has no significant digits
-
-/// The distance and its derivatives by the sizes.
-struct SizedProfile {
-  ProfileDistance profile;
-  std::array<double, 2> by_size;
-};
-
-SizedProfile profile_at(SurfaceType type, const Chart::Place& place, const AxialPoint& at) {
-  switch (type) {
-    case SurfaceType::plane:
-      return {{at.height, 0, 1}, {}};
-    case SurfaceType::sphere: {
-      const double length = std::hypot(at.radial, at.height);
-      const double divisor = length > 0 ? length : 1.0;
-      return {{length - place.sizes[0], at.radial / divisor, at.height / divisor}, {-1, 0}};
-    }
-    case SurfaceType::cylinder:
-      return {{at.radial - place.sizes[0], 1, 0}, {-1, 0}};
-    case SurfaceType::cone:
-      return {{at.radial * place.cosine - at.height * place.sine - place.sizes[0], place.cosine, -place.sine},
-              {-1, -at.radial * place.sine - at.height * place.cosine}};
-    case SurfaceType::torus: {
-      const ProfileDistance profile = torus_profile(place.sizes[0], place.sizes[1], at);
-      return {profile, {-profile.by_radial, -1}};
-    }
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -102,27 +72,6 @@ Chart::Place Chart::at(std::span<const double> values) const {
     place.cosine = std::cos(place.sizes[1]);
   }
   return place;
-}
-
-double Chart::distance(const Place& place, const Eigen::Vector3d& point) const {
-  return profile_at(start_.type, place, axial_point(place.position, place.axis, point)).profile.distance;
-}
-
-double Chart::distance(const Place& place, const Eigen::Vector3d& point, Row& slopes) const {
-  const AxialPoint at = axial_point(place.position, place.axis, point);
-  const auto [profile, by_size] = profile_at(start_.type, place, at);
-  std::size_t next = 0;
-  if (tilts_ > 0) {
-    // Tilting the axis towards the point moves the point up the axis and nearer to it.
-    const double by_turn = profile.by_height * at.radial - profile.by_radial * at.height;
-    for (const Eigen::Vector3d& turn : place.axis_by_tilt) slopes[next++] = by_turn * at.outward.dot(turn);
-  }
-  const Eigen::Vector3d gradient = profile.by_radial * at.outward + profile.by_height * place.axis;
-  for (std::size_t i = 0; i < shifts_; ++i) {
-    slopes[next++] = -gradient.dot(directions_[shifts_begin_ + i]);
-  }
-  for (std::size_t i = 0; i < sizes_; ++i) slopes[next++] = by_size[i];
-  return profile.distance;
 }
 
 bool Chart::is_surface(const Place& place) const {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "cloud2csg/advanced/surface.hpp"
+#include "raw/surface/profile.hpp"
 
 namespace cloud2csg {
 
@@ -62,5 +63,52 @@ class Chart {
   std::size_t shifts_ = 0;
   std::size_t sizes_ = 0;
 };
+
+/// The distance and its derivatives by the sizes.
+struct SizedProfile {
+  ProfileDistance profile;
+  std::array<double, 2> by_size;
+};
+
+/// Inline, as are the distances: fits spend most of their time here.
+[[nodiscard]] inline SizedProfile profile_at(SurfaceType type, const Chart::Place& place, const AxialPoint& at) {
+  switch (type) {
+    case SurfaceType::plane:
+      return {{at.height, 0, 1}, {}};
+    case SurfaceType::sphere:
+      return {circle_profile(0, place.sizes[0], at), {-1, 0}};
+    case SurfaceType::cylinder:
+      return {{at.radial - place.sizes[0], 1, 0}, {-1, 0}};
+    case SurfaceType::cone:
+      return {{at.radial * place.cosine - at.height * place.sine - place.sizes[0], place.cosine, -place.sine},
+              {-1, -at.radial * place.sine - at.height * place.cosine}};
+    case SurfaceType::torus: {
+      const ProfileDistance profile = circle_profile(place.sizes[0], place.sizes[1], at);
+      return {profile, {-profile.by_radial, -1}};
+    }
+  }
+  return {};
+}
+
+inline double Chart::distance(const Place& place, const Eigen::Vector3d& point) const {
+  return profile_at(start_.type, place, axial_point(place.position, place.axis, point)).profile.distance;
+}
+
+inline double Chart::distance(const Place& place, const Eigen::Vector3d& point, Row& slopes) const {
+  const AxialPoint at = axial_point(place.position, place.axis, point);
+  const auto [profile, by_size] = profile_at(start_.type, place, at);
+  std::size_t next = 0;
+  if (tilts_ > 0) {
+    // Tilting the axis towards the point moves the point up the axis and nearer to it.
+    const double by_turn = profile.by_height * at.radial - profile.by_radial * at.height;
+    for (const Eigen::Vector3d& turn : place.axis_by_tilt) slopes[next++] = by_turn * at.outward.dot(turn);
+  }
+  const Eigen::Vector3d gradient = profile.by_radial * at.outward + profile.by_height * place.axis;
+  for (std::size_t i = 0; i < shifts_; ++i) {
+    slopes[next++] = -gradient.dot(directions_[shifts_begin_ + i]);
+  }
+  for (std::size_t i = 0; i < sizes_; ++i) slopes[next++] = by_size[i];
+  return profile.distance;
+}
 
 }  // namespace cloud2csg

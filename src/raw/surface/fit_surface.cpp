@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -110,11 +111,15 @@ class Fitter {
   [[nodiscard]] SurfaceUncertainty uncertainty(const Solution& solution, double rms) const;
 
  private:
-  /// Starts with a wide loss, so that the points of an inaccurate start count, then narrows it.
+  /// Starts with a wide loss where the points of an inaccurate start would not count otherwise, then narrows it.
   [[nodiscard]] std::optional<Solution> fit_within(const Surface& start, double noise) const {
     std::optional<Surface> surface = start;
-    for (const double factor : {8.0, 2.0, 1.0}) {
+    const double measured = measured_noise(start, points_, precisions_);
+    constexpr std::array k_factors{8.0, 2.0, 1.0};
+    for (std::size_t k = 0; k < k_factors.size(); ++k) {
       if (!surface) return std::nullopt;
+      if (k + 1 < k_factors.size() && measured <= k_factors[k + 1] * noise) continue;
+      const double factor = k_factors[k];
       surface = improved(*surface, factor * noise, {LossType::tukey, k_tukey}, factor > 1 ? k_rough : k_precise);
     }
     if (!surface) return std::nullopt;
@@ -189,7 +194,7 @@ SurfaceUncertainty Fitter::uncertainty(const Solution& solution, double rms) con
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (std::abs(chart.distance(place, points_[i], slopes)) * precisions_[i] > k_tukey * solution.noise) continue;
     const auto row = Eigen::Map<const Eigen::VectorXd>(slopes.data(), count);
-    information += precisions_[i] * precisions_[i] * row * row.transpose();
+    information.noalias() += precisions_[i] * precisions_[i] * row * row.transpose();
     ++inliers;
   }
   const auto held = static_cast<Eigen::Index>(chart.held(held_));

@@ -8,8 +8,6 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_on_axis = 1e-13;
-
 /// Signed distance as if the material were inside, and its gradient.
 struct DistanceAndNormal {
   double distance;
@@ -45,7 +43,7 @@ DistanceAndNormal distance_and_normal(const Surface& surface, const Eigen::Vecto
       return distance_from_cone(surface, point);
     case SurfaceType::torus: {
       const AxialPoint at = axial_point(surface.position, surface.axis, point);
-      const ProfileDistance profile = torus_profile(surface.radius, surface.minor_radius, at);
+      const ProfileDistance profile = circle_profile(surface.radius, surface.minor_radius, at);
       return {profile.distance, profile.by_radial * at.outward + profile.by_height * surface.axis};
     }
   }
@@ -57,23 +55,6 @@ double side_of(const Surface& surface) {
 }
 
 }  // namespace
-
-AxialPoint axial_point(const Eigen::Vector3d& position, const Eigen::Vector3d& axis, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d offset = point - position;
-  const double height = axis.dot(offset);
-  const Eigen::Vector3d across = offset - height * axis;
-  const double radial = across.norm();
-  // Within rounding of the axis, the remainder has an arbitrary direction, not one across the axis.
-  const bool is_on_axis = radial <= k_on_axis * std::abs(height);
-  return {height, radial, radial > 0 && !is_on_axis ? Eigen::Vector3d(across / radial) : axis.unitOrthogonal()};
-}
-
-ProfileDistance torus_profile(double radius, double minor_radius, const AxialPoint& point) {
-  const double across = point.radial - radius;
-  const double length = std::hypot(across, point.height);
-  if (length == 0) return {-minor_radius, 1, 0};
-  return {length - minor_radius, across / length, point.height / length};
-}
 
 std::string_view type_name(SurfaceType type) {
   switch (type) {
