@@ -42,25 +42,25 @@ double strongest_offset(const std::vector<double>& distances, double noise) {
   return strongest.empty() ? 0 : median_of(strongest);
 }
 
-/// Neighbours that tell the side of a point: k_around for a step of two standard deviations. Their evidence grows with
-/// the square of the height, so a lower step needs more. With half of the limit, fewer steps of one standard deviation
-/// are found; double costs more time than the fits.
+/// Points for the fit that tell the side of one near them: k_nearest for a step of two standard deviations. Their
+/// evidence grows with the square of the height, so a lower step needs more. With half of the limit, fewer steps of one
+/// standard deviation are found; double costs more time than the fits.
 std::size_t neighbours_for(double deviations) {
   constexpr double k_most = 8;
-  return static_cast<std::size_t>(k_around * std::clamp(4 / (deviations * deviations), 1.0, k_most));
+  return static_cast<std::size_t>(k_nearest * std::clamp(4 / (deviations * deviations), 1.0, k_most));
 }
 
-/// How many points share an error: those within the length over which errors correlate, at least 1.
+/// How many points share an error: those within the length over which errors correlate, at least 1. `neighbours`: among
+/// every other point.
 double points_of_one_error(const NeighbourTable& neighbours, double smoothing) {
   std::vector<double> areas = areas_of(neighbours);
-  return std::max(1.0, std::numbers::pi * smoothing * smoothing / median_of(areas));
+  return std::max(1.0, 2 * std::numbers::pi * smoothing * smoothing / median_of(areas));
 }
 
 /// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.
 void choose_sides(TwoSurfaces& two, const NearPoints& near, std::size_t around, double prior, const RunContext& run) {
-  std::vector<double> votes(near.points.size(), 0);  // for side 1
+  std::vector<double> votes(near.points.size());  // for side 1
   for (std::size_t k = 0; k < votes.size(); ++k) {
-    if (!NearPoints::is_for_fit(k)) continue;
     votes[k] = cost_of(two.distances[0][k], near.noise) - cost_of(two.distances[1][k], near.noise);
   }
   for_each_index_by_chunks(votes.size(), k_chunk_points, run, [&](std::size_t k) {
@@ -191,7 +191,7 @@ double height_of(const TwoSurfaces& two, const NearPoints& near) {
 
 /// Alternates between choosing sides and fitting (classification EM: Celeux and Govaert 1992).
 std::optional<TwoSurfaces> alternate(std::optional<TwoSurfaces> two, const NearPoints& near, const RunContext& run) {
-  std::size_t around = near.neighbours.width;
+  std::size_t around = neighbours_for(near.offset / near.noise);
   double prior = 0;
   std::vector<std::uint8_t> before;
   for (int round = 0; round < 2 * k_rounds && two && two->side != before; ++round) {
@@ -227,7 +227,7 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   AgreementLimits wide = limits.agreement;
   wide.distance *= 3;  // a step within could hide in the limits
   std::vector<std::uint32_t> points = points_near(grown, cloud, wide, [&](std::uint32_t i) { return is_free[i]; });
-  if (points.size() < 2 * limits.least_points || points.size() <= k_around) return std::nullopt;
+  if (points.size() < 2 * limits.least_points) return std::nullopt;
   std::vector<double> distances = distances_of(grown.surface, cloud, points);
   const double offset = strongest_offset(distances, noise);
   // Halves of a face that are one standard deviation apart are on average a quarter off a tilted surface. Much lower
@@ -239,8 +239,13 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   for (std::size_t k = 0; k < points.size(); ++k) {
     feet.set(k, feet[k] - signed_distance(grown.surface, feet[k]) * normal(grown.surface, feet[k]));
   }
-  const std::size_t around = std::min(neighbours_for(offset / noise), points.size() - 1);
-  NeighbourTable neighbours = find_neighbours(feet, NeighbourTree(feet), around, run);
+  std::vector<std::uint32_t> for_fit;
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    if (NearPoints::is_for_fit(k)) for_fit.push_back(k);
+  }
+  const std::size_t around = std::max(k_around, neighbours_for(offset / noise));
+  NeighbourTable neighbours = find_neighbours_among(for_fit, feet, around, run);
+  if (neighbours.width < k_nearest) return std::nullopt;
   const double evidence = k_evidence * points_of_one_error(neighbours, smoothing);
   return NearPoints{.cloud = cloud,
                     .points = std::move(points),

@@ -19,7 +19,7 @@ struct NearPoints {
   std::vector<double> distances;      ///< from the one surface
   double offset;              ///< median distance of the run of points that is likeliest to be off: about the height
   Points feet;                ///< the points moved onto the one surface
-  NeighbourTable neighbours;  ///< among the feet
+  NeighbourTable neighbours;  ///< among the feet of the points for the fit
   double noise;
   double evidence;  ///< least gain that shows two surfaces
   AgreementLimits fit_limits;

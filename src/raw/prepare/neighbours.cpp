@@ -18,7 +18,10 @@ CentredPoints centred(PointsView points) {
 
 namespace {
 
-void fill_row(NeighbourTable& table, std::uint32_t point, const Points& points, const NeighbourTree& tree) {
+/// `index(n)`: of the tree's point n.
+template <class Index>
+void fill_row(NeighbourTable& table, std::uint32_t point, const Points& points, const NeighbourTree& tree,
+              const Index& index) {
   thread_local std::vector<std::uint32_t> indices;
   thread_local std::vector<double> squares;
   indices.resize(table.width + 1);
@@ -28,23 +31,41 @@ void fill_row(NeighbourTable& table, std::uint32_t point, const Points& points, 
   std::size_t to = point * table.width;
   const std::size_t full = to + table.width;
   for (std::size_t n = 0; n < indices.size() && to < full; ++n) {
-    if (indices[n] == point) continue;
-    table.indices[to] = indices[n];
+    if (index(indices[n]) == point) continue;
+    table.indices[to] = index(indices[n]);
     table.distances[to++] = static_cast<float>(std::sqrt(squares[n]));
   }
+}
+
+NeighbourTable empty_table(std::size_t points, std::size_t tree_points, std::size_t width) {
+  NeighbourTable table{
+      .width = std::min(width, tree_points == 0 ? 0 : tree_points - 1), .indices = {}, .distances = {}};
+  table.indices.resize(points * table.width);
+  table.distances.resize(points * table.width);
+  return table;
 }
 
 }  // namespace
 
 NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
                                const RunContext& run, const StageShare& share) {
-  NeighbourTable table{
-      .width = std::min(width, points.empty() ? 0 : points.size() - 1), .indices = {}, .distances = {}};
-  table.indices.resize(points.size() * table.width);
-  table.distances.resize(points.size() * table.width);
+  NeighbourTable table = empty_table(points.size(), points.size(), width);
+  const auto same = [](std::uint32_t n) { return n; };
   const std::span<const std::uint32_t> order = tree.order();
   for_each_index_by_chunks(points.size(), k_chunk_points, run, share,
-                           [&](std::size_t place) { fill_row(table, order[place], points, tree); });
+                           [&](std::size_t place) { fill_row(table, order[place], points, tree, same); });
+  return table;
+}
+
+NeighbourTable find_neighbours_among(std::span<const std::uint32_t> among, const Points& points, std::size_t width,
+                                     const RunContext& run) {
+  Points some(among.size());
+  for (std::size_t n = 0; n < among.size(); ++n) some.set(n, points[among[n]]);
+  const NeighbourTree tree(some);
+  NeighbourTable table = empty_table(points.size(), some.size(), width);
+  for_each_index_by_chunks(points.size(), k_chunk_points, run, [&](std::size_t point) {
+    fill_row(table, static_cast<std::uint32_t>(point), points, tree, [&](std::uint32_t n) { return among[n]; });
+  });
   return table;
 }
 
