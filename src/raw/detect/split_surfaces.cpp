@@ -129,7 +129,7 @@ std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& n
 std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, const NearPoints& near,
                                                  const SearchLimits& limits, const RunContext& run) {
   std::optional<TwoSurfaces> two = fit_two(grown.surface, near, run);
-  if (!two || !(gain_of(*two, near) >= near.evidence) || !are_apart(*two, near)) return std::nullopt;
+  if (!two || !(gain_of(*two, near) >= k_evidence * near.of_one_error) || !are_apart(*two, near)) return std::nullopt;
   two = with_fits_to_all(std::move(*two), near);
   if (!two) return std::nullopt;
   if (!matches_averages(*two, near, limits.least_points) || !are_apart(*two, near)) return std::nullopt;

@@ -21,11 +21,11 @@ struct NearPoints {
   Points feet;                ///< the points moved onto the one surface
   NeighbourTable neighbours;  ///< among the feet of the points for the fit
   double noise;
-  double evidence;  ///< least gain that shows two surfaces
+  double of_one_error;  ///< how many points for the fit share an error
   AgreementLimits fit_limits;
 
-  /// Two surfaces are found by these, and tested by the others. By chance: every other point would have a neighbour
-  /// with a similar error among the others.
+  /// Two surfaces are found by these, and tested by the others. A random half: if every other point were for the fit,
+  /// each would have a neighbour with a similar error among the others.
   static bool is_for_fit(std::size_t k) { return mix(k) % 2 == 0; }
 };
 
@@ -45,7 +45,7 @@ struct TwoSurfaces {
   [[nodiscard]] double distance(std::size_t k) const { return distances[side[k]][k]; }
 };
 
-/// Share of the k_around nearest neighbours of point k that are on its side.
+/// Share of the k_around points for the fit nearest to point k that are on its side.
 [[nodiscard]] double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k);
 
 /// Two surfaces of the one's type that explain the points for the fit best; the second has fewer points. Absent if none
