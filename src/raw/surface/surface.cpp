@@ -1,6 +1,5 @@
 #include "cloud2csg/advanced/surface.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "raw/surface/profile.hpp"
