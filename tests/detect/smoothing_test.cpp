@@ -22,7 +22,7 @@ constexpr double k_box_noise = 0.01;
 
 /// Errors of the means correlate over twice the deviation of the weights. The noise that is left is a fifth.
 TEST(Smoothing, LeavesSharpEdges) {
-  for (const std::uint64_t seed : {11, 3, 9}) {
+  for (const std::uint64_t seed : {11U, 3U, 9U}) {
     const PointCloud cloud = sample_surface({.primitives = k_box.primitives, .tree = k_box.tree},
                                             {.count = 20'000, .noise = k_box_noise, .seed = seed});
     const double deviation = 1.2 * test::spacing_of(cloud);
