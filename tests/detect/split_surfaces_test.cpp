@@ -64,7 +64,7 @@ SearchLimits limits_by(double noise) {
 }
 
 std::vector<GrownSurface> split(const Patch& patch, double noise = k_noise) {
-  return split_surfaces({patch.grown}, patch.cloud, 0, limits_by(noise), {.threads = 2});
+  return split_surfaces({patch.grown}, patch.cloud, limits_by(noise), {.threads = 2});
 }
 
 // Seeds are fixed, because noise can look like anything, though rarely.
@@ -122,7 +122,7 @@ TEST(SplitSurfaces, LooksNoFurtherWhereNoRunOfPointsIsClearlyOff) {
       patch.cloud.points[i].position.z() = k_noise * ((i % 2 == 0 ? 1 : -1) + (i < 2 * k_nearest ? height : 0.0));
     }
     const std::vector<bool> is_free(patch.cloud.size(), false);
-    return near_points(patch.grown, patch.cloud, is_free, 0, limits_by(k_noise), {}).has_value();
+    return near_points(patch.grown, patch.cloud, is_free, limits_by(k_noise), {}).has_value();
   };
   EXPECT_FALSE(has_run_at(1.1));
   EXPECT_TRUE(has_run_at(1.5));
@@ -165,7 +165,7 @@ TEST(SplitSurfaces, LooksNoFurtherWithTooFewPointsForTheFit) {
     std::size_t for_fit = 0;
     for (std::size_t k = 0; k < points; ++k) for_fit += NearPoints::is_for_fit(k) ? 1 : 0;
     const std::vector<bool> is_free(points, false);
-    const auto near = near_points(patch.grown, patch.cloud, is_free, 0, limits, {});
+    const auto near = near_points(patch.grown, patch.cloud, is_free, limits, {});
     EXPECT_EQ(near.has_value(), for_fit > k_nearest) << points;
     if (near) {
       EXPECT_GE(near->neighbours.width, k_nearest);

@@ -34,7 +34,7 @@ std::vector<float> plain_distances(std::size_t row, const std::vector<std::uint3
 
 RC_GTEST_PROP(FindNeighboursAmong, AreTheNearestOthers, ()) {
   RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
-  const Points points = random_points(1 + random.below(60), random);
+  const Points points = random_points(1 + random.below(300), random);
   const std::size_t share = 1 + random.below(4);
   std::vector<std::uint32_t> among;
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -239,8 +239,8 @@ TEST_P(EachSurface, OfEqualPrecisionsIsThatOfTheirNoise) {
   EXPECT_NEAR(fit->uncertainty.position, plain->uncertainty.position, 1e-6 * plain->uncertainty.position);
 }
 
-/// A third of the points tells the plane's tilt. From the start they are 8 to 25 deviations of the noise away, and the
-/// others less than one.
+/// A third of the points tells the plane's tilt. From the start they are 8 or 25 deviations of the noise away, and
+/// without noise the others less than one.
 TEST(FitSurface, IsDrawnByAMinorityOfPointsFarFromTheStart) {
   RandomStream random(1);
   for (const double tilt : {8.0, 25.0}) {

@@ -77,11 +77,11 @@ struct SurfaceFit {
 };
 
 /// Fits a surface of the type of `start`, near it, by least squares of Euclidean distances (3, 4, 5, 6 or 7 unknowns
-/// for a plane, sphere, cylinder, cone or torus). Uses Huber's loss first, then Tukey's, by Levenberg-Marquardt. Points
-/// are centred and scaled to keep digits. The side of the material stays, and roughly the direction of a cylinder's or
-/// torus' axis. The position of a plane or cylinder is its point nearest to the middle of the points. Absent with fewer
-/// points than unknowns, or when the fit degenerates (cylinder without radius, flat cone or cone without opening).
-/// O(points x iterations): 1 to 5 ms for 4000 points.
+/// for a plane, sphere, cylinder, cone or torus). Uses Tukey's loss (first Huber's, without a noise), by
+/// Levenberg-Marquardt. Points are centred and scaled to keep digits. The side of the material stays, and roughly the
+/// direction of a cylinder's or torus' axis. The position of a plane or cylinder is its point nearest to the middle of
+/// the points. Absent with fewer points than unknowns, or when the fit degenerates (cylinder without radius, flat cone
+/// or cone without opening). O(points x iterations): 1 to 5 ms for 4000 points.
 /// Preconditions: finite points, start.axis of unit length.
 [[nodiscard]] std::optional<SurfaceFit> fit_surface(const Surface& start, std::span<const Eigen::Vector3d> points,
                                                     const FitOptions& options = {});

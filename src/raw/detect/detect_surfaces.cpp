@@ -157,8 +157,9 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
     if (smoothing > 0) {
       surfaces = settle_surfaces(without_smoothed_edges(std::move(surfaces), work, smoothing, limits, run), work,
                                  neighbours, limits, run);
+    } else {  // neighbours have independent errors
+      surfaces = split_surfaces(std::move(surfaces), work, limits, run);
     }
-    surfaces = split_surfaces(std::move(surfaces), work, smoothing, limits, run);
   }
   if (smoothing > 0) {
     const FreePoints points = free_points(work, surfaces);

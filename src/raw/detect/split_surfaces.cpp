@@ -129,7 +129,7 @@ std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& n
 std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, const NearPoints& near,
                                                  const SearchLimits& limits, const RunContext& run) {
   std::optional<TwoSurfaces> two = fit_two(grown.surface, near, run);
-  if (!two || !(gain_of(*two, near) >= k_evidence * near.of_one_error) || !are_apart(*two, near)) return std::nullopt;
+  if (!two || !(gain_of(*two, near) >= k_evidence) || !are_apart(*two, near)) return std::nullopt;
   two = with_fits_to_all(std::move(*two), near);
   if (!two) return std::nullopt;
   if (!matches_averages(*two, near, limits.least_points) || !are_apart(*two, near)) return std::nullopt;
@@ -142,7 +142,7 @@ std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, cons
 
 }  // namespace
 
-std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud, double smoothing,
+std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                          const SearchLimits& limits, const RunContext& run) {
   std::vector<bool> is_free(cloud.size(), true);
   const auto set_free = [&](const GrownSurface& surface, bool free) {
@@ -151,7 +151,7 @@ std::vector<GrownSurface> split_surfaces(std::vector<GrownSurface> surfaces, con
   for (const GrownSurface& surface : surfaces) set_free(surface, false);
   for (std::size_t s = 0; s < surfaces.size();) {
     run.throw_if_stopped();
-    const std::optional<NearPoints> near = near_points(surfaces[s], cloud, is_free, smoothing, limits, run);
+    const std::optional<NearPoints> near = near_points(surfaces[s], cloud, is_free, limits, run);
     auto parts = near ? split(surfaces[s], *near, limits, run) : std::nullopt;
     if (!parts) {
       ++s;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <utility>
 
@@ -42,18 +41,12 @@ double strongest_offset(const std::vector<double>& distances, double noise) {
   return strongest.empty() ? 0 : median_of(strongest);
 }
 
-/// Points for the fit that tell the side of one near them: k_nearest for a step of two standard deviations. Their
-/// evidence grows with the square of the height, so a lower step needs more; and points that share an error count as
-/// one. With half of the limit, fewer steps of one standard deviation are found; double costs more time than the fits.
-std::size_t neighbours_for(double deviations, double of_one_error) {
+/// How many points for the fit decide the side of a point: k_nearest for a step of two standard deviations. Their
+/// evidence grows with the square of the height, so a lower step needs more. With half of the limit, fewer steps of one
+/// standard deviation are found; double costs more time than the fits.
+std::size_t neighbours_for(double deviations) {
   constexpr double k_most = 8;
-  return static_cast<std::size_t>(of_one_error * k_nearest * std::clamp(4 / (deviations * deviations), 1.0, k_most));
-}
-
-/// How many of the points share an error, at least 1: the integral of their correlation e^(-d^2/smoothing^2).
-double points_of_one_error(const NeighbourTable& neighbours, double smoothing) {
-  std::vector<double> areas = areas_of(neighbours);
-  return std::max(1.0, std::numbers::pi * smoothing * smoothing / median_of(areas));
+  return static_cast<std::size_t>(k_nearest * std::clamp(4 / (deviations * deviations), 1.0, k_most));
 }
 
 /// Puts each point on the side that its neighbours are likelier to be on. `prior`: how much likelier side 0 is.
@@ -190,7 +183,7 @@ double height_of(const TwoSurfaces& two, const NearPoints& near) {
 
 /// Alternates between choosing sides and fitting (classification EM: Celeux and Govaert 1992).
 std::optional<TwoSurfaces> alternate(std::optional<TwoSurfaces> two, const NearPoints& near, const RunContext& run) {
-  std::size_t around = neighbours_for(near.offset / near.noise, near.of_one_error);
+  std::size_t around = neighbours_for(near.offset / near.noise);
   double prior = 0;
   std::vector<std::uint8_t> before;
   for (int round = 0; round < 2 * k_rounds && two && two->side != before; ++round) {
@@ -200,7 +193,7 @@ std::optional<TwoSurfaces> alternate(std::optional<TwoSurfaces> two, const NearP
     two = with_fits_to(clear, std::move(*two), near);
     if (!two) break;
     prior = std::log(static_cast<double>(clear[0].size()) / static_cast<double>(clear[1].size()));
-    around = neighbours_for(height_of(*two, near), near.of_one_error);
+    around = neighbours_for(height_of(*two, near));
   }
   return two;
 }
@@ -217,7 +210,7 @@ double cost_of_fit(const TwoSurfaces& two, const NearPoints& near) {
 }  // namespace
 
 std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
-                                      const std::vector<bool>& is_free, double smoothing, const SearchLimits& limits,
+                                      const std::vector<bool>& is_free, const SearchLimits& limits,
                                       const RunContext& run) {
   const double usual = limits.agreement.noise;
   const double noise =
@@ -243,13 +236,8 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
     if (NearPoints::is_for_fit(k)) for_fit.push_back(k);
   }
   if (for_fit.size() <= k_nearest) return std::nullopt;
-  const auto neighbours_of = [&](double of_one_error) {
-    const std::size_t around = std::max(k_around, neighbours_for(offset / noise, of_one_error));
-    return find_neighbours_among(for_fit, feet, around, run);
-  };
-  NeighbourTable neighbours = neighbours_of(1);
-  const double of_one_error = points_of_one_error(neighbours, smoothing);
-  if (of_one_error > 1) neighbours = neighbours_of(of_one_error);
+  const std::size_t around = std::max(k_around, neighbours_for(offset / noise));
+  NeighbourTable neighbours = find_neighbours_among(for_fit, feet, around, run);
   return NearPoints{.cloud = cloud,
                     .points = std::move(points),
                     .distances = std::move(distances),
@@ -257,7 +245,6 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
                     .feet = std::move(feet),
                     .neighbours = std::move(neighbours),
                     .noise = noise,
-                    .of_one_error = of_one_error,
                     .fit_limits = limits.agreement.within(std::min(k_deviations * noise, limits.agreement.distance))};
 }
 

@@ -21,7 +21,6 @@ struct NearPoints {
   Points feet;                ///< the points moved onto the one surface
   NeighbourTable neighbours;  ///< among the feet of the points for the fit
   double noise;
-  double of_one_error;  ///< how many points for the fit share an error
   AgreementLimits fit_limits;
 
   /// Two surfaces are found by these, and tested by the others. A random half: if every other point were for the fit,
@@ -30,11 +29,10 @@ struct NearPoints {
 };
 
 /// The surface's points and free ones nearby. Absent if no run of points is off the surface, or if the points of a
-/// round one scatter clearly more than the noise: facets would pass for steps. Errors of points within `smoothing`
-/// correlate. O(cloud + n log n) @throws Cancelled
+/// round one scatter clearly more than the noise: facets would pass for steps. O(cloud + n log n) @throws Cancelled
 [[nodiscard]] std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud& cloud,
-                                                    const std::vector<bool>& is_free, double smoothing,
-                                                    const SearchLimits& limits, const RunContext& run);
+                                                    const std::vector<bool>& is_free, const SearchLimits& limits,
+                                                    const RunContext& run);
 
 /// Two surfaces, and the one on which each point is.
 struct TwoSurfaces {

@@ -18,7 +18,7 @@ CentredPoints centred(PointsView points) {
 
 namespace {
 
-/// `index(n)`: of the tree's point n.
+/// `index(n)`: of the tree's point n among the `points`.
 template <class Index>
 void fill_row(NeighbourTable& table, std::uint32_t point, const Points& points, const NeighbourTree& tree,
               const Index& index) {
@@ -27,7 +27,8 @@ void fill_row(NeighbourTable& table, std::uint32_t point, const Points& points, 
   indices.resize(table.width + 1);
   squares.resize(table.width + 1);
   tree.find(points[point], indices, squares);
-  // Among coincident points, the point itself may be missing from its neighbours. Then the farthest one is dropped.
+  // The point itself may be missing from those found: others coincide with it, or it is not in the tree. Then the
+  // farthest one is dropped.
   std::size_t to = point * table.width;
   const std::size_t full = to + table.width;
   for (std::size_t n = 0; n < indices.size() && to < full; ++n) {
