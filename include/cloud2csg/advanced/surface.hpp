@@ -48,7 +48,7 @@ enum class HeldValue { none, direction, axis };
 
 struct FitOptions {
   /// Standard deviation of the points' distances from the surface, in their units. Points beyond about five of it lose
-  /// their influence, however many they are; points of the right surface must lie within about thirty of the start.
+  /// their influence. Those of the right surface must be within about five of the start; if most are not, within 30.
   /// Absent: 1.4826 times the median distance, measured during the fit. That tolerates a worse start and 50 % outliers.
   std::optional<double> noise = {};
   /// A larger set is thinned evenly: takes a few milliseconds, and adds uncertainty far below that of the noise.

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -82,20 +83,13 @@ Chart::Row solve(const RobustDistances& distances, double tolerance) {
   return distances.all(free.data());
 }
 
-/// Absolute, times the precisions.
-std::vector<double> distances_from(const Surface& surface, std::span<const Eigen::Vector3d> points,
-                                   std::span<const double> precisions) {
+double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> points,
+                      std::span<const double> precisions) {
   std::vector<double> distances;
   distances.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     distances.push_back(std::abs(signed_distance(surface, points[i])) * precisions[i]);
   }
-  return distances;
-}
-
-double measured_noise(const Surface& surface, std::span<const Eigen::Vector3d> points,
-                      std::span<const double> precisions) {
-  std::vector<double> distances = distances_from(surface, points, precisions);
   return robust_deviation(distances);
 }
 
@@ -117,22 +111,17 @@ class Fitter {
   [[nodiscard]] SurfaceUncertainty uncertainty(const Solution& solution, double rms) const;
 
  private:
-  /// Starts with a wide loss where it counts points of an inaccurate start that a narrower one would not.
+  /// Starts with a wide loss where the points of an inaccurate start would not count otherwise, then narrows it.
   [[nodiscard]] std::optional<Solution> fit_within(const Surface& start, double noise) const {
-    const std::vector<double> distances = distances_from(start, points_, precisions_);
-    const auto counted = [&](double factor) {
-      return std::ranges::count_if(distances, [&](double d) { return d <= k_tukey * factor * noise; });
-    };
-    constexpr double k_wide = 8;
-    constexpr double k_less_wide = 2;
     std::optional<Surface> surface = start;
-    const auto improve = [&](double factor, double tolerance) {
-      if (surface) surface = improved(*surface, factor * noise, {LossType::tukey, k_tukey}, tolerance);
-    };
-    const bool is_far = counted(k_wide) > counted(k_less_wide);
-    if (is_far) improve(k_wide, k_rough);
-    if (is_far || counted(k_less_wide) > counted(1)) improve(k_less_wide, k_rough);
-    improve(1, k_precise);
+    const double measured = measured_noise(start, points_, precisions_);
+    constexpr std::array k_factors{8.0, 2.0, 1.0};
+    for (std::size_t k = 0; k < k_factors.size(); ++k) {
+      if (!surface) return std::nullopt;
+      if (k + 1 < k_factors.size() && measured <= k_factors[k + 1] * noise) continue;
+      const double factor = k_factors[k];
+      surface = improved(*surface, factor * noise, {LossType::tukey, k_tukey}, factor > 1 ? k_rough : k_precise);
+    }
     if (!surface) return std::nullopt;
     return Solution{.surface = *surface, .noise = noise};
   }
@@ -199,18 +188,15 @@ SurfaceUncertainty Fitter::uncertainty(const Solution& solution, double rms) con
   const Chart::Row start = chart.start();
   const Chart::Place place = chart.at({start.data(), chart.unknowns()});
   const auto count = static_cast<Eigen::Index>(chart.unknowns());
-  // Of fixed size, which is faster. Unknowns that the chart does not have stay 0.
-  using Information = Eigen::Matrix<double, Chart::k_most_unknowns, Chart::k_most_unknowns>;
-  Information all_information = Information::Zero();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
   Chart::Row slopes = {};
   Eigen::Index inliers = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (std::abs(chart.distance(place, points_[i], slopes)) * precisions_[i] > k_tukey * solution.noise) continue;
-    const Eigen::Map<const Eigen::Matrix<double, Chart::k_most_unknowns, 1>> row(slopes.data());
-    all_information.noalias() += precisions_[i] * precisions_[i] * row * row.transpose();
+    const auto row = Eigen::Map<const Eigen::VectorXd>(slopes.data(), count);
+    information.noalias() += precisions_[i] * precisions_[i] * row * row.transpose();
     ++inliers;
   }
-  const Eigen::MatrixXd information = all_information.topLeftCorner(count, count);
   const auto held = static_cast<Eigen::Index>(chart.held(held_));
   const Eigen::Index free = count - held;
   std::optional<Eigen::MatrixXd> covariance;  // of those that are not held
