@@ -151,22 +151,17 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
   std::vector<GrownSurface> surfaces =
       settle_and_find_more(std::move(first.surfaces), work, neighbours, limits, options.seed, run);
   // A given tolerance says that nearer surfaces are one.
-  double smoothing = 0;
-  if (!options.distance_tolerance) {
-    smoothing = smoothing_length(surfaces, work, limits.agreement.noise);
-    if (smoothing > 0) {
-      surfaces = settle_surfaces(without_smoothed_edges(std::move(surfaces), work, smoothing, limits, run), work,
-                                 neighbours, limits, run);
-    } else {  // neighbours have independent errors
-      surfaces = split_surfaces(std::move(surfaces), work, limits, run);
-    }
-  }
+  const double smoothing = options.distance_tolerance ? 0 : smoothing_length(surfaces, work, limits.agreement.noise);
   if (smoothing > 0) {
+    surfaces = settle_surfaces(without_smoothed_edges(std::move(surfaces), work, smoothing, limits, run), work,
+                               neighbours, limits, run);
     const FreePoints points = free_points(work, surfaces);
     for (const std::uint32_t i : points_at_edges(points.list(), surfaces, work, smoothing, run)) {
       result.smoothed.push_back(work.index[i]);
     }
     std::ranges::sort(result.smoothed);
+  } else if (!options.distance_tolerance) {  // neighbours have independent errors
+    surfaces = split_surfaces(std::move(surfaces), work, limits, run);
   }
   for (const GrownSurface& grown : surfaces) {
     if (!has_allowed_size(grown, work, options, limits.link)) continue;

@@ -10,8 +10,7 @@ namespace cloud2csg {
 /// deviations of the noise; with thousands on either side, one. Both parts have the type of the surface. It is shown if
 /// - the points are a million times as likely with two surfaces as with one. Two surfaces are fitted to one half of the
 ///   points; the likelihoods are those of the other half (split likelihood ratio test: Wasserman, Ramdas and
-///   Balakrishnan 2020). The one surface
-///   may have a smooth form error, a quadratic function of the place;
+///   Balakrishnan 2020). The one surface may have a smooth form error, a quadratic function of the place;
 /// - away from the step, the smaller of the two explains its points as well as the average of each point's neighbours
 ///   does, give or take a standard error; and the two are apart where their points meet. So no rounded edge or other
 ///   gradual form error is a step.
