@@ -98,6 +98,19 @@ TEST(LocalNoise, IsNotTheDetailOfOtherSurfaces) {
   EXPECT_TRUE(local_noise({low, level_at(k_height, ribbed)}, ribbed, k_limits, {}).empty());
 }
 
+TEST(LocalNoise, IsNotTheWidthOfAWall) {
+  for (const double half_width : {2.5, 3.0, 4.0}) {
+    RandomStream random(7);
+    PointCloud wall = flat_square(1);
+    for (std::size_t i = 0; i < wall.size(); ++i) {
+      const double side = random.uniform() < 0.5 ? -1 : 1;
+      wall.positions.set(i, wall.positions[i] + side * half_width * k_quiet * Vector3d::UnitZ());
+    }
+    const WorkCloud work = unscaled(wall);
+    EXPECT_TRUE(local_noise({level_at(0, work)}, work, k_limits, {}).empty()) << half_width;
+  }
+}
+
 TEST(AccountForNoise, LowersPrecisionAndStraightensNormals) {
   constexpr double k_ratio = 10;
   WorkCloud work = unscaled(flat_square(k_ratio));
