@@ -22,33 +22,27 @@ Points random_points(std::size_t count, RandomStream& random) {
   return points;
 }
 
-/// Distances from point `row` to all others of `among`, ascending.
-std::vector<float> plain_distances(std::size_t row, const std::vector<std::uint32_t>& among, const Points& points) {
+/// Distances from point `row` to all others, ascending.
+std::vector<float> plain_distances(std::size_t row, const Points& points) {
   std::vector<float> distances;
-  for (const std::uint32_t j : among) {
+  for (std::size_t j = 0; j < points.size(); ++j) {
     if (j != row) distances.push_back(static_cast<float>((points[j] - points[row]).norm()));
   }
   std::ranges::sort(distances);
   return distances;
 }
 
-RC_GTEST_PROP(FindNeighboursAmong, AreTheNearestOthers, ()) {
+RC_GTEST_PROP(FindNeighbours, AreTheNearestOthers, ()) {
   RandomStream random(*rc::gen::arbitrary<std::uint32_t>());
   const Points points = random_points(1 + random.below(300), random);
-  const std::size_t share = 1 + random.below(4);
-  std::vector<std::uint32_t> among;
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (random.below(share) == 0) among.push_back(i);
-  }
   const std::size_t width = 1 + random.below(12);
-  const NeighbourTable table = find_neighbours_among(among, points, width, {.threads = 2});
-  RC_ASSERT(table.width == std::min(width, among.empty() ? 0 : among.size() - 1));
+  const NeighbourTable table = find_neighbours(points, NeighbourTree(points), width, {.threads = 2});
+  RC_ASSERT(table.width == std::min(width, points.size() - 1));
   for (std::size_t row = 0; row < points.size(); ++row) {
-    const std::vector<float> plain = plain_distances(row, among, points);
+    const std::vector<float> plain = plain_distances(row, points);
     for (std::size_t n = 0; n < table.width; ++n) {
       const std::uint32_t j = table.of(row)[n];
       RC_ASSERT(j != row);
-      RC_ASSERT(std::ranges::find(among, j) != among.end());
       RC_ASSERT(std::ranges::count(table.of(row), j) == 1);
       RC_ASSERT(table.distances_of(row)[n] == plain[n]);
       RC_ASSERT(table.distances_of(row)[n] == static_cast<float>((points[j] - points[row]).norm()));

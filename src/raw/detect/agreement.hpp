@@ -34,6 +34,11 @@ constexpr std::size_t count_parameters(SurfaceType type) {
   return k_counts[static_cast<std::size_t>(type)];
 }
 
+/// The least evidence for a surface of `points` points: what its parameters fit by chance does not count (BIC).
+inline double least_evidence(SurfaceType type, std::size_t points) {
+  return k_evidence + 0.5 * static_cast<double>(count_parameters(type)) * std::log(static_cast<double>(points));
+}
+
 /// Negative logarithm of the likelihood of a distance with normally distributed noise, up to a constant. A distance of
 /// more than three standard deviations counts as that: then the point is an outlier.
 inline double cost_of(double distance, double noise) {

@@ -68,11 +68,6 @@ std::vector<Piece> pieces_of(const std::vector<std::uint32_t>& points, const Wor
   return pieces;
 }
 
-/// The least evidence for a surface of `points` points: what its parameters fit by chance does not count (BIC).
-double least_evidence(SurfaceType type, std::size_t points) {
-  return k_evidence + 0.5 * static_cast<double>(count_parameters(type)) * std::log(static_cast<double>(points));
-}
-
 /// Logarithm of the ratio of the likelihoods of the samples: each piece on the one of the two that explains it better,
 /// or all on `one`. A piece counts as few points, so that form errors within the noise, such as those of a scan whose
 /// views do not quite fit, are no evidence.

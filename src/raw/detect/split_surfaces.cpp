@@ -55,20 +55,25 @@ double smooth_cost(std::span<const double> distances, std::span<const double> pr
   return least;
 }
 
-/// Logarithm of the ratio of likelihoods of two surfaces and one.
+/// How far a point is off the average of its neighbours.
+double off_average(const NearPoints& near, std::size_t k) {
+  double sum = 0;
+  for (const std::uint32_t j : near.neighbours.of(k).first(k_nearest)) sum += near.distances[j];
+  return near.distances[k] - sum / k_nearest;
+}
+
+/// Logarithm of the ratio of the likelihoods of two surfaces, and of one with form errors, smooth or shared by
+/// neighbours.
 double gain_of(const TwoSurfaces& two, const NearPoints& near) {
-  std::vector<double> distances;
   std::vector<double> precisions;
   std::vector<Vector3d> places;
-  double cost = 0;
+  double of_averages = 0;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
-    if (NearPoints::is_for_fit(k)) continue;
-    distances.push_back(near.distances[k]);
     precisions.push_back(near.cloud.points[near.points[k]].precision);
     places.push_back(near.feet[k]);
-    cost += cost_of(two.distance(k), near.noise);
+    of_averages += cost_of(off_average(near, k), near.noise);
   }
-  return smooth_cost(distances, precisions, places, near.noise) - cost;
+  return std::min(of_averages, smooth_cost(near.distances, precisions, places, near.noise)) - cost_of(two, near);
 }
 
 /// Whether the surface of the smaller side explains the points away from the step as well as averages do, which adapt
@@ -80,9 +85,7 @@ bool matches_averages(const TwoSurfaces& two, const NearPoints& near, std::size_
   std::size_t count = 0;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
     if (two.side[k] == 0 || share_on_own_side(two, near, k) < 1) continue;
-    double sum = 0;
-    for (const std::uint32_t j : near.neighbours.of(k).first(k_nearest)) sum += near.distances[j];
-    const double more = cost_of(two.distance(k), near.noise) - cost_of(near.distances[k] - sum / k_nearest, near.noise);
+    const double more = cost_of(two.distance(k), near.noise) - cost_of(off_average(near, k), near.noise);
     excess += more;
     squares += more * more;
     ++count;
@@ -90,7 +93,7 @@ bool matches_averages(const TwoSurfaces& two, const NearPoints& near, std::size_
   return count >= least_points && excess <= std::sqrt(squares);
 }
 
-/// Whether the surfaces are apart where their points meet, too. Else they cross there: a slight bend is no step.
+/// Whether the surfaces are as far apart where their points meet. Else they cross there: a slight bend is no step.
 bool are_apart(const TwoSurfaces& two, const NearPoints& near) {
   std::array<double, 2> gaps{};  // of points near the other side, and of clear ones
   std::array<std::size_t, 2> counts{};
@@ -98,11 +101,12 @@ bool are_apart(const TwoSurfaces& two, const NearPoints& near) {
     const std::size_t is_clear = share_on_own_side(two, near, k) >= k_clear_share ? 1 : 0;
     if (is_clear == 1 && two.side[k] == 0) continue;
     const double precision = near.cloud.points[near.points[k]].precision;
-    gaps[is_clear] += std::abs(two.distances[0][k] - two.distances[1][k]) / precision;
+    gaps[is_clear] += (two.distances[0][k] - two.distances[1][k]) / precision;
     ++counts[is_clear];
   }
   if (counts[0] == 0 || counts[1] == 0) return true;
-  return gaps[0] / static_cast<double>(counts[0]) >= k_clear_share * gaps[1] / static_cast<double>(counts[1]);
+  const double across = gaps[1] / static_cast<double>(counts[1]);
+  return gaps[0] / static_cast<double>(counts[0]) / across >= k_clear_share;
 }
 
 /// The surfaces with the points within their reach. A point beyond that of its own side may be on the other.
@@ -128,10 +132,8 @@ std::array<GrownSurface, 2> parts_of(const TwoSurfaces& two, const NearPoints& n
 /// The two parts, if there is a step.
 std::optional<std::array<GrownSurface, 2>> split(const GrownSurface& grown, const NearPoints& near,
                                                  const SearchLimits& limits, const RunContext& run) {
-  std::optional<TwoSurfaces> two = fit_two(grown.surface, near, run);
-  if (!two || !(gain_of(*two, near) >= k_evidence) || !are_apart(*two, near)) return std::nullopt;
-  two = with_fits_to_all(std::move(*two), near);
-  if (!two) return std::nullopt;
+  const std::optional<TwoSurfaces> two = fit_two(grown.surface, near, run);
+  if (!two || !(gain_of(*two, near) >= least_evidence(grown.surface.type, near.points.size()))) return std::nullopt;
   if (!matches_averages(*two, near, limits.least_points) || !are_apart(*two, near)) return std::nullopt;
   std::array<GrownSurface, 2> parts = parts_of(*two, near, limits.agreement);
   if (std::ranges::any_of(parts, [&](const auto& part) { return part.points.size() < limits.least_points; })) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -41,9 +42,9 @@ double strongest_offset(const std::vector<double>& distances, double noise) {
   return strongest.empty() ? 0 : median_of(strongest);
 }
 
-/// How many points for the fit decide the side of a point: k_nearest for a step of two standard deviations. Their
-/// evidence grows with the square of the height, so a lower step needs more. With half of the limit, fewer steps of one
-/// standard deviation are found; double costs more time than the fits.
+/// How many neighbours decide the side of a point: k_nearest for a step of two standard deviations. Their evidence
+/// grows with the square of the height, so a lower step needs more. With half of the limit, fewer steps of one standard
+/// deviation are found; double costs more time than the fits.
 std::size_t neighbours_for(double deviations) {
   constexpr double k_most = 8;
   return static_cast<std::size_t>(k_nearest * std::clamp(4 / (deviations * deviations), 1.0, k_most));
@@ -62,12 +63,11 @@ void choose_sides(TwoSurfaces& two, const NearPoints& near, std::size_t around, 
   });
 }
 
-/// Points of each side that are clear of the other, of those with `is_used(k)`.
-template <typename IsUsed>
-Sides clear_points(const TwoSurfaces& two, const NearPoints& near, const IsUsed& is_used) {
+/// Points of each side that are clear of the other.
+Sides clear_points(const TwoSurfaces& two, const NearPoints& near) {
   Sides clear;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
-    if (is_used(k) && share_on_own_side(two, near, k) >= k_clear_share) clear[two.side[k]].push_back(near.points[k]);
+    if (share_on_own_side(two, near, k) >= k_clear_share) clear[two.side[k]].push_back(near.points[k]);
   }
   return clear;
 }
@@ -101,13 +101,9 @@ std::optional<TwoSurfaces> with_fits_to(const Sides& points, TwoSurfaces two, co
   return two;
 }
 
-/// The points for the fit of the patches [first, last).
-std::vector<std::uint32_t> patch_points(const NearPoints& near, std::size_t first, std::size_t last) {
-  std::vector<std::uint32_t> points;
-  for (std::size_t k = first * k_patch; k < last * k_patch; ++k) {
-    if (NearPoints::is_for_fit(k)) points.push_back(near.points[k]);
-  }
-  return points;
+/// The points of the patches [first, last).
+std::span<const std::uint32_t> patch_points(const NearPoints& near, std::size_t first, std::size_t last) {
+  return std::span(near.points).subspan(first * k_patch, (last - first) * k_patch);
 }
 
 /// A surface of some patches. Others on one side of it are on a second one, about parallel to it.
@@ -122,27 +118,33 @@ struct PatchSides {
   }
 };
 
+/// Median of the largest group of values no farther apart than noise makes them; 0 without values. Patches across a
+/// high step are anywhere between its sides.
+double middle_of_most(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  std::size_t most = 0;
+  std::size_t start = 0;
+  for (std::size_t first = 0, end = 0; first < values.size(); ++first) {
+    while (end < values.size() && values[end] - values[first] <= 2 * k_deviations) ++end;
+    if (end - first <= most) continue;
+    most = end - first;
+    start = first;
+  }
+  return values[start + most / 2];
+}
+
 PatchSides sides_of(const Surface& surface, const NearPoints& near) {
   PatchSides sides{.surface = surface, .deviations = {}};
   const std::vector<double> distances = distances_of(surface, near.cloud, near.points);
-  std::array<double, 2> sums{};  // of the patches that are clearly below and above
-  std::array<double, 2> counts{};
+  std::vector<double> off;  // of the patches that are clearly off
   for (std::size_t p = 0; p < near.points.size() / k_patch; ++p) {
-    double sum = 0;
-    double count = 0;
-    for (std::size_t k = p * k_patch; k < (p + 1) * k_patch; ++k) {
-      if (!NearPoints::is_for_fit(k)) continue;
-      sum += distances[k];
-      ++count;
-    }
-    const double deviation = sum / (near.noise * std::sqrt(std::max(count, 1.0)));
+    const auto patch = std::span(distances).subspan(p * k_patch, k_patch);
+    const double deviation = std::reduce(patch.begin(), patch.end()) / (near.noise * std::sqrt(k_patch));
     sides.deviations.push_back(deviation);
-    if (std::abs(deviation) <= k_deviations) continue;
-    sums[deviation > 0 ? 1 : 0] += deviation;
-    ++counts[deviation > 0 ? 1 : 0];
+    if (std::abs(deviation) > k_deviations) off.push_back(deviation);
   }
-  const std::size_t side = counts[1] > counts[0] ? 1 : 0;
-  if (counts[side] > 0) sides.height = sums[side] / counts[side];
+  sides.height = middle_of_most(std::move(off));
   for (const double d : sides.deviations) sides.cost += std::min(cost_of(d, 1), cost_of(d - sides.height, 1));
   return sides;
 }
@@ -171,11 +173,11 @@ std::optional<TwoSurfaces> start_from_patches(const Surface& one, const NearPoin
   return with_fits_to(points, std::move(two), near);
 }
 
-/// Median height of the second surface over the first in standard deviations, where its points for the fit are.
+/// Median height of the second surface over the first in standard deviations, where its points are.
 double height_of(const TwoSurfaces& two, const NearPoints& near) {
   std::vector<double> heights;
   for (std::size_t k = 0; k < near.points.size(); ++k) {
-    if (two.side[k] == 0 || !NearPoints::is_for_fit(k)) continue;
+    if (two.side[k] == 0) continue;
     heights.push_back(std::abs(two.distances[0][k] - two.distances[1][k]) / near.noise);
   }
   return median_of(heights);
@@ -189,22 +191,13 @@ std::optional<TwoSurfaces> alternate(std::optional<TwoSurfaces> two, const NearP
   for (int round = 0; round < 2 * k_rounds && two && two->side != before; ++round) {
     before = two->side;
     choose_sides(*two, near, around, prior, run);
-    const Sides clear = clear_points(*two, near, NearPoints::is_for_fit);
+    const Sides clear = clear_points(*two, near);
     two = with_fits_to(clear, std::move(*two), near);
     if (!two) break;
     prior = std::log(static_cast<double>(clear[0].size()) / static_cast<double>(clear[1].size()));
     around = neighbours_for(height_of(*two, near));
   }
   return two;
-}
-
-/// Cost of the points for the fit.
-double cost_of_fit(const TwoSurfaces& two, const NearPoints& near) {
-  double cost = 0;
-  for (std::size_t k = 0; k < near.points.size(); ++k) {
-    if (NearPoints::is_for_fit(k)) cost += cost_of(two.distance(k), near.noise);
-  }
-  return cost;
 }
 
 }  // namespace
@@ -231,13 +224,8 @@ std::optional<NearPoints> near_points(const GrownSurface& grown, const WorkCloud
   for (std::size_t k = 0; k < points.size(); ++k) {
     feet.set(k, feet[k] - signed_distance(grown.surface, feet[k]) * normal(grown.surface, feet[k]));
   }
-  std::vector<std::uint32_t> for_fit;
-  for (std::uint32_t k = 0; k < points.size(); ++k) {
-    if (NearPoints::is_for_fit(k)) for_fit.push_back(k);
-  }
-  if (for_fit.size() <= k_nearest) return std::nullopt;
   const std::size_t around = std::max(k_around, neighbours_for(offset / noise));
-  NeighbourTable neighbours = find_neighbours_among(for_fit, feet, around, run);
+  NeighbourTable neighbours = find_neighbours(feet, NeighbourTree(feet), around, run);
   return NearPoints{.cloud = cloud,
                     .points = std::move(points),
                     .distances = std::move(distances),
@@ -254,22 +242,23 @@ double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::si
   return static_cast<double>(same) / static_cast<double>(around.size());
 }
 
+double cost_of(const TwoSurfaces& two, const NearPoints& near) {
+  double cost = 0;
+  for (std::size_t k = 0; k < near.points.size(); ++k) cost += cost_of(two.distance(k), near.noise);
+  return cost;
+}
+
 std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run) {
   // A small part begins at its height over the rest.
   std::optional<TwoSurfaces> two = alternate(start_from_run(one, near), near, run);
   std::optional<TwoSurfaces> of_patches = alternate(start_from_patches(one, near), near, run);
-  if (!two || (of_patches && cost_of_fit(*of_patches, near) < cost_of_fit(*two, near))) two = std::move(of_patches);
+  if (!two || (of_patches && cost_of(*of_patches, near) < cost_of(*two, near))) two = std::move(of_patches);
   if (two && 2 * std::ranges::count(two->side, std::uint8_t{1}) > std::ssize(two->side)) {
     std::swap(two->surfaces[0], two->surfaces[1]);
     std::swap(two->distances[0], two->distances[1]);
     for (std::uint8_t& side : two->side) side ^= 1;
   }
   return two;
-}
-
-std::optional<TwoSurfaces> with_fits_to_all(TwoSurfaces two, const NearPoints& near) {
-  const Sides points = clear_points(two, near, [](std::size_t) { return true; });
-  return with_fits_to(points, std::move(two), near);
 }
 
 }  // namespace cloud2csg

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/random.hpp"
 #include "raw/detect/grow.hpp"
 #include "raw/prepare/neighbours.hpp"
 
@@ -19,13 +18,9 @@ struct NearPoints {
   std::vector<double> distances;      ///< from the one surface
   double offset;              ///< median distance of the run of points that is likeliest to be off: about the height
   Points feet;                ///< the points moved onto the one surface
-  NeighbourTable neighbours;  ///< among the feet of the points for the fit
+  NeighbourTable neighbours;  ///< among the feet
   double noise;
   AgreementLimits fit_limits;
-
-  /// Two surfaces are found by these, and tested by the others. A random half: if every other point were for the fit,
-  /// each would have a neighbour with a similar error among the others.
-  static bool is_for_fit(std::size_t k) { return mix(k) % 2 == 0; }
 };
 
 /// The surface's points and free ones nearby. Absent if no run of points is off the surface, or if the points of a
@@ -43,14 +38,15 @@ struct TwoSurfaces {
   [[nodiscard]] double distance(std::size_t k) const { return distances[side[k]][k]; }
 };
 
-/// Share of the k_around points for the fit nearest to point k that are on its side.
+/// Share of the k_around points nearest to point k that are on its side.
 [[nodiscard]] double share_on_own_side(const TwoSurfaces& two, const NearPoints& near, std::size_t k);
 
-/// Two surfaces of the one's type that explain the points for the fit best; the second has fewer points. Absent if none
-/// are found. O(n x neighbours) @throws Cancelled
-[[nodiscard]] std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run);
+/// Negative logarithm of the likelihood of the points, each on its side, up to a constant. O(n)
+[[nodiscard]] double cost_of(const TwoSurfaces& two, const NearPoints& near);
 
-/// The two, fitted to all points that are clear of the other side. O(n)
-[[nodiscard]] std::optional<TwoSurfaces> with_fits_to_all(TwoSurfaces two, const NearPoints& near);
+/// Two surfaces of the one's type that explain the points best; the second has fewer points. The neighbours of a point
+/// choose its side without it, so that its own error does not speak for a step. Absent if none are found. O(n x
+/// neighbours) @throws Cancelled
+[[nodiscard]] std::optional<TwoSurfaces> fit_two(const Surface& one, const NearPoints& near, const RunContext& run);
 
 }  // namespace cloud2csg

@@ -41,7 +41,7 @@ NeighbourTable WorkCloud::neighbours(const RunContext& run) const {
   return find_neighbours(all, NeighbourTree(all), k_around, run);
 }
 
-std::vector<OrientedPoint> WorkCloud::some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const {
+std::vector<OrientedPoint> WorkCloud::some_of(std::span<const std::uint32_t> indices, std::size_t most) const {
   std::vector<OrientedPoint> some;
   for (const std::uint32_t i : cloud2csg::some_of(indices, most)) some.push_back(points[i]);
   return some;

@@ -45,7 +45,7 @@ struct WorkCloud {
   /// The k_around nearest of each point. They stay while normals change. O(n log n) @throws Cancelled
   [[nodiscard]] NeighbourTable neighbours(const RunContext& run) const;
   /// At most `most` of the points, evenly spaced along the list.
-  [[nodiscard]] std::vector<OrientedPoint> some_of(const std::vector<std::uint32_t>& indices, std::size_t most) const;
+  [[nodiscard]] std::vector<OrientedPoint> some_of(std::span<const std::uint32_t> indices, std::size_t most) const;
 };
 
 /// O(n log n). Precondition: the cloud has normals and points.

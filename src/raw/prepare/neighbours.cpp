@@ -18,55 +18,34 @@ CentredPoints centred(PointsView points) {
 
 namespace {
 
-/// `index(n)`: of the tree's point n among the `points`.
-template <class Index>
-void fill_row(NeighbourTable& table, std::uint32_t point, const Points& points, const NeighbourTree& tree,
-              const Index& index) {
+void fill_row(NeighbourTable& table, std::uint32_t point, const Points& points, const NeighbourTree& tree) {
   thread_local std::vector<std::uint32_t> indices;
   thread_local std::vector<double> squares;
   indices.resize(table.width + 1);
   squares.resize(table.width + 1);
   tree.find(points[point], indices, squares);
-  // The point itself may be missing from those found: others coincide with it, or it is not in the tree. Then the
-  // farthest one is dropped.
+  // The point itself may be missing from those found, because others coincide with it. Then the farthest one is
+  // dropped.
   std::size_t to = point * table.width;
   const std::size_t full = to + table.width;
   for (std::size_t n = 0; n < indices.size() && to < full; ++n) {
-    if (index(indices[n]) == point) continue;
-    table.indices[to] = index(indices[n]);
+    if (indices[n] == point) continue;
+    table.indices[to] = indices[n];
     table.distances[to++] = static_cast<float>(std::sqrt(squares[n]));
   }
-}
-
-NeighbourTable empty_table(std::size_t points, std::size_t tree_points, std::size_t width) {
-  NeighbourTable table{
-      .width = std::min(width, tree_points == 0 ? 0 : tree_points - 1), .indices = {}, .distances = {}};
-  table.indices.resize(points * table.width);
-  table.distances.resize(points * table.width);
-  return table;
 }
 
 }  // namespace
 
 NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
                                const RunContext& run, const StageShare& share) {
-  NeighbourTable table = empty_table(points.size(), points.size(), width);
-  const auto same = [](std::uint32_t n) { return n; };
+  NeighbourTable table{
+      .width = std::min(width, std::max<std::size_t>(points.size(), 1) - 1), .indices = {}, .distances = {}};
+  table.indices.resize(points.size() * table.width);
+  table.distances.resize(points.size() * table.width);
   const std::span<const std::uint32_t> order = tree.order();
   for_each_index_by_chunks(points.size(), k_chunk_points, run, share,
-                           [&](std::size_t place) { fill_row(table, order[place], points, tree, same); });
-  return table;
-}
-
-NeighbourTable find_neighbours_among(std::span<const std::uint32_t> among, const Points& points, std::size_t width,
-                                     const RunContext& run) {
-  Points some(among.size());
-  for (std::size_t n = 0; n < among.size(); ++n) some.set(n, points[among[n]]);
-  const NeighbourTree tree(some);
-  NeighbourTable table = empty_table(points.size(), some.size(), width);
-  for_each_index_by_chunks(points.size(), k_chunk_points, run, [&](std::size_t point) {
-    fill_row(table, static_cast<std::uint32_t>(point), points, tree, [&](std::uint32_t n) { return among[n]; });
-  });
+                           [&](std::size_t place) { fill_row(table, order[place], points, tree); });
   return table;
 }
 

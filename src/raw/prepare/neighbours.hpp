@@ -43,11 +43,6 @@ struct NeighbourTable {
 [[nodiscard]] NeighbourTable find_neighbours(const Points& points, const NeighbourTree& tree, std::size_t width,
                                              const RunContext& run, const StageShare& share = {});
 
-/// The same, with only the points `among` (indices) as neighbours. Rows are narrower if `among` has no more than
-/// `width` points. O(n k log n) @throws Cancelled
-[[nodiscard]] NeighbourTable find_neighbours_among(std::span<const std::uint32_t> among, const Points& points,
-                                                   std::size_t width, const RunContext& run);
-
 /// Surface area at each point of a table, from the distance to its k_nearest-th neighbour, or the farthest of fewer.
 /// O(n)
 [[nodiscard]] std::vector<double> areas_of(const NeighbourTable& neighbours);
