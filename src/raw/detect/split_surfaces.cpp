@@ -62,8 +62,8 @@ double off_average(const NearPoints& near, std::size_t k) {
   return near.distances[k] - sum / k_nearest;
 }
 
-/// Logarithm of the ratio of the likelihoods of two surfaces, and of one with form errors, smooth or shared by
-/// neighbours.
+/// Logarithm of the ratio of the likelihoods of two surfaces, and of one with a smooth form error. If averages explain
+/// the points better than the two, neighbours share errors, and as much of the ratio is owed to these.
 double gain_of(const TwoSurfaces& two, const NearPoints& near) {
   std::vector<double> precisions;
   std::vector<Vector3d> places;
@@ -73,7 +73,9 @@ double gain_of(const TwoSurfaces& two, const NearPoints& near) {
     places.push_back(near.feet[k]);
     of_averages += cost_of(off_average(near, k), near.noise);
   }
-  return std::min(of_averages, smooth_cost(near.distances, precisions, places, near.noise)) - cost_of(two, near);
+  const double of_two = cost_of(two, near);
+  const double gain = smooth_cost(near.distances, precisions, places, near.noise) - of_two;
+  return gain - std::max(0.0, of_two - of_averages);
 }
 
 /// Whether the surface of the smaller side explains the points away from the step as well as averages do, which adapt
