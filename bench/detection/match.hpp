@@ -12,9 +12,8 @@
 /// Which true surfaces were found.
 ///
 /// A found surface matches a true surface if
-/// - it has at least two fifths of the true surface's points in the cloud. Points that cleaning left out count, and so
-/// do
-///   points on no found surface. Half would be too many: beside a step of half of sigma, the true surfaces themselves
+/// - it has at least two fifths of the true surface's points in the cloud. Those that cleaning left out count, and so
+///   do those on no found surface. Half would be too many: beside a step of half of sigma, the true surfaces themselves
 ///   are nearest to only 60 % of their points, give or take 6 % of 60 points;
 /// - it has the same type, and its material on the same side;
 /// - at least half of the true surface's places without noise are no farther from it than sigma, with an outward normal
