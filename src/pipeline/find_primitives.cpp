@@ -19,7 +19,8 @@
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/time_limit.hpp"
-#include "raw/solids/unseen_surfaces.hpp"
+#include "raw/solids/hidden_walls.hpp"
+#include "raw/solids/unseen_side.hpp"
 
 namespace cloud2csg {
 namespace {

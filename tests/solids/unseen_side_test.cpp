@@ -1,3 +1,5 @@
+#include "raw/solids/unseen_side.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,7 +7,6 @@
 #include "cloud2csg/advanced/prepare.hpp"
 #include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/sample.hpp"
-#include "raw/solids/unseen_surfaces.hpp"
 #include "solids/known_surfaces.hpp"
 #include "support/known_solids.hpp"
 
