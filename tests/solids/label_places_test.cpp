@@ -64,6 +64,42 @@ TEST(LabelPlaces, WeighsTheVolumeOfTheSolidAsOne) {
   EXPECT_GT(total_weight(places), 2.0);
 }
 
+/// Share of the places in a shaft that are labelled as in the solid.
+double share_in_shaft(const LabelledPlaces& places) {
+  double in = 0;
+  double all = 0;
+  for (std::size_t i = 0; i < places.weights.size(); ++i) {
+    const Eigen::Vector3d place = places.positions[i];
+    if (place.head<2>().cwiseAbs().maxCoeff() > 0.15 || place.z() < -0.2 || place.z() > 0.4) continue;
+    all += 1;
+    in += places.weights[i] > 0 ? 1 : 0;
+  }
+  EXPECT_GT(all, 20);
+  return in / all;
+}
+
+TEST(LabelPlaces, SeesTheSpaceAlongLinesOfSight) {
+  const PrimitiveSet solids{test::placed("block", Box{{1, 1, 1}}, {0, 0, 0}),
+                            test::placed("shaft", Box{{0.4, 0.4, 0.8}}, {0, 0, 0.2})};
+  const PointCloud all = sample_surface({.primitives = solids, .tree = parse_tree("block - shaft", solids)},
+                                        {.count = 20'000, .noise = 0, .seed = 3});
+  PointCloud seen;  // all but the walls of the shaft
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Eigen::Vector3d position = all.positions[i];
+    const bool is_floor = position.head<2>().cwiseAbs().maxCoeff() < 0.19 && position.z() < 0.4;
+    const bool is_outer = position.cwiseAbs().maxCoeff() > 0.499;
+    if (!is_floor && !is_outer) continue;
+    seen.positions.push_back(position);
+    seen.normals.push_back(all.normals[i]);
+  }
+  const PlaceOptions options{.volume_places = 8000, .surface_points = 2000};
+  EXPECT_GT(share_in_shaft(label_places(seen, options)), 0.5);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    seen.sensor_positions.push_back(seen.positions[i] + 5 * seen.normals[i]);
+  }
+  EXPECT_LT(share_in_shaft(label_places(seen, options)), 0.02);
+}
+
 TEST(LabelPlaces, TakesAreasThatAreKnown) {
   const PointCloud cloud =
       sample_surface({.primitives = k_solids, .tree = tree()}, {.count = 3000, .noise = 0.005, .seed = 2});

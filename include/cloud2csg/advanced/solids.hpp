@@ -51,8 +51,9 @@ void option_table(OptionsOf<PlaceOptions>, auto&& field) {
 }
 
 /// Labels places in the volume by the winding number of the oriented points (Barill et al. 2018) and places beside a
-/// point by its normal. Leaves out unclear places. `areas`: of the surface around each point, by point_areas();
-/// measured if empty. O((places + points) log points + places x some thousand voxels)
+/// point by its normal. If the cloud has sensor positions, places on lines of sight away from all points are outside.
+/// Leaves out unclear places. `areas`: of the surface around each point, by point_areas(); measured if empty.
+/// O((places + points) log points + places x some thousand voxels + points x places^(1/3))
 /// @throws NoInside; Error (where = "cloud", "noise"...) for no normals, fewer than 16 points, a bad option; Cancelled
 [[nodiscard]] LabelledPlaces label_places(const PointCloud& cloud, const PlaceOptions& options = {},
                                           const RunContext& run = {}, std::span<const double> areas = {});

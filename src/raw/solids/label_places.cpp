@@ -14,12 +14,14 @@
 #include "core/geometry/boxes.hpp"
 #include "core/geometry/neighbour_tree.hpp"
 #include "core/geometry/subset.hpp"
+#include "raw/solids/lattice_places.hpp"
 
 namespace cloud2csg {
 namespace {
 
 constexpr std::uint64_t k_place_stage = 0x706c'6163'65;
 constexpr std::size_t k_least_points = 16;
+constexpr double k_near_spacings = 1.5;  // to places whose side the nearest points know
 constexpr double k_clear_in = 0.7;
 constexpr double k_clear_out = 0.3;
 constexpr double k_far_margin = 0.3;         // in diagonals, beyond the margin
@@ -45,26 +47,6 @@ void check(const PointCloud& cloud, const PlaceOptions& options, std::span<const
   validate(options);
 }
 
-/// One random place in each cell of a lattice.
-Points stratified(const AlignedBox& box, std::size_t count, std::uint64_t seed) {
-  const double side = std::cbrt(box.volume() / static_cast<double>(count));
-  Eigen::Vector3i cells;
-  for (int axis = 0; axis < 3; ++axis) {
-    cells[axis] = static_cast<int>(std::clamp(std::round(box.sizes()[axis] / side), 1.0, static_cast<double>(count)));
-  }
-  RandomStream random(seed, k_place_stage, 0);
-  Points places;
-  for (int x = 0; x < cells.x(); ++x) {
-    for (int y = 0; y < cells.y(); ++y) {
-      for (int z = 0; z < cells.z(); ++z) {
-        const Eigen::Vector3d at(x + random.uniform(), y + random.uniform(), z + random.uniform());
-        places.push_back(box.min() + at.cwiseQuotient(cells.cast<double>()).cwiseProduct(box.sizes()));
-      }
-    }
-  }
-  return places;
-}
-
 class Labelling {
  public:
   Labelling(const PointCloud& cloud, const PlaceOptions& options, const RunContext& run, std::span<const double> areas)
@@ -81,7 +63,9 @@ class Labelling {
 
   void add_volume(LabelledPlaces& places) const {
     const WindingField winding(cloud_.positions, cloud_.normals, areas_);
-    const Points candidates = stratified(grown_, options_.volume_places, options_.seed);
+    LatticePlaces lattice = stratified(grown_, options_.volume_places, RandomStream(options_.seed, k_place_stage, 0));
+    const std::vector<bool> is_seen = move_onto_lines(lattice);  // outside, whatever the winding number says
+    const Points& candidates = lattice.places;
     std::vector<double> numbers(candidates.size());
     for_each_index_by_chunks(candidates.size(), k_chunk_places, run_,
                              [&](std::size_t i) { numbers[i] = winding.at(candidates[i]); });
@@ -92,7 +76,10 @@ class Labelling {
     }
     if (inside.empty()) refuse_without_inside();
     const double unit = median_of(inside);
-    const std::vector<int> sides = sides_of(candidates, numbers, unit);
+    std::vector<int> sides = sides_of(candidates, numbers, unit);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (is_seen[i]) sides[i] = -1;
+    }
     const auto count_in = static_cast<double>(std::max<std::ptrdiff_t>(std::ranges::count(sides, 1), 1));
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (sides[i] == 0) continue;
@@ -105,7 +92,8 @@ class Labelling {
   /// Adds distant places, so that no solid extends there unnoticed.
   void add_far(LabelledPlaces& places, double weight_of_volume) const {
     const AlignedBox far = grown(grown_, k_far_margin * diagonal_);
-    const Points candidates = stratified(far, std::max<std::size_t>(options_.volume_places / 8, 1), options_.seed);
+    const std::size_t count = std::max<std::size_t>(options_.volume_places / 8, 1);
+    const Points candidates = stratified(far, count, RandomStream(options_.seed, k_place_stage, 0)).places;
     const double weight = weight_of_volume * far.volume() / static_cast<double>(candidates.size());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (grown_.contains(candidates[i])) continue;
@@ -133,6 +121,31 @@ class Labelling {
   }
 
  private:
+  /// Moves each place that is nearer to a line of sight than to any point onto that line, where it is outside.
+  /// @returns whether it moved, by place
+  [[nodiscard]] std::vector<bool> move_onto_lines(LatticePlaces& lattice) const {
+    // They put several lines into each cell that a sensor saw. With half, deep holes have cells with too few; double
+    // only takes longer.
+    constexpr std::size_t k_most_lines = 200'000;
+    // One line may end at an outlier. With double, narrow holes have too few.
+    constexpr std::uint32_t k_least_lines = 2;
+    std::vector<bool> has_moved(lattice.places.size(), false);
+    const std::vector<std::uint32_t> points =
+        one_of_every_few(cloud_.size(), k_most_lines, RandomStream(options_.seed, k_place_stage, 2));
+    const std::vector<SeenCell> seen = seen_cells(lattice, cloud_, points, 2 * clear_depth());
+    for (std::size_t c = 0; c < seen.size(); ++c) {
+      if (seen[c].lines < k_least_lines) continue;
+      const double distance = index_.nearest(lattice.places[c]).distance;
+      if (distance < std::max(seen[c].distance, k_near_spacings * spacing_)) continue;
+      lattice.places.set(c, seen[c].place);
+      has_moved[c] = true;
+    }
+    return has_moved;
+  }
+
+  /// So far from a point, a place is clearly on one side of its surface.
+  [[nodiscard]] double clear_depth() const { return std::max({3 * noise_, 0.3 * spacing_, 0.002 * diagonal_}); }
+
   /// By the divergence theorem; negative for inward normals.
   [[nodiscard]] double enclosed_volume() const {
     double sum = 0;
@@ -149,7 +162,7 @@ class Labelling {
       const double number = numbers[i] / unit;
       sides[i] = number > k_clear_in ? 1 : number < k_clear_out ? -1 : 0;
       // Far from all points this is much faster than looking for the nearest.
-      if (index_.within(places[i], 1.5 * spacing_).empty()) return;
+      if (index_.within(places[i], k_near_spacings * spacing_).empty()) return;
       const int by_nearest = side_by_nearest(places[i]);
       sides[i] = sides[i] == 0 || sides[i] == by_nearest ? by_nearest : 0;
     });
@@ -172,7 +185,7 @@ class Labelling {
 
   /// Distance of the places beside a point; less if another surface is near on either side.
   [[nodiscard]] double depth_at(std::uint32_t point) const {
-    const double depth = std::max({3 * noise_, 0.3 * spacing_, 0.002 * diagonal_});
+    const double depth = clear_depth();
     const Eigen::Vector3d position = cloud_.positions[point];
     const Eigen::Vector3d normal = cloud_.normals[point];
     double least = depth;

@@ -68,13 +68,13 @@ struct Regression {
 /// The plane that best separates a lump from the right places, by Newton's method. Absent if no direction does.
 std::optional<Surface> plane_below(const std::vector<std::uint32_t>& lump, const InsidePlaces& inside,
                                    const LabelledPlaces& places) {
-  constexpr int k_most_steps = 30;
+  constexpr int k_most_newton_steps = 30;
   constexpr double k_longest_step = 10;  // else the first steps may overshoot
   const Eigen::Vector3d middle = inside.box.center();
   const double diagonal = inside.box.diagonal().norm();
   const auto in_frame = [&](std::uint32_t i) -> Eigen::Vector3d { return (places.positions[i] - middle) / diagonal; };
   Eigen::Vector4d factors = Eigen::Vector4d::Zero();
-  for (int step = 0; step < k_most_steps; ++step) {
+  for (int step = 0; step < k_most_newton_steps; ++step) {
     Regression regression(factors);
     for (const std::uint32_t i : lump) {
       regression.add(in_frame(i), true, 1 / static_cast<double>(lump.size()), factors);
