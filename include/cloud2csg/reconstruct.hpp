@@ -32,11 +32,12 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
   field(&O::detection, "detection", "Detection of surfaces");
   field(&O::close_unseen, "close_unseen",
         "Close a side without any points, such as the one on which a scanned part stood, by a plane, and extend the "
-        "walls of bores where no sensor could see them. Without this, nothing tells how far the solid reaches there. "
+        "walls of bores and bent pipes where no sensor could see them. Without this, nothing tells how far the solid "
+        "reaches there. "
         "Has no effect with known primitives.",
         {.opposite = "leave-open",
          .otherwise = "Do not close a side without any points, such as the one on which a scanned part stood, by a "
-                      "plane, nor extend walls of bores that no sensor saw"});
+                      "plane, nor extend walls of bores and bent pipes that no sensor saw"});
   field(&O::solids, "solids", "Choice of the solids");
   field(&O::extraction, "extraction", "Extraction of a tree over the solids", k_library);
   field(&O::refine, "refine",

@@ -19,6 +19,7 @@
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/time_limit.hpp"
+#include "raw/solids/hidden_bends.hpp"
 #include "raw/solids/hidden_walls.hpp"
 #include "raw/solids/unseen_side.hpp"
 
@@ -48,6 +49,17 @@ std::vector<std::uint32_t> points_of_none(const PointLists& lists, std::size_t c
   return places_where(is_taken, false);
 }
 
+/// Adds points to the cloud, which a surface takes.
+void add_points(FoundPrimitives& found, const PointCloud& points, DetectedSurface& surface) {
+  PointCloud& cloud = found.prepared.cloud;
+  const auto own = static_cast<std::ptrdiff_t>(surface.points.size());
+  surface.points.resize(surface.points.size() + points.size());
+  std::iota(surface.points.begin() + own, surface.points.end(), static_cast<std::uint32_t>(cloud.size()));
+  found.added_points += points.size();
+  append(cloud, points);
+  found.areas.clear();
+}
+
 void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   PointCloud& cloud = found.prepared.cloud;
   found.areas = point_areas(cloud, run);
@@ -55,11 +67,7 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
       find_unseen_side(cloud, found.areas, found.detection.surfaces, found.prepared.scale, run);
   if (!side) return;
   DetectedSurface plane{.surface = {.position = side->points.positions[0], .axis = side->normal}, .points = {}};
-  plane.points.resize(side->points.size());
-  std::iota(plane.points.begin(), plane.points.end(), static_cast<std::uint32_t>(cloud.size()));
-  found.added_points += side->points.size();
-  append(cloud, side->points);
-  found.areas.clear();
+  add_points(found, side->points, plane);
   found.detection.surfaces.push_back(std::move(plane));
   // Rounded, and + 0.0 turns -0 into 0.
   const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
@@ -70,22 +78,37 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
       place_text(found.origin + bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
 }
 
+/// Adds the insides of bends. They replace surfaces that were made of pieces of them.
+void close_hidden_bends(FoundPrimitives& found) {
+  std::vector<DetectedSurface>& surfaces = found.detection.surfaces;
+  const std::vector<HiddenBend> bends = find_hidden_bends(found.prepared.cloud, surfaces, found.prepared.scale);
+  if (bends.empty()) return;
+  for (const HiddenBend& bend : bends) {
+    std::erase_if(surfaces, [&](DetectedSurface& other) {
+      const std::size_t before = other.points.size();
+      std::erase_if(other.points, [&](std::uint32_t i) { return std::ranges::binary_search(bend.points, i); });
+      return 2 * other.points.size() < before;
+    });
+    add_points(found, bend.hidden,
+               surfaces.emplace_back(DetectedSurface{.surface = bend.surface, .points = bend.points}));
+  }
+  const auto largest = std::ranges::max_element(bends, {}, [](const HiddenBend& bend) { return bend.hidden.size(); });
+  found.warnings.push_back(fmt::format(
+      "no sensor saw far into {} of the bends, the largest near {}: their walls were taken to be as thick all along",
+      bends.size(),
+      place_text(found.origin + bounds_of(largest->hidden.positions).center(), found.prepared.scale.diagonal)));
+}
+
 /// Adds hidden walls to the cloud, and their points to the surfaces.
 void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
-  PointCloud& cloud = found.prepared.cloud;
-  const std::vector<HiddenWall> walls = find_hidden_walls(cloud, found.detection.surfaces, found.prepared.scale, run);
+  const std::vector<HiddenWall> walls =
+      find_hidden_walls(found.prepared.cloud, found.detection.surfaces, found.prepared.scale, run);
   if (walls.empty()) return;
   const auto largest = std::ranges::max_element(walls, {}, &HiddenWall::area);
   const Eigen::Vector3d middle = bounds_of(largest->points.positions).center();
   for (const HiddenWall& wall : walls) {
-    std::vector<std::uint32_t>& own = found.detection.surfaces[wall.surface].points;
-    own.resize(own.size() + wall.points.size());
-    std::iota(own.end() - static_cast<std::ptrdiff_t>(wall.points.size()), own.end(),
-              static_cast<std::uint32_t>(cloud.size()));
-    found.added_points += wall.points.size();
-    append(cloud, wall.points);
+    add_points(found, wall.points, found.detection.surfaces[wall.surface]);
   }
-  found.areas.clear();
   found.warnings.push_back(
       fmt::format("no sensor saw far into {} of the holes, the largest near {}: their walls were extended between the "
                   "parts that were seen",
@@ -95,6 +118,7 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
 /// Adds points and surfaces where no sensor saw the part, with warnings. Precondition: the surfaces are detected.
 FoundPrimitives with_unseen_closed(FoundPrimitives found, const RunContext& run) {
   close_unseen_side(found, run);
+  close_hidden_bends(found);
   close_hidden_walls(found, run);
   return found;
 }

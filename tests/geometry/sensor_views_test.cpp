@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
@@ -20,11 +21,11 @@ class BlockOverTable : public ::testing::Test {
     while (cloud_.size() < 40'000) {
       // Rays that are even in angle, nearly.
       const Vector3d way = Vector3d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), -1).normalized();
-      const Vector3d on_block = k_sensor + way * (k_sensor.z() - 2) / -way.z();
+      const Vector3d on_block = sensor_ + way * (sensor_.z() - 2) / -way.z();
       const bool hits_block = on_block.head<2>().cwiseAbs().maxCoeff() < 1;
-      cloud_.positions.push_back(hits_block ? on_block : Vector3d(k_sensor + way * k_sensor.z() / -way.z()));
+      cloud_.positions.push_back(hits_block ? on_block : Vector3d(sensor_ + way * sensor_.z() / -way.z()));
       cloud_.normals.push_back(Vector3d::UnitZ());
-      cloud_.sensor_positions.push_back(k_sensor);
+      cloud_.sensor_positions.push_back(sensor_);
     }
   }
 
@@ -43,7 +44,7 @@ class BlockOverTable : public ::testing::Test {
     return count / (k_edge * k_edge);
   }
 
-  const Vector3d k_sensor{0, 0, 10};
+  const Vector3d sensor_{0, 0, 10};
   PointCloud cloud_;
 };
 
@@ -64,6 +65,17 @@ TEST_F(BlockOverTable, WouldBeSeenWhereTheSensorSawThrough) {
   EXPECT_GT(density_at({2.5, 0, 1}), 0);
   EXPECT_GT(density_at({0, 0, 4}), 0);
   EXPECT_GT(density_at({9, 0, 0}), 0) << "nothing was seen in this direction";
+}
+
+TEST_F(BlockOverTable, DoesNotTakeNearReturnsForThoseOfABarePlace) {
+  const Vector3d below(2.5, 0, -0.1);
+  const Vector3d way = (below - sensor_).normalized();
+  const Vector3d across = way.cross(Vector3d::UnitY());
+  const Vector3d steep = 0.25 * way + std::sqrt(1 - 0.25 * 0.25) * across;
+  const SensorViews views(cloud_);
+  EXPECT_GT(views.density_at(below, steep), 0) << "a steep surface may have these returns";
+  EXPECT_EQ(views.density_at_bare(below, steep), 0);
+  EXPECT_GT(views.density_at_bare({2.5, 0, 1}, steep), 0) << "the table is behind it";
 }
 
 TEST_F(BlockOverTable, IsHardlySeenEdgeOn) {

@@ -111,6 +111,30 @@ TEST(Reconstruct, TakesTheWallsOfADeepBoreToGoOn) {
   EXPECT_LT(test::iou(reconstruct(scan, {.close_unseen = false}), truth), 0.95);
 }
 
+/// The inside of its bend is hardly seen.
+TEST(Reconstruct, TakesABentPipeToBeHollowAllAlong) {
+  Model truth{.primitives = {test::placed("bend", Torus{.major_radius = 3, .minor_radius = 1}, {0, 0, 0}),
+                             test::placed("inside", Torus{.major_radius = 3, .minor_radius = 0.7}, {0, 0, 0}),
+                             test::placed("quarter", Box{{8, 8, 4}}, {4, 4, 0}),
+                             test::placed("leg", Cylinder{.radius = 1, .height = 3}, {3, -1.5, 0}),
+                             test::placed("bore", Cylinder{.radius = 0.7, .height = 4}, {3, -2, 0}),
+                             test::placed("arm", Cylinder{.radius = 1, .height = 3}, {-1.5, 3, 0}),
+                             test::placed("duct", Cylinder{.radius = 0.7, .height = 4}, {-2, 3, 0})},
+              .tree = {}};
+  for (const std::size_t k : {3U, 4U}) {
+    truth.primitives[k].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
+  }
+  for (const std::size_t k : {5U, 6U}) {
+    truth.primitives[k].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY());
+  }
+  truth.tree = parse_tree("(bend & quarter | leg | arm) - (inside & quarter | bore | duct)", truth.primitives);
+  const PointCloud scan = scan_model(truth, {.count = 60'000});
+  const Extraction result = reconstruct(scan);
+  EXPECT_GT(test::iou(result, truth), 0.97);
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "no sensor saw far into 1 of the bends"));
+  EXPECT_LT(test::iou(reconstruct(scan, {.close_unseen = false}), truth), 0.9);
+}
+
 /// Coaxial holes with air between them, which sensors saw through.
 TEST(Reconstruct, TakesHolesOfTwoEarsForNoBore) {
   Model truth{

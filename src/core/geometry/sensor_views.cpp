@@ -104,6 +104,14 @@ SensorViews::SensorViews(const PointCloud& cloud) {
 }
 
 double SensorViews::density_at(const Vector3d& place, const Vector3d& normal) const {
+  return density(place, normal, false);
+}
+
+double SensorViews::density_at_bare(const Vector3d& place, const Vector3d& normal) const {
+  return density(place, normal, true);
+}
+
+double SensorViews::density(const Vector3d& place, const Vector3d& normal, bool is_bare) const {
   double density = 0;
   for (const View& view : views_) {
     const Vector3d way = place - view.sensor;
@@ -111,7 +119,8 @@ double SensorViews::density_at(const Vector3d& place, const Vector3d& normal) co
     if (!(range > 0)) continue;
     const double cosine = std::abs(way.dot(normal)) / range;
     if (cosine < k_grazing) continue;
-    density += view.points_a_steradian * cosine / (range * range) * share_that_sees(view, way, range, cosine);
+    const double tangent = is_bare ? 0 : std::sqrt(std::max(0.0, 1 - cosine * cosine)) / cosine;
+    density += view.points_a_steradian * cosine / (range * range) * share_that_sees(view, way, range, tangent);
   }
   return density;
 }
@@ -126,10 +135,8 @@ double SensorViews::usual_density(const PointCloud& cloud, std::span<const std::
   return median_of(densities);
 }
 
-double SensorViews::share_that_sees(const View& view, const Vector3d& way, double range, double cosine) {
+double SensorViews::share_that_sees(const View& view, const Vector3d& way, double range, double tangent) {
   const GridCell middle = cell_of(way, view.resolution);
-  // The surface itself may be nearer by this much within the cell.
-  const double tangent = std::sqrt(std::max(0.0, 1 - cosine * cosine)) / std::max(cosine, 0.1);
   const auto at_least = static_cast<float>(range * (1 - view.width * tangent));
   const auto share_of = [&](int distance) {
     std::size_t all = 0;

@@ -21,6 +21,10 @@ class SensorViews {
   /// O(views)
   [[nodiscard]] double density_at(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 
+  /// The same at a place that no point of the surface is near: there, a slightly nearer return in the same direction is
+  /// not from that place, so only returns from beyond it tell that a sensor would have seen it. O(views)
+  [[nodiscard]] double density_at_bare(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
+
   /// The median density at some of the cloud's points, taken evenly along `order`, which holds all points.
   /// Precondition: the cloud has normals. O(views) @throws Cancelled
   [[nodiscard]] double usual_density(const PointCloud& cloud, std::span<const std::uint32_t> order,
@@ -36,9 +40,11 @@ class SensorViews {
     std::vector<float> ranges;         ///< ranges cell by cell, ascending within each cell
     std::vector<std::uint32_t> first;  ///< by cell: where its ranges begin; one entry more for the end
   };
-  /// The share of a sensor's returns in a direction that are no nearer than a surface at `range`.
+  /// The share of a sensor's returns in a direction that are no nearer than a surface at `range`. The surface itself
+  /// may be nearer within a cell of the grid by `tangent` times the cell's width.
   [[nodiscard]] static double share_that_sees(const View& view, const Eigen::Vector3d& way, double range,
-                                              double cosine);
+                                              double tangent);
+  [[nodiscard]] double density(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, bool is_bare) const;
   [[nodiscard]] static View make_view(const PointCloud& cloud, std::span<const std::uint32_t> points);
 
   std::vector<View> views_;

@@ -12,6 +12,8 @@
 #include "core/base/parallel.hpp"
 #include "core/geometry/sensor_views.hpp"
 #include "raw/solids/edges.hpp"
+#include "raw/solids/hidden_bends.hpp"
+#include "raw/solids/wall_cells.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -53,14 +55,18 @@ class RolledWall {
       reach_ = {.low = -surface_.radius, .high = surface_.radius};
     } else {
       for (const std::uint32_t i : own) reach_.add(pose_.to_local(cloud.positions[i]).z());
-      for (const DetectedSurface& other : surfaces) extend_to(other);
+      for (const DetectedSurface& other : surfaces) {
+        extend_to(other);
+        const auto bend = other.surface.concave ? tangent_place(surface_, other.surface, cell) : std::nullopt;
+        if (bend) reach_.add(pose_.to_local(*bend).z());
+      }
     }
     const double radius = is_sphere() ? surface_.radius : std::max(radius_at(reach_.low), radius_at(reach_.high));
     columns_ = std::max(k_least_columns, static_cast<std::size_t>(2 * std::numbers::pi * radius / cell));
     rows_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil((reach_.high - reach_.low) / cell)));
     if (rows_ > k_most_cells / columns_) return;
-    is_seen_.assign(rows_ * columns_, 0);
-    is_crossed_.assign(rows_ * columns_, 0);
+    seen_ = WallCells(rows_, columns_);
+    crossed_ = WallCells(rows_, columns_);
     is_line_seen_.assign(columns_, is_sphere() ? 1 : 0);
     for (const std::uint32_t i : own) mark(pose_.to_local(cloud.positions[i]));
   }
@@ -68,7 +74,6 @@ class RolledWall {
   /// Marks where a line of sight from `sensor` to `point` crosses the wall: there is no wall. Nearer to the point than
   /// `clear`, it does not count: the point may be on the wall.
   void cross(const Vector3d& sensor, const Vector3d& point, double clear) {
-    if (is_seen_.empty()) return;
     const Vector3d start = pose_.to_local(point);
     const Vector3d line = pose_.to_local(sensor) - start;
     const double length = line.norm();
@@ -86,18 +91,19 @@ class RolledWall {
       const double share = (side * std::sqrt(discriminant) - half) / square;
       const Vector3d place = start + share * line;
       const bool is_on_line = share * length > clear && share < 1;
-      if (is_on_line && place.z() > reach_.low && place.z() < reach_.high) is_crossed_[cell_of(place)] = 1;
+      if (!is_on_line || place.z() < reach_.low || place.z() > reach_.high) continue;
+      crossed_.mark(row_of(place), column_of(place));
     }
   }
 
   /// Middles of cells that, with their surroundings, have no points, on lines along the axis that have some.
   [[nodiscard]] BarePlaces bare_places() const {
     BarePlaces bare;
-    for (std::size_t row = 0; row < rows_ && !is_seen_.empty(); ++row) {
+    for (std::size_t row = 0; row < rows_ && !is_line_seen_.empty(); ++row) {
       for (std::size_t column = 0; column < columns_; ++column) {
-        if (is_line_seen_[column] == 0 || is_any_around(is_seen_, row, column)) continue;
+        if (is_line_seen_[column] == 0 || seen_.is_any_around(row, column)) continue;
         bare.places.push_back(place_at(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5));
-        bare.is_crossed.push_back(is_any_around(is_crossed_, row, column));
+        bare.is_crossed.push_back(crossed_.is_any_around(row, column));
       }
     }
     return bare;
@@ -161,25 +167,10 @@ class RolledWall {
     if (static_cast<std::size_t>(within) >= k_least_floor_points) reach_.add(height);
   }
 
-  [[nodiscard]] std::size_t cell_of(const Vector3d& local) const {
-    const std::size_t row = std::min(static_cast<std::size_t>(std::max(row_of(local), 0.0)), rows_ - 1);
-    return row * columns_ + std::min(static_cast<std::size_t>(column_of(local)), columns_ - 1);
-  }
-
   void mark(const Vector3d& local) {
-    const std::size_t cell = cell_of(local);
-    is_seen_[cell] = 1;
-    is_line_seen_[cell % columns_] = 1;
-  }
-
-  /// Whether any of a cell and the eight around it is marked.
-  [[nodiscard]] bool is_any_around(const std::vector<char>& marks, std::size_t row, std::size_t column) const {
-    for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, rows_ - 1); ++r) {
-      for (const std::size_t step : {columns_ - 1, columns_, columns_ + 1}) {
-        if (marks[r * columns_ + (column + step) % columns_] != 0) return true;
-      }
-    }
-    return false;
+    const double column = column_of(local);
+    seen_.mark(row_of(local), column);
+    is_line_seen_[std::min(static_cast<std::size_t>(column), columns_ - 1)] = 1;
   }
 
   const PointCloud& cloud_;
@@ -187,7 +178,8 @@ class RolledWall {
   Pose pose_;  ///< z along the axis
   Reach reach_;
   std::size_t rows_ = 1, columns_ = 1;
-  std::vector<char> is_seen_, is_crossed_, is_line_seen_;
+  WallCells seen_, crossed_;
+  std::vector<char> is_line_seen_;
 };
 
 /// The bare places that no sensor could see; none if many were visible.
@@ -196,7 +188,7 @@ Points hidden_places(const RolledWall& wall, const SensorViews& views, double us
   const Points& places = bare.places;
   std::vector<double> densities(places.size());
   for_each_index_by_chunks(places.size(), 256, run, [&](std::size_t i) {
-    densities[i] = views.density_at(places[i], wall.normal_at(places[i]));
+    densities[i] = views.density_at_bare(places[i], wall.normal_at(places[i]));
   });
   Points hidden;
   for (std::size_t i = 0; i < places.size(); ++i) {

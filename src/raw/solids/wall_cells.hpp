@@ -1,0 +1,39 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace cloud2csg {
+
+/// Marked cells of a wall that was unrolled: rows along it, columns around it. Zero rows: nothing is ever marked.
+class WallCells {
+ public:
+  WallCells() = default;
+  WallCells(std::size_t rows, std::size_t columns) : rows_(rows), columns_(columns), marks_(rows * columns, 0) {}
+
+  /// Marks the cell of a place in rows and columns, or the nearest.
+  void mark(double row, double column) {
+    if (!marks_.empty()) marks_[clamped(row, rows_) * columns_ + clamped(column, columns_)] = 1;
+  }
+
+  /// Whether the cell or any of the eight around it is marked.
+  [[nodiscard]] bool is_any_around(std::size_t row, std::size_t column) const {
+    for (std::size_t r = row - std::min<std::size_t>(row, 1); r < std::min(row + 2, rows_); ++r) {
+      for (const std::size_t step : {columns_ - 1, columns_, columns_ + 1}) {
+        if (marks_[r * columns_ + (column + step) % columns_] != 0) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static std::size_t clamped(double place, std::size_t count) {
+    return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(count) - 0.5));
+  }
+
+  std::size_t rows_ = 0, columns_ = 0;
+  std::vector<char> marks_ = {};
+};
+
+}  // namespace cloud2csg
