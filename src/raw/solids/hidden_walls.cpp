@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
 #include "core/geometry/sensor_views.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/solids/edges.hpp"
 #include "raw/solids/hidden_bends.hpp"
 #include "raw/solids/wall_cells.hpp"
@@ -20,6 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr std::uint64_t k_wall_stage = 0x7761'6c6c;
 constexpr double k_cell_spacings = 2;       // edge of a cell of a wall
 constexpr std::size_t k_least_columns = 8;  // around the axis
 constexpr std::size_t k_most_cells = 1'000'000;
@@ -206,6 +209,10 @@ std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud, std::span<con
                                           const Scale& scale, const RunContext& run) {
   std::vector<HiddenWall> walls;
   if (!cloud.has_sensor_positions()) return walls;
+  // Of more lines, some suffice: a gap is crossed by many.
+  constexpr std::size_t k_most_lines = 200'000;
+  const std::vector<std::uint32_t> lines =
+      one_of_every_few(cloud.size(), k_most_lines, RandomStream(0, k_wall_stage, 0));
   std::optional<SensorViews> views;
   double usual = 0;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -220,7 +227,8 @@ std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud, std::span<con
       usual = views->usual_density(cloud, order, run);
     }
     RolledWall rolled(cloud, surfaces, s, k_cell_spacings * scale.spacing);
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (hidden_places(rolled, *views, usual, run).empty()) continue;
+    for (const std::uint32_t i : lines) {
       rolled.cross(cloud.sensor_positions[i], cloud.positions[i], 3 * scale.noise + scale.spacing);
     }
     HiddenWall wall{.surface = s};
