@@ -9,7 +9,8 @@
 
 namespace cloud2csg {
 
-/// Where the axis of a cylinder touches the circle through the middle of a torus' tube, within the tolerance, if it does.
+/// Where the axis of a cylinder touches the circle through the middle of a torus' tube, within the tolerance, if it
+/// does.
 [[nodiscard]] std::optional<Eigen::Vector3d> tangent_place(const Surface& cylinder, const Surface& torus,
                                                            double tolerance);
 
