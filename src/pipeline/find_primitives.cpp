@@ -83,14 +83,17 @@ void close_hidden_bends(FoundPrimitives& found) {
   std::vector<DetectedSurface>& surfaces = found.detection.surfaces;
   const std::vector<HiddenBend> bends = find_hidden_bends(found.prepared.cloud, surfaces, found.prepared.scale);
   if (bends.empty()) return;
-  for (const HiddenBend& bend : bends) {
-    std::erase_if(surfaces, [&](DetectedSurface& other) {
+  for (const auto& [inside, hidden] : bends) {
+    const std::vector<std::uint32_t>& own = inside.points;
+    for (DetectedSurface& other : surfaces) {
       const std::size_t before = other.points.size();
-      std::erase_if(other.points, [&](std::uint32_t i) { return std::ranges::binary_search(bend.points, i); });
-      return 2 * other.points.size() < before;
-    });
-    add_points(found, bend.hidden,
-               surfaces.emplace_back(DetectedSurface{.surface = bend.surface, .points = bend.points}));
+      std::erase_if(other.points, [&](std::uint32_t i) { return std::ranges::binary_search(own, i); });
+      if (2 * other.points.size() >= before) continue;
+      found.detection.unexplained += other.points.size();
+      other.points.clear();
+    }
+    std::erase_if(surfaces, [](const DetectedSurface& other) { return other.points.empty(); });
+    add_points(found, hidden, surfaces.emplace_back(inside));
   }
   const auto largest = std::ranges::max_element(bends, {}, [](const HiddenBend& bend) { return bend.hidden.size(); });
   found.warnings.push_back(fmt::format(
@@ -102,7 +105,8 @@ void close_hidden_bends(FoundPrimitives& found) {
 /// Adds hidden walls to the cloud, and their points to the surfaces.
 void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
   const std::vector<HiddenWall> walls =
-      find_hidden_walls(found.prepared.cloud, found.detection.surfaces, found.prepared.scale, run);
+      find_hidden_walls(found.prepared.cloud, found.detection.surfaces, found.prepared.scale,
+                        found.prepared.cloud.size() - found.added_points, run);
   if (walls.empty()) return;
   const auto largest = std::ranges::max_element(walls, {}, &HiddenWall::area);
   const Eigen::Vector3d middle = bounds_of(largest->points.positions).center();

@@ -28,7 +28,7 @@ struct FoundPrimitives {
   Detection detection;                               ///< surfaces of the points on no known primitive
   std::vector<std::uint32_t> unexplained;            ///< points on no surface and no known primitive, ascending
   std::vector<double> areas = {};     ///< of the surface around each point of the cloud; empty if not measured
-  std::size_t added_points = 0;       ///< points on an unseen side or hidden walls, at the end of the cloud
+  std::size_t added_points = 0;       ///< on an unseen side, hidden walls and bends, at the end of the cloud
   SolidChoice choice;                 ///< known solids, chosen solids with evidence, and a tree over them
   std::optional<Error> no_solid;      ///< why the surfaces bound no solid; `choice` has no tree then
   std::vector<SurfacePoints> points;  ///< points of the prepared cloud on each solid

@@ -59,17 +59,17 @@ TEST(HiddenBends, FollowTheOutside) {
   const Pipe pipe;
   const std::vector<HiddenBend> bends = pipe.hidden_bends();
   ASSERT_EQ(bends.size(), 1U);
-  EXPECT_EQ(bends[0].surface.type, SurfaceType::torus);
-  EXPECT_TRUE(bends[0].surface.concave);
-  EXPECT_NEAR(bends[0].surface.minor_radius, 0.7, 1e-9);
-  EXPECT_NEAR(bends[0].surface.radius, 3, 1e-9);
+  EXPECT_EQ(bends[0].inside.surface.type, SurfaceType::torus);
+  EXPECT_TRUE(bends[0].inside.surface.concave);
+  EXPECT_NEAR(bends[0].inside.surface.minor_radius, 0.7, 1e-9);
+  EXPECT_NEAR(bends[0].inside.surface.radius, 3, 1e-9);
   const PointCloud& hidden = bends[0].hidden;
   const double area = k_quarter * 3 * 2 * std::numbers::pi * 0.7;
   EXPECT_NEAR(static_cast<double>(hidden.size()), area / (k_pipe_spacing * k_pipe_spacing),
               0.15 * area / (k_pipe_spacing * k_pipe_spacing));
   for (std::size_t i = 0; i < hidden.size(); ++i) {
     const Vector3d place = hidden.positions[i];
-    EXPECT_NEAR(signed_distance(bends[0].surface, place), 0, 1e-9);
+    EXPECT_NEAR(signed_distance(bends[0].inside.surface, place), 0, 1e-9);
     EXPECT_GE(std::min(place.x(), place.y()), -1e-6);
     const Vector3d middle = 3 * Vector3d(place.x(), place.y(), 0).normalized();
     EXPECT_GT(hidden.normals[i].dot(middle - place), 0.69);
@@ -99,7 +99,7 @@ TEST(HiddenBends, ReplacePiecesOfTheInside) {
   }
   const std::vector<HiddenBend> bends = pipe.hidden_bends();
   ASSERT_EQ(bends.size(), 1U);
-  EXPECT_EQ(bends[0].points, pipe.surfaces[3].points);
+  EXPECT_EQ(bends[0].inside.points, pipe.surfaces[3].points);
   for (std::size_t i = 0; i < bends[0].hidden.size(); ++i) {
     const Vector3d place = bends[0].hidden.positions[i];
     EXPECT_GT(std::atan2(place.y(), place.x()), 0.2);
@@ -112,6 +112,31 @@ TEST(HiddenBends, AreNotBehindTheFloorOfABlindHole) {
       {.surface = {.type = SurfaceType::plane, .position = {3, -2.5, 0}, .axis = -Vector3d::UnitY()}, .points = {}});
   pipe.surfaces[2].surface.position.y() = -3.5;
   for (int k = 0; k < 20; ++k) pipe.add(3, {2.6 + 0.04 * k, -2.5, 0.1});
+  EXPECT_TRUE(pipe.hidden_bends().empty());
+}
+
+TEST(HiddenBends, HaveTheRadiusOfTheBoreNextToThem) {
+  Pipe pipe;  // with an orifice farther away
+  Surface orifice = pipe.surfaces[2].surface;
+  orifice.radius = 0.3;
+  pipe.surfaces.push_back({.surface = orifice, .points = {}});
+  for (double turn = 0; turn < 2 * std::numbers::pi; turn += k_pipe_spacing) {
+    pipe.add(3, {3 + 0.3 * std::cos(turn), -3.9, 0.3 * std::sin(turn)});
+  }
+  const std::vector<HiddenBend> bends = pipe.hidden_bends();
+  ASSERT_EQ(bends.size(), 1U);
+  EXPECT_EQ(bends[0].inside.surface.minor_radius, 0.7);
+}
+
+TEST(HiddenBends, MayBeShort) {
+  Pipe pipe;
+  std::erase_if(pipe.surfaces[0].points, [&](std::uint32_t i) {
+    const Vector3d place = pipe.cloud.positions[i];
+    return std::atan2(place.y(), place.x()) > 0.15;
+  });
+  const std::vector<HiddenBend> bends = pipe.hidden_bends();
+  ASSERT_EQ(bends.size(), 1U);
+  pipe.surfaces[0].points.resize(1);
   EXPECT_TRUE(pipe.hidden_bends().empty());
 }
 

@@ -48,7 +48,7 @@ struct Bore {
     scale.diagonal = 20;
     scale.spacing = k_step;
     scale.noise = 0.001;
-    return find_hidden_walls(cloud, surfaces, scale);
+    return find_hidden_walls(cloud, surfaces, scale, cloud.size());
   }
 };
 
@@ -65,6 +65,20 @@ TEST(HiddenWalls, JoinTheMouthsOfABore) {
     const Vector3d way = walls[0].points.sensor_positions[i] - place;
     EXPECT_GT(way.dot(walls[0].points.normals[i]), 0.99 * way.norm());
   }
+}
+
+TEST(HiddenWalls, AreNoneOfASingleRing) {
+  Bore bore;
+  bore.cloud = {};
+  for (int k = 0; k < 21; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 21;
+    const Vector3d out(std::cos(angle), std::sin(angle), 0);
+    bore.cloud.positions.push_back(out);
+    bore.cloud.normals.push_back(-out);
+    bore.cloud.sensor_positions.push_back({0, 0, 2});
+  }
+  bore.surfaces[0].points.resize(21);
+  EXPECT_TRUE(bore.hidden_walls().empty());
 }
 
 TEST(HiddenWalls, AreNotWhereLinesOfSightPass) {

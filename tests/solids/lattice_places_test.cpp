@@ -49,6 +49,8 @@ TEST(LatticePlaces, KnowTheCellsThatALineOfSightPasses) {
   }
   // Steps of half an edge miss no more than corners.
   EXPECT_GT(static_cast<double>(passed), 0.7 * static_cast<double>(std::ranges::count(is_passed, true)));
+  cloud.sensor_positions.set(0, {1e300, 1e300, 0});  // its distance is no number
+  for (const SeenCell& cell : seen_cells(lattice, cloud, all, clear)) EXPECT_EQ(cell.lines, 0U);
   cloud.sensor_positions = {};
   EXPECT_TRUE(seen_cells(lattice, cloud, all, clear).empty());
 }

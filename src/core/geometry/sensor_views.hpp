@@ -22,7 +22,8 @@ class SensorViews {
   [[nodiscard]] double density_at(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 
   /// The same at a place that no point of the surface is near: there, a slightly nearer return in the same direction is
-  /// not from that place, so only returns from beyond it tell that a sensor would have seen it. O(views)
+  /// not from that place, so only directions with returns from beyond it, or without any, tell that a sensor would have
+  /// seen it. O(views)
   [[nodiscard]] double density_at_bare(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 
   /// The median density at some of the cloud's points, taken evenly along `order`, which holds all points.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/base/robust_deviation.hpp"
 #include "raw/solids/edges.hpp"
@@ -78,27 +80,14 @@ Bend bend_of(const PointCloud& cloud, const std::vector<DetectedSurface>& surfac
   for (const DetectedSurface& detected : surfaces) {
     const std::optional<double> angle = tangent_angle(detected.surface, bend, tolerance);
     if (!angle) continue;
-    for (double* const end : {&bend.first, &bend.last}) {
-      const double nearest = near_to(*angle, *end);
-      if (std::abs(nearest - *end) < k_beyond) *end = nearest;
-    }
+    const double at_first = near_to(*angle, bend.first);
+    const double at_last = near_to(*angle, bend.last);
+    const bool is_first = std::abs(at_first - bend.first) < std::abs(at_last - bend.last);
+    const double most = std::min(k_beyond, 0.4 * (bend.last - bend.first));
+    if (is_first && std::abs(at_first - bend.first) < most) bend.first = at_first;
+    if (!is_first && std::abs(at_last - bend.last) < most) bend.last = at_last;
   }
   return bend;
-}
-
-/// Whether a floor ends the bore before the place: a face across it with points in the bore.
-bool is_blind(const PointCloud& cloud, const std::vector<DetectedSurface>& surfaces, const Surface& bore,
-              const Vector3d& place) {
-  constexpr std::size_t k_least_floor_points = 10;
-  const double length = (place - bore.position).dot(bore.axis);
-  return std::ranges::any_of(surfaces, [&](const DetectedSurface& face) {
-    if (face.surface.type != SurfaceType::plane || !are_parallel(face.surface.axis, bore.axis)) return false;
-    const double share = (face.surface.position - bore.position).dot(bore.axis) / length;
-    if (!(share > 0) || share > 1) return false;
-    const auto within = std::ranges::count_if(
-        face.points, [&](std::uint32_t i) { return signed_distance(bore, cloud.positions[i]) > 0; });
-    return static_cast<std::size_t>(within) >= k_least_floor_points;
-  });
 }
 
 /// Whether a bore goes on as the inside of the bend.
@@ -109,7 +98,7 @@ bool leads_into(const PointCloud& cloud, const std::vector<DetectedSurface>& sur
   constexpr double k_same = 0.05;  // radians
   const bool is_at_end = std::abs(near_to(*angle, bend.first) - bend.first) < k_same ||
                          std::abs(near_to(*angle, bend.last) - bend.last) < k_same;
-  return is_at_end && !is_blind(cloud, surfaces, bore, bend.place_at(0, *angle, 0));
+  return is_at_end && !is_blind(bore, bend.place_at(0, *angle, 0), cloud, surfaces);
 }
 
 /// Median distance of a torus' points from the circle through the middle of the bend, if nearly all agree.
@@ -125,17 +114,33 @@ std::optional<double> radius_around(const PointCloud& cloud, const DetectedSurfa
   return 10 * off < std::ssize(distances) ? std::optional(radius) : std::nullopt;
 }
 
-/// The smallest radius that a bore or a part of the inside shows.
+/// Least distance along the axis from a bore's points to a place on it.
+double distance_along(const PointCloud& cloud, const DetectedSurface& bore, const Vector3d& place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : bore.points) {
+    least = std::min(least, std::abs((cloud.positions[i] - place).dot(bore.surface.axis)));
+  }
+  return least;
+}
+
+/// The radius that a part of the inside shows, or else the bore that was seen nearest to the bend.
 std::optional<double> inner_radius(const PointCloud& cloud, const std::vector<DetectedSurface>& surfaces,
                                    const Bend& bend, double tolerance) {
   std::optional<double> radius;
+  double nearest = std::numeric_limits<double>::infinity();
   for (const DetectedSurface& detected : surfaces) {
     const Surface& surface = detected.surface;
     if (!surface.concave || detected.points.empty()) continue;
     std::optional<double> own;
-    if (leads_into(cloud, surfaces, surface, bend, 3 * tolerance)) own = surface.radius;
+    double distance = 0;
+    if (leads_into(cloud, surfaces, surface, bend, 3 * tolerance)) {
+      own = surface.radius;
+      distance = distance_along(cloud, detected, *tangent_place(surface, bend.outside, 3 * tolerance));
+    }
     if (surface.type == SurfaceType::torus) own = radius_around(cloud, detected, bend, tolerance);
-    if (own && *own < bend.outside.minor_radius - tolerance && (!radius || *own < *radius)) radius = own;
+    if (!own || *own > bend.outside.minor_radius - tolerance || distance >= nearest) continue;
+    radius = own;
+    nearest = distance;
   }
   return radius;
 }
@@ -164,6 +169,8 @@ PointCloud spread(const PointCloud& cloud, const Surface& inside, const std::vec
   const double sector = bend.last - bend.first;
   const auto rows = static_cast<std::size_t>(std::max(1.0, bend.outside.radius * sector / cell));
   const auto columns = static_cast<std::size_t>(std::max(k_least_columns, k_full_turn * inside.minor_radius / cell));
+  constexpr std::size_t k_most_cells = 1'000'000;
+  if (rows > k_most_cells / columns) return {};
   const double row_angle = sector / static_cast<double>(rows);
   const double column_turn = k_full_turn / static_cast<double>(columns);
   const auto with_marks = [&](const std::vector<std::uint32_t>& points) {
@@ -210,6 +217,22 @@ std::optional<Vector3d> tangent_place(const Surface& cylinder, const Surface& to
   return touches ? std::optional<Vector3d>(torus.position + foot) : std::nullopt;
 }
 
+bool is_blind(const Surface& bore, const Vector3d& place, const PointCloud& cloud,
+              std::span<const DetectedSurface> surfaces) {
+  constexpr std::ptrdiff_t k_least_floor_points = 10;
+  const double length = (place - bore.position).dot(bore.axis);
+  return std::ranges::any_of(surfaces, [&](const DetectedSurface& floor) {
+    const SurfaceType type = floor.surface.type;
+    if (type != SurfaceType::plane && type != SurfaceType::cone && type != SurfaceType::sphere) return false;
+    const auto within = std::ranges::count_if(floor.points, [&](std::uint32_t i) {
+      const Vector3d point = cloud.positions[i];
+      const double share = (point - bore.position).dot(bore.axis) / length;
+      return share > 0 && share < 1 && signed_distance(bore, point) > 0.1 * bore.radius;
+    });
+    return within >= k_least_floor_points;
+  });
+}
+
 std::vector<HiddenBend> find_hidden_bends(const PointCloud& cloud, const std::vector<DetectedSurface>& surfaces,
                                           const Scale& scale) {
   std::vector<HiddenBend> bends;
@@ -218,14 +241,16 @@ std::vector<HiddenBend> find_hidden_bends(const PointCloud& cloud, const std::ve
   for (const DetectedSurface& torus : surfaces) {
     if (torus.surface.type != SurfaceType::torus || torus.surface.concave || torus.points.empty()) continue;
     const Bend bend = bend_of(cloud, surfaces, torus, 3 * tolerance);
+    if (!(bend.last > bend.first)) continue;
     const std::optional<double> radius = inner_radius(cloud, surfaces, bend, tolerance);
     if (!radius) continue;
-    HiddenBend inside{.surface = torus.surface};
+    DetectedSurface inside = torus;
     inside.surface.minor_radius = *radius;
     inside.surface.concave = true;
     inside.points = points_inside(cloud, surfaces, inside.surface, bend, 2 * tolerance);
-    inside.hidden = spread(cloud, inside.surface, inside.points, torus.points, bend, 2 * scale.spacing);
-    if (inside.hidden.size() > 0) bends.push_back(std::move(inside));
+    PointCloud hidden = spread(cloud, inside.surface, inside.points, torus.points, bend, 2 * scale.spacing);
+    constexpr std::size_t k_least_hidden = 32;  // fewer are chance
+    if (hidden.size() >= k_least_hidden) bends.push_back({.inside = std::move(inside), .hidden = std::move(hidden)});
   }
   return bends;
 }

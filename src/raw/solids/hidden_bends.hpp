@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cloud2csg/advanced/detect.hpp"
@@ -14,11 +15,15 @@ namespace cloud2csg {
 [[nodiscard]] std::optional<Eigen::Vector3d> tangent_place(const Surface& cylinder, const Surface& torus,
                                                            double tolerance);
 
+/// Whether a floor ends the bore between its position and a place on its axis: a face with points well within the bore.
+/// O(points of the surfaces)
+[[nodiscard]] bool is_blind(const Surface& bore, const Eigen::Vector3d& place, const PointCloud& cloud,
+                            std::span<const DetectedSurface> surfaces);
+
 /// The inside of a bent pipe that few or no sensors saw.
 struct HiddenBend {
-  Surface surface;                         ///< a concave torus
-  std::vector<std::uint32_t> points = {};  ///< the cloud's, on it
-  PointCloud hidden = {};                  ///< spread over the rest of it, with normals and sensor positions
+  DetectedSurface inside;  ///< a concave torus with the cloud's points on it, as exact as the outside
+  PointCloud hidden = {};  ///< spread over the rest of it, with normals and sensor positions
 };
 
 /// Bends whose outside was seen and into whose inside a bore leads: a concave cylinder along the tangent at an end of

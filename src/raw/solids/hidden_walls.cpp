@@ -60,7 +60,7 @@ class RolledWall {
       for (const std::uint32_t i : own) reach_.add(pose_.to_local(cloud.positions[i]).z());
       for (const DetectedSurface& other : surfaces) {
         extend_to(other);
-        const auto bend = other.surface.concave ? tangent_place(surface_, other.surface, cell) : std::nullopt;
+        const std::optional<Vector3d> bend = bend_ahead(other, surfaces, cell);
         if (bend) reach_.add(pose_.to_local(*bend).z());
       }
     }
@@ -158,6 +158,18 @@ class RolledWall {
     return pose_.to_world({radius * std::cos(angle), radius * std::sin(angle), height});
   }
 
+  /// Where the wall goes over into the inside of a bend, if it does.
+  [[nodiscard]] std::optional<Vector3d> bend_ahead(const DetectedSurface& torus,
+                                                   std::span<const DetectedSurface> surfaces, double cell) const {
+    if (!torus.surface.concave || std::abs(torus.surface.minor_radius - surface_.radius) > cell) return std::nullopt;
+    const std::optional<Vector3d> place = tangent_place(surface_, torus.surface, cell);
+    if (!place || is_blind(surface_, *place, cloud_, surfaces)) return std::nullopt;
+    const bool begins_there = std::ranges::any_of(torus.points, [&](std::uint32_t i) {
+      return (cloud_.positions[i] - *place).norm() < surface_.radius + 2 * cell;
+    });
+    return begins_there ? place : std::nullopt;
+  }
+
   /// Extends the reach to a face across the axis that faces the space inside the wall.
   void extend_to(const DetectedSurface& face) {
     if (face.surface.type != SurfaceType::plane || !are_parallel(face.surface.axis, surface_.axis)) return;
@@ -206,13 +218,15 @@ Points hidden_places(const RolledWall& wall, const SensorViews& views, double us
 }  // namespace
 
 std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
-                                          const Scale& scale, const RunContext& run) {
+                                          const Scale& scale, std::size_t seen_points, const RunContext& run) {
   std::vector<HiddenWall> walls;
   if (!cloud.has_sensor_positions()) return walls;
+  std::vector<std::uint32_t> seen(seen_points);
+  std::iota(seen.begin(), seen.end(), 0U);
   // Of more lines, some suffice: a gap is crossed by many.
   constexpr std::size_t k_most_lines = 200'000;
   const std::vector<std::uint32_t> lines =
-      one_of_every_few(cloud.size(), k_most_lines, RandomStream(0, k_wall_stage, 0));
+      one_of_every_few(seen_points, k_most_lines, RandomStream(0, k_wall_stage, 0));
   std::optional<SensorViews> views;
   double usual = 0;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -221,10 +235,8 @@ std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud, std::span<con
     if (!is_rolled || !surface.concave || surfaces[s].points.empty()) continue;
     run.throw_if_stopped();
     if (!views) {
-      views.emplace(cloud);
-      std::vector<std::uint32_t> order(cloud.size());
-      std::iota(order.begin(), order.end(), 0U);
-      usual = views->usual_density(cloud, order, run);
+      views.emplace(seen_points < cloud.size() ? select_points(cloud, seen) : cloud);
+      usual = views->usual_density(cloud, seen, run);
     }
     RolledWall rolled(cloud, surfaces, s, k_cell_spacings * scale.spacing);
     if (hidden_places(rolled, *views, usual, run).empty()) continue;

@@ -19,9 +19,10 @@ struct HiddenWall {
 /// within its seen extent or up to a seen floor or ceiling across the axis. All such places of concave spheres. None
 /// where sensors could see much of the bare wall, or lines of sight cross it: then it is a gap. Without these places,
 /// the inside of a long bore with only its mouths seen would count as material. None without sensor positions.
-/// O(points x surfaces + cells x sensors)
+/// `seen_points`: so many of the cloud's first points were seen, and the others were added.
+/// O(points + points of surfaces x surfaces + (cells + lines of sight) x walls)
 [[nodiscard]] std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud,
                                                         std::span<const DetectedSurface> surfaces, const Scale& scale,
-                                                        const RunContext& run = {});
+                                                        std::size_t seen_points, const RunContext& run = {});
 
 }  // namespace cloud2csg

@@ -71,14 +71,14 @@ class Labelling {
                              [&](std::size_t i) { numbers[i] = winding.at(candidates[i]); });
     // All areas share an unknown factor, which places clearly inside determine.
     std::vector<double> inside;
-    for (const double number : numbers) {
-      if (number > 0.5) inside.push_back(number);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i] > 0.5 && !is_seen[i]) inside.push_back(numbers[i]);
     }
     if (inside.empty()) refuse_without_inside();
     const double unit = median_of(inside);
     std::vector<int> sides = sides_of(candidates, numbers, unit);
     for (std::size_t i = 0; i < sides.size(); ++i) {
-      if (is_seen[i]) sides[i] = -1;
+      if (is_seen[i]) sides[i] = is_inside_by_nearest(candidates[i]) ? 0 : -1;
     }
     const auto count_in = static_cast<double>(std::max<std::ptrdiff_t>(std::ranges::count(sides, 1), 1));
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -135,8 +135,8 @@ class Labelling {
     const std::vector<SeenCell> seen = seen_cells(lattice, cloud_, points, 2 * clear_depth());
     for (std::size_t c = 0; c < seen.size(); ++c) {
       if (seen[c].lines < k_least_lines) continue;
-      const double distance = index_.nearest(lattice.places[c]).distance;
-      if (distance < std::max(seen[c].distance, k_near_spacings * spacing_)) continue;
+      const double distance = std::max(seen[c].distance, k_near_spacings * spacing_);
+      if (!index_.within(lattice.places[c], distance).empty()) continue;
       lattice.places.set(c, seen[c].place);
       has_moved[c] = true;
     }
@@ -167,6 +167,11 @@ class Labelling {
       sides[i] = sides[i] == 0 || sides[i] == by_nearest ? by_nearest : 0;
     });
     return sides;
+  }
+
+  /// A line of sight may graze a surface, and noise puts it on the other side.
+  [[nodiscard]] bool is_inside_by_nearest(const Eigen::Vector3d& place) const {
+    return !index_.within(place, k_near_spacings * spacing_).empty() && side_by_nearest(place) > 0;
   }
 
   /// The side of the nearest point's plane; 0 within the noise, unless the points around are on the same side.

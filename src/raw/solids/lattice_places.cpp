@@ -65,7 +65,7 @@ std::vector<SeenCell> seen_cells(const LatticePlaces& lattice, const PointCloud&
     const Vector3d start = cloud.positions[i];
     const Vector3d line = cloud.sensor_positions[i] - start;
     const double length = line.norm();
-    if (!(length > clear)) continue;
+    if (!(length > clear) || !std::isfinite(length)) continue;
     const Vector3d way = line / length;
     const Stretch clear_part = within(lattice.box, start, way, {.first = clear, .last = length});
     std::size_t before = seen.size();

@@ -29,7 +29,8 @@ class WallCells {
 
  private:
   static std::size_t clamped(double place, std::size_t count) {
-    return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(count) - 0.5));
+    if (!(place > 0)) return 0;  // nor NaN, as of a wall without height
+    return static_cast<std::size_t>(std::min(place, static_cast<double>(count) - 0.5));
   }
 
   std::size_t rows_ = 0, columns_ = 0;
