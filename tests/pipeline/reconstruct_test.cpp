@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -95,59 +94,6 @@ TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
   EXPECT_GT(test::iou(result, truth), 0.97);
   EXPECT_TRUE(test::mentions(result.statistics.warnings, "closed by a plane"));
   EXPECT_GT(result.statistics.finding->added_points, 5000U);
-}
-
-/// Of bores as long as this the middle is seen by no sensor.
-TEST(Reconstruct, TakesTheWallsOfADeepBoreToGoOn) {
-  const Model truth{.primitives = {test::placed("bar", Box{{2, 2, 12}}, {0, 0, 0}),
-                                   test::placed("bore", Cylinder{.radius = 0.6, .height = 14}, {0, 0, 0})},
-                    .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))};
-  const PointCloud scan = scan_model(truth, {.count = 60'000});
-  const Extraction result = reconstruct(scan);
-  EXPECT_LE(leaf_count(result.tree()), 2U);
-  EXPECT_GT(test::iou(result, truth), 0.97);
-  EXPECT_TRUE(test::mentions(result.statistics.warnings, "no sensor saw far into 1 of the holes"));
-  EXPECT_GT(result.statistics.finding->added_points, 500U);
-  EXPECT_LT(test::iou(reconstruct(scan, {.close_unseen = false}), truth), 0.95);
-}
-
-/// The inside of its bend is hardly seen.
-TEST(Reconstruct, TakesABentPipeToBeHollowAllAlong) {
-  Model truth{.primitives = {test::placed("bend", Torus{.major_radius = 3, .minor_radius = 1}, {0, 0, 0}),
-                             test::placed("inside", Torus{.major_radius = 3, .minor_radius = 0.7}, {0, 0, 0}),
-                             test::placed("quarter", Box{{8, 8, 4}}, {4, 4, 0}),
-                             test::placed("leg", Cylinder{.radius = 1, .height = 3}, {3, -1.5, 0}),
-                             test::placed("bore", Cylinder{.radius = 0.7, .height = 4}, {3, -2, 0}),
-                             test::placed("arm", Cylinder{.radius = 1, .height = 3}, {-1.5, 3, 0}),
-                             test::placed("duct", Cylinder{.radius = 0.7, .height = 4}, {-2, 3, 0})},
-              .tree = {}};
-  for (const std::size_t k : {3U, 4U}) {
-    truth.primitives[k].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
-  }
-  for (const std::size_t k : {5U, 6U}) {
-    truth.primitives[k].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY());
-  }
-  truth.tree = parse_tree("(bend & quarter | leg | arm) - (inside & quarter | bore | duct)", truth.primitives);
-  const PointCloud scan = scan_model(truth, {.count = 60'000});
-  const Extraction result = reconstruct(scan);
-  EXPECT_GT(test::iou(result, truth), 0.97);
-  EXPECT_TRUE(test::mentions(result.statistics.warnings, "no sensor saw far into 1 of the bends"));
-  EXPECT_LT(test::iou(reconstruct(scan, {.close_unseen = false}), truth), 0.9);
-}
-
-/// Coaxial holes with air between them, which sensors saw through.
-TEST(Reconstruct, TakesHolesOfTwoEarsForNoBore) {
-  Model truth{
-      .primitives = {test::placed("base", Box{{4, 6, 1}}, {0, 0, 0}), test::placed("ear", Box{{4, 1, 4}}, {0, -2.5, 2}),
-                     test::placed("other", Box{{4, 1, 4}}, {0, 2.5, 2}),
-                     test::placed("pin", Cylinder{.radius = 0.8, .height = 9}, {0, 0, 2.4})},
-      .tree = {}};
-  truth.primitives[3].pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
-  truth.tree = parse_tree("(base | ear | other) - pin", truth.primitives);
-  const Extraction result = reconstruct(scan_model(truth, {.count = 60'000}));
-  EXPECT_GT(test::iou(result, truth), 0.98);
-  EXPECT_FALSE(test::mentions(result.statistics.warnings, "no sensor saw"));
-  EXPECT_EQ(result.statistics.finding->added_points, 0U);
 }
 
 TEST(Reconstruct, NamesWhatItLeavesOut) {
