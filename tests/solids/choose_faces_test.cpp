@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stop_token>
 
 #include "core/base/random.hpp"
 #include "raw/solids/outline.hpp"
@@ -96,6 +97,19 @@ TEST(ChooseFaces, LosesLittleWhereCornersCost) {
             choice.net(k_corner_price, choose_faces(choice.drawing, choice.gains, k_corner_price));
   }
   EXPECT_LT(lost, 0.05 * best) << lost / best;
+}
+
+TEST(ChooseFaces, EndsEarlyOnAStop) {
+  // The cut takes two cells that meet in a vertex. Without a stop, a third joins them, or one goes.
+  const Drawing drawing = grid();
+  const FaceSet pinched = faces_at(drawing, {{0.5, 0.5}, {1.5, 1.5}});
+  std::vector<double> gains(pinched.size(), -1);
+  for (std::size_t face = 0; face < gains.size(); ++face) gains[face] = pinched[face] != 0 ? 1.0 : -1.0;
+  std::stop_source stop;
+  const RunContext run{.stop = stop.get_token()};
+  EXPECT_NE(choose_faces(drawing, gains, 0, run), pinched);
+  stop.request_stop();
+  EXPECT_EQ(choose_faces(drawing, gains, 0, run), pinched);
 }
 
 TEST(OutlineOf, JoinsEdgesOfACurve) {

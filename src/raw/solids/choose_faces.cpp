@@ -106,8 +106,9 @@ FaceSet cut(const Drawing& drawing, std::span<const double> gains, double price_
 /// Changes single faces while that gains.
 class Flips {
  public:
-  Flips(const Drawing& drawing, std::span<const double> gains, double price_of_segment)
-      : drawing_(drawing),
+  Flips(const Drawing& drawing, std::span<const double> gains, double price_of_segment, const RunContext& run)
+      : run_(run),
+        drawing_(drawing),
         gains_(gains),
         price_(price_of_segment),
         at_vertex_(edges_at_vertices(drawing.arrangement)),
@@ -115,7 +116,7 @@ class Flips {
 
   FaceSet apply_to(FaceSet faces) const {
     improve(faces);
-    while (unpinch(faces)) {
+    while (!run_.stop.stop_requested() && unpinch(faces)) {
     }
     improve(faces);
     return faces;
@@ -177,7 +178,7 @@ class Flips {
   }
 
   void improve(FaceSet& faces) const {
-    for (int sweep = 0; sweep < k_most_flip_sweeps; ++sweep) {
+    for (int sweep = 0; sweep < k_most_flip_sweeps && !run_.stop.stop_requested(); ++sweep) {
       bool has_changed = false;
       for (std::size_t face = 1; face < faces.size(); ++face) has_changed = flip(faces, face) || has_changed;
       if (!has_changed) break;
@@ -206,6 +207,7 @@ class Flips {
     return net - 0.5 * price_ * static_cast<double>(ends);
   }
 
+  const RunContext& run_;
   const Drawing& drawing_;
   std::span<const double> gains_;
   double price_;
@@ -258,8 +260,9 @@ double net_gain(const Drawing& drawing, std::span<const double> gains, double pr
   return net - border_price(drawing, faces);
 }
 
-FaceSet choose_faces(const Drawing& drawing, std::span<const double> gains, double price_of_segment) {
-  return Flips(drawing, gains, price_of_segment).apply_to(cut(drawing, gains, price_of_segment));
+FaceSet choose_faces(const Drawing& drawing, std::span<const double> gains, double price_of_segment,
+                     const RunContext& run) {
+  return Flips(drawing, gains, price_of_segment, run).apply_to(cut(drawing, gains, price_of_segment));
 }
 
 }  // namespace cloud2csg

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "cloud2csg/run_context.hpp"
 #include "raw/solids/arrangement.hpp"
 
 namespace cloud2csg {
@@ -32,7 +33,9 @@ using FaceSet = std::vector<std::uint8_t>;
 /// A set of faces with a large net gain; `gains` has one entry a face. A minimum cut (Boykov and Kolmogorov 2004) finds
 /// the best set for the edges' prices. Corners have no such exact method, so faces at the border then change sides
 /// while that gains. At last, faces change sides where the border touches itself or the axis in a single point, since
-/// no profile may do so; where that is not possible, the point stays. O(faces x edges) in practice
-[[nodiscard]] FaceSet choose_faces(const Drawing& drawing, std::span<const double> gains, double price_of_segment);
+/// no profile may do so; where that is not possible, the point stays. A stop ends the changes early. O(faces x edges)
+/// in practice
+[[nodiscard]] FaceSet choose_faces(const Drawing& drawing, std::span<const double> gains, double price_of_segment,
+                                   const RunContext& run = {});
 
 }  // namespace cloud2csg

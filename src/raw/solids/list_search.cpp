@@ -129,7 +129,7 @@ class ListSearch {
       Insertion& candidate = candidates[c];
       std::vector<double> gains = insertion_gains(list, deciding, space_.pulls, candidate.position, candidate.is_in);
       apply(focus, gains);
-      candidate.found = best_term(space_, gains, costs_, k_least_gain, focus.kinds);
+      candidate.found = best_term(space_, gains, costs_, k_least_gain, focus.kinds, run_);
     });
     Insertion best = candidates[0];
     for (const Insertion& candidate : candidates) {

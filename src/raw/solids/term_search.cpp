@@ -122,14 +122,14 @@ std::vector<PromisingInterval> promising_intervals(const ProfileFamily& family, 
 }
 
 PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains& gains, const TermCosts& costs,
-                        double least) {
+                        double least, const RunContext& run) {
   PricedTerm best{.term = {}, .net = least};
   if (gains.positive_sum <= least + costs.leaf) return best;
   const ProfileFamily& family = space.profiles[index];
   const std::size_t faces = family.chart.drawing.arrangement.areas.size();
   const std::vector<double> sums = sums_below(family, faces, gains);
   for (const PromisingInterval& interval : promising_intervals(family, faces, sums, least + costs.leaf)) {
-    if (interval.bound - costs.leaf <= best.net) break;
+    if (interval.bound - costs.leaf <= best.net || run.stop.stop_requested()) break;
     const auto [first, last] = interval.range;
     const double size = family.size_of(interval.range);
     const double unit = size * family.bare_price * costs.leaf;  // gain that one of the drawing's prices costs
@@ -138,7 +138,7 @@ PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains
       face_gains[f] = (sums[(last + std::size_t{1}) * faces + f] - sums[first * faces + f]) / unit;
     }
     TermPart part{.kind = PartKind::profile, .family = index, .range = interval.range};
-    part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_price * costs.leaf / unit);
+    part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_price * costs.leaf / unit, run);
     part.is_sector = family.is_sector(interval.range);
     part.segments = segments_of(family.chart.drawing, part.faces);
     if (part.segments == 0) continue;
@@ -154,7 +154,7 @@ PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains
 
 /// The best intersection of a profile with the inside or outside of a curved surface.
 PricedTerm best_with_profile(const TermSpace& space, std::uint32_t family, bool is_inverted, const Gains& gains,
-                             const TermCosts& costs, double least) {
+                             const TermCosts& costs, double least, const RunContext& run) {
   const RevolvedFamily& revolved = space.revolved[family];
   const std::uint8_t side = is_inverted ? 0 : 1;
   const double price = price_of(revolved, costs);
@@ -165,7 +165,7 @@ PricedTerm best_with_profile(const TermSpace& space, std::uint32_t family, bool 
   curved.is_inverted = is_inverted;
   const Gains within = on_side(revolved, side, gains);
   for (std::uint32_t p = 0; p < space.profiles.size(); ++p) {
-    const PricedTerm profile = best_profile(space, p, within, costs, best.net + price);
+    const PricedTerm profile = best_profile(space, p, within, costs, best.net + price, run);
     if (profile.term.parts.empty()) continue;
     best.net = profile.net - price;
     best.term.parts = {profile.term.parts[0], curved};
@@ -280,7 +280,7 @@ double cost_of(const Term& term, const TermCosts& costs) {
 }
 
 PricedTerm best_term(const TermSpace& space, std::span<const double> gains, const TermCosts& costs, double least,
-                     TermKinds kinds) {
+                     TermKinds kinds, const RunContext& run) {
   PricedTerm best{.term = {}, .net = least};
   const Gains all = all_of(gains);
   const auto take = [&best](PricedTerm&& found) {
@@ -293,11 +293,12 @@ PricedTerm best_term(const TermSpace& space, std::span<const double> gains, cons
     take(best_revolved(space, r, all, costs, best.net));
   }
   if (kinds == TermKinds::known) return best;
-  for (std::uint32_t p = 0; p < space.profiles.size(); ++p) take(best_profile(space, p, all, costs, best.net));
-  if (kinds == TermKinds::simple) return best;
+  for (std::uint32_t p = 0; p < space.profiles.size(); ++p) take(best_profile(space, p, all, costs, best.net, run));
+  if (kinds == TermKinds::simple || run.stop.stop_requested()) return best;
   take(best_polytope(space, gains, costs, best.net));
   for (std::uint32_t r = 0; r < families; ++r) {
-    for (const bool is_inverted : {false, true}) take(best_with_profile(space, r, is_inverted, all, costs, best.net));
+    for (const bool is_inverted : {false, true})
+      take(best_with_profile(space, r, is_inverted, all, costs, best.net, run));
   }
   return best;
 }

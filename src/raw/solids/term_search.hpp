@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "cloud2csg/run_context.hpp"
 #include "raw/solids/term_space.hpp"
 
 namespace cloud2csg {
@@ -28,8 +29,8 @@ struct PricedTerm {
 /// The term with the largest net gain above `least`. Exact over curved surfaces and their intervals, and known solids.
 /// Over extrusions and revolutions, and their intersections with the inside or outside of a curved surface or known
 /// solid, it is the best that choose_faces() finds between the most promising ends. Over polytopes, greedy cuts around
-/// the places with the largest gains. `gains`: by place, from having it in the term.
+/// the places with the largest gains. `gains`: by place, from having it in the term. A stop leaves the best so far.
 [[nodiscard]] PricedTerm best_term(const TermSpace& space, std::span<const double> gains, const TermCosts& costs,
-                                   double least = 0, TermKinds kinds = TermKinds::all);
+                                   double least = 0, TermKinds kinds = TermKinds::all, const RunContext& run = {});
 
 }  // namespace cloud2csg
