@@ -173,8 +173,6 @@ std::optional<Correlation> gaussian_through(const Rings& rings) {
 }  // namespace
 
 double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise) {
-  // Smoothing leaves hardly any error that is not shared with the neighbours.
-  constexpr double k_shared = k_clear_share;
   // The rings reach over two spacings. They do not tell a longer distance from a form error.
   constexpr double k_most_spacings = 3;
   constexpr double k_least_noise = 0.5;  // of what detection assumes, which is more than the rounding of exact clouds
@@ -190,7 +188,8 @@ double smoothing_length(const std::vector<GrownSurface>& surfaces, const WorkClo
   // The nearest points are within a disc of as many squared spacings.
   const double spacing = std::sqrt(2 * rings.front().square() * std::numbers::pi / static_cast<double>(k_ring_points));
   const double length = std::sqrt(gaussian->square);
-  return gaussian->covariance > k_shared * variance && length < k_most_spacings * spacing ? length : 0;
+  // Smoothing leaves hardly any error that is not shared with the neighbours.
+  return gaussian->covariance > k_clear_share * variance && length < k_most_spacings * spacing ? length : 0;
 }
 
 std::vector<GrownSurface> without_smoothed_edges(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
