@@ -11,6 +11,7 @@
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
 #include "core/base/files.hpp"
+#include "core/geometry/place_text.hpp"
 #include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
@@ -40,33 +41,34 @@ struct DetectCommand {
   void settle(const CLI::App& /*app*/) { share_values(options, reading); }
 };
 
-std::string vector_text(const Eigen::Vector3d& v) {
+std::string direction_text(const Eigen::Vector3d& v) {
   return fmt::format("({:.5g}, {:.5g}, {:.5g})", v.x(), v.y(), v.z());
 }
 
 std::string sizes_text(const Surface& s) {
   switch (s.type) {
     case SurfaceType::plane:
-      return fmt::format("normal {}", vector_text(s.axis));
+      return fmt::format("normal {}", direction_text(s.axis));
     case SurfaceType::sphere:
       return fmt::format("radius {:.5g}", s.radius);
     case SurfaceType::cylinder:
-      return fmt::format("axis {} radius {:.5g}", vector_text(s.axis), s.radius);
+      return fmt::format("axis {} radius {:.5g}", direction_text(s.axis), s.radius);
     case SurfaceType::cone:
-      return fmt::format("axis {} half angle {:.4g} deg", vector_text(s.axis), s.half_angle * 180 / std::numbers::pi);
+      return fmt::format("axis {} half angle {:.4g} deg", direction_text(s.axis),
+                         s.half_angle * 180 / std::numbers::pi);
     case SurfaceType::torus:
-      return fmt::format("axis {} radii {:.5g} {:.5g}", vector_text(s.axis), s.radius, s.minor_radius);
+      return fmt::format("axis {} radii {:.5g} {:.5g}", direction_text(s.axis), s.radius, s.minor_radius);
   }
   return {};
 }
 
-/// One line per surface with its type, number of points and fit.
-std::string surface_table(const std::vector<DetectedSurface>& surfaces) {
+/// One line per surface with its type, number of points and fit. The diagonal is that of the cloud.
+std::string surface_table(const std::vector<DetectedSurface>& surfaces, double diagonal) {
   std::string table;
   for (const DetectedSurface& found : surfaces) {
     table += fmt::format("{:<9} {:>8} points  rms {:<10.3g} at {} {}{}\n", type_name(found.surface.type),
-                         found.points.size(), found.rms, vector_text(found.surface.position), sizes_text(found.surface),
-                         found.surface.concave ? " concave" : "");
+                         found.points.size(), found.rms, place_text(found.surface.position, diagonal),
+                         sizes_text(found.surface), found.surface.concave ? " concave" : "");
   }
   return table;
 }
@@ -89,10 +91,13 @@ int DetectCommand::run(std::stop_token stop) const {
   const Input input = read_cloud_or_mesh(cloud, reading, session.run());
   ReconstructOptions from_raw = options_for(input, options);
   from_raw.known = known.primitives;
+  session.warn(known.warnings);
+  session.warn(input.warnings);
   const Extraction found = naming(primitives.empty() ? cloud : cloud + " with " + primitives,
                                   [&] { return find_primitives(input.cloud, from_raw, session.run()); });
 
-  const std::string table = surface_table(found.surfaces);
+  const FindingStatistics& finding = *found.statistics.finding;
+  const std::string table = surface_table(found.surfaces, finding.diagonal);
   const Model model{.primitives = found.model.primitives,
                     .tree = {},
                     .description = fmt::format("found by cloud2csg {} in {}, whose points lie on these surfaces:\n{}",
@@ -111,10 +116,7 @@ int DetectCommand::run(std::stop_token stop) const {
   }
   written.commit();
   fmt::print("{}", table);
-  session.warn(known.warnings);
-  session.warn(input.warnings);
   session.warn(found.statistics.warnings);
-  const FindingStatistics& finding = *found.statistics.finding;
   const LargestChange largest = largest_change(finding.snaps);
   session.display().note(
       fmt::format("{} surfaces; {} of {} points on no surface; {} values made regular, by at most {:.2g} and {:.2g} "

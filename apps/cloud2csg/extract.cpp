@@ -291,7 +291,7 @@ int ExtractCommand::run(const std::stop_token& stop) const {
   std::vector<std::string> doubts = std::move(given.warnings);
   doubts.insert(doubts.end(), input.warnings.begin(), input.warnings.end());
   const double read_seconds = total.seconds();
-  Extraction result = extract(std::move(input), given.primitives, session.run());
+  Extraction result = after_doubts(doubts, [&] { return extract(std::move(input), given.primitives, session.run()); });
   ExtractStatistics& outcome = result.statistics;
   outcome.warnings.insert(outcome.warnings.begin(), doubts.begin(), doubts.end());
   outcome.seconds.read = read_seconds;

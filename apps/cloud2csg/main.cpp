@@ -22,9 +22,13 @@
 namespace cloud2csg::app {
 namespace {
 
-int complain(int status, std::string_view message) {
-  const std::string line = "cloud2csg: " + visible_text(message) + "\n";
+void put_line(std::string_view text) {
+  const std::string line = visible_text(text) + "\n";
   std::fputs(line.c_str(), stderr);  // does not throw when nobody reads it
+}
+
+int complain(int status, const std::string& message) {
+  put_line("cloud2csg: " + message);
   return status;
 }
 
@@ -65,6 +69,7 @@ void describe(CLI::App& program) {
 struct Failure {
   int status;
   std::string message;
+  std::vector<std::string> warnings = {};
 };
 
 Failure current_failure() {
@@ -76,6 +81,8 @@ Failure current_failure() {
     return {k_wrong_usage, error.what()};
   } catch (const WrongFile& error) {
     return {k_failed, fmt::format("{}; {}", error.what(), taker_of(error.found()))};
+  } catch (const Error& error) {
+    return {k_failed, error.what(), error.parts().warnings};
   } catch (const std::bad_alloc&) {
     return {k_failed, "not enough memory"};
   } catch (const std::system_error& error) {
@@ -94,6 +101,7 @@ int run_command(const Command& command) {
     return written == k_done ? status : written;
   } catch (...) {
     const Failure failure = current_failure();
+    for (const std::string& warning : failure.warnings) put_line("warning: " + warning);
     complain(failure.status, failure.message);
     if (command.fail && failure.status == k_failed) command.fail(failure.message);
     (void)flushed();

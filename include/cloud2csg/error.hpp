@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <string>
+#include <vector>
 
 namespace cloud2csg {
 
@@ -16,6 +17,7 @@ class Error : public std::exception {
     std::string where = {};     ///< line, byte, or path of the field, e.g. "line 12", "/primitives/3/radius"
     std::string expected = {};  ///< the expected and the actual input
     std::string remedy = {};    ///< how to fix it; may be empty
+    std::vector<std::string> warnings = {};  ///< doubts that came before it where no solid was found; not in what()
   };
 
   explicit Error(Parts parts);

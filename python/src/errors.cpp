@@ -1,4 +1,5 @@
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <exception>
 #include <utility>
@@ -18,6 +19,7 @@ void raise(const Error& error) {
   raised.attr("where") = error.parts().where;
   raised.attr("expected") = error.parts().expected;
   raised.attr("remedy") = error.parts().remedy;
+  raised.attr("warnings") = py::tuple(py::cast(error.parts().warnings));
   PyErr_SetObject(type.ptr(), raised.ptr());
 }
 
@@ -42,8 +44,10 @@ void bind_errors(py::module_& module) {
   members["__module__"] = "cloud2csg";
   members["__doc__"] =
       "Bad input: a file, an option or a model that the library cannot work with.\n\nstr() is one line. file, where "
-      "(line, byte or path of the field), expected and remedy are its parts; parts that do not apply are ''.";
+      "(line, byte or path of the field), expected and remedy are its parts; parts that do not apply are ''. Where no "
+      "solid was found, warnings are sentences about doubts before that.";
   for (const char* part : {"file", "where", "expected", "remedy"}) members[part] = "";
+  members["warnings"] = py::tuple();
   module.attr("Error") = py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(&PyType_Type))(
       "Error", py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_Exception)), members);
   py::register_local_exception_translator([](std::exception_ptr pending) {

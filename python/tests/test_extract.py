@@ -25,6 +25,15 @@ def test_sample_takes_options_and_fields(plate):
         cloud2csg.sample(3)
 
 
+def test_errors_have_the_warnings_before_them():
+    across = np.arange(60.0)
+    sheet = np.array([(x, y, 0) for x in across for y in across])
+    wrong = np.tile((1.0, 0.0, 0.0), (len(sheet), 1))
+    with pytest.raises(cloud2csg.Error) as raised:
+        cloud2csg.extract(cloud2csg.PointCloud(sheet, wrong))
+    assert any("normals" in warning for warning in raised.value.warnings)
+
+
 def test_sample_of_a_mesh(plate):
     mesh = plate.mesh(resolution=48)
     assert len(cloud2csg.sample(mesh, count=100, noise=0.01)) == 100

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cloud2csg/csg_tree.hpp"
@@ -20,6 +21,16 @@ constexpr double k_much_doubt = 0.01;
 constexpr double k_coarse = 0.05;  ///< tolerance as a share of the diagonal
 
 }  // namespace
+
+bool is_coarse(double tolerance, double diagonal) {
+  return tolerance > k_coarse * diagonal;
+}
+
+Error with_warnings(const Error& error, std::vector<std::string> warnings) {
+  Error::Parts parts = error.parts();
+  parts.warnings = std::move(warnings);
+  return Error(std::move(parts));
+}
 
 double share(std::size_t part, std::size_t all) {
   return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
@@ -43,15 +54,22 @@ std::vector<std::string> search_warnings(const ExtractStatistics& statistics) {
   return warnings;
 }
 
-std::vector<std::string> tolerance_warnings(double tolerance, double diagonal) {
+std::vector<std::string> tolerance_warnings(double tolerance, const Scale& scale) {
+  const double diagonal = scale.diagonal;
   if (tolerance >= diagonal) {
     throw invalid_option("detection.distance_tolerance",
                          fmt::format("{:.3g} is as large as the cloud, whose diagonal is {:.3g}", tolerance, diagonal),
                          "give it in the cloud's units, or leave it out to use a multiple of the noise");
   }
-  if (tolerance <= k_coarse * diagonal) return {};
-  return {fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost", tolerance,
-                      100 * tolerance / diagonal)};
+  if (is_coarse(tolerance, diagonal)) {
+    return {fmt::format("the tolerance, {:.3g}, is {:.2g} % of the cloud's diagonal: smaller parts are lost", tolerance,
+                        100 * tolerance / diagonal)};
+  }
+  if (tolerance >= scale.noise) return {};
+  return {
+      fmt::format("the tolerance, {:.3g}, is less than the noise of the points, about {:.3g}: many are left over, or "
+                  "surfaces fall to pieces",
+                  tolerance, scale.noise)};
 }
 
 std::vector<std::string> normals_warnings(const PreparedCloud& prepared, const Eigen::Vector3d& origin) {

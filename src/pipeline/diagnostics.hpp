@@ -21,8 +21,13 @@ inline void append(std::vector<std::string>& warnings, std::span<const std::stri
 /// Warns of loss in a merge, and of an early stop.
 [[nodiscard]] std::vector<std::string> search_warnings(const ExtractStatistics& statistics);
 
-/// @throws Error for a tolerance as large as the cloud
-[[nodiscard]] std::vector<std::string> tolerance_warnings(double tolerance, double diagonal);
+/// Whether points within the tolerance of a surface say little: parts of a typical size vanish in it.
+[[nodiscard]] bool is_coarse(double tolerance, double diagonal);
+
+/// Warns of a given tolerance that is coarse, or less than the noise. @throws Error for one as large as the cloud
+[[nodiscard]] std::vector<std::string> tolerance_warnings(double tolerance, const Scale& scale);
+
+[[nodiscard]] Error with_warnings(const Error& error, std::vector<std::string> warnings);
 
 /// `origin`: that of the prepared cloud's frame
 [[nodiscard]] std::vector<std::string> normals_warnings(const PreparedCloud& prepared, const Eigen::Vector3d& origin);

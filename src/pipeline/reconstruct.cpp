@@ -108,7 +108,7 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   }
   const Stopwatch watch;
   FoundPrimitives found = find_in_time(cloud, options, run);
-  if (found.no_solid) throw Error(*found.no_solid);
+  if (found.no_solid) throw with_warnings(*found.no_solid, found.warnings);
   ReconstructOptions rest = options;
   std::optional<double>& limit = rest.extraction.time_limit_seconds;
   std::optional<double>& tolerance = rest.extraction.segmentation.distance_tolerance;

@@ -153,12 +153,13 @@ Json optional_json(const std::optional<double>& figure) {
 }
 
 Json verdict_json(const Verdict& verdict) {
+  const auto judged = [&](auto figure) { return verdict.points > 0 ? Json(figure) : Json(nullptr); };
   return {{"grade", to_string(verdict.grade)},
           {"text", to_text(verdict)},
-          {"points", verdict.points},
-          {"share_within", verdict.share_within},
-          {"distance", verdict.distance},
-          {"unexplained_points", verdict.unexplained_points},
+          {"points", judged(verdict.points)},
+          {"share_within", judged(verdict.share_within)},
+          {"distance", judged(verdict.distance)},
+          {"unexplained_points", judged(verdict.unexplained_points)},
           {"disagreement", optional_json(verdict.disagreement)},
           {"bare_surface", optional_json(verdict.bare_surface)},
           {"doubts", verdict.doubts},

@@ -98,6 +98,12 @@ std::vector<Doubt> doubts_of_fit(const Verdict& verdict) {
   return {{Grade::doubtful, percent(k_least_within) + " are expected"}};
 }
 
+std::vector<Doubt> doubts_of_tolerance(double tolerance, double diagonal) {
+  if (!is_coarse(tolerance, diagonal)) return {};
+  return {{Grade::doubtful, fmt::format("that distance is {} of the cloud's diagonal, so it says little",
+                                        percent(tolerance / diagonal))}};
+}
+
 /// The corners of a box far around the points: a bounded solid contains none of them.
 std::vector<Doubt> doubts_of_bounds(const Model& model, const AlignedBox& around) {
   constexpr double k_diagonals = 1e4;
@@ -136,9 +142,10 @@ std::vector<Doubt> doubts_of_unused_surfaces(const Extraction& result, const Eig
   if (unused.count == 0) return {};
   const DetectedSurface& largest = result.surfaces[unused.largest];
   const Eigen::Vector3d middle = bounds_of(select_points(result.cloud.positions, largest.points)).center();
-  return {{Grade::doubtful, fmt::format("{} detected surfaces are not on it, the largest a {} of {} points near {}",
-                                        unused.count, type_name(largest.surface.type), largest.points.size(),
-                                        place_text(origin + middle, result.statistics.finding->diagonal))}};
+  return {{Grade::doubtful,
+           fmt::format("{} of the detected surfaces {} not on it, the largest a {} of {} points near {}", unused.count,
+                       unused.count == 1 ? "is" : "are", type_name(largest.surface.type), largest.points.size(),
+                       place_text(origin + middle, result.statistics.finding->diagonal))}};
 }
 
 }  // namespace
@@ -208,6 +215,8 @@ Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::
   Verdict verdict = judge_fit(result.model, result.statistics.fit, result.cloud.positions, finding.added_points);
   verdict.disagreement = finding.disagreement;
   verdict.bare_surface = bare.share();
+  std::vector<Doubt> coarse = doubts_of_tolerance(verdict.distance, finding.diagonal);
+  verdict = with_doubts(std::move(verdict), std::move(coarse));
   verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places, origin));
   verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, origin, finding.diagonal));
   result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result, origin));
@@ -218,12 +227,13 @@ Verdict judge_detection(const FoundPrimitives& found) {
   const Points& points = found.prepared.cloud.positions;
   const std::size_t own = points.size() - found.added_points;
   const std::size_t unexplained = found.unexplained.size();
-  std::vector<Doubt> doubts;
+  const double tolerance = found.detection.distance_tolerance;
+  std::vector<Doubt> doubts = doubts_of_tolerance(tolerance, found.prepared.scale.diagonal);
   if (share(unexplained, own) > k_much_unexplained) {
     doubts.push_back({Grade::doubtful, percent(share(unexplained, own)) + " of the points lie on no detected surface"});
   }
   if (found.no_solid) doubts.push_back({Grade::doubtful, "the surfaces bound no solid"});
-  return with_doubts({.distance = found.detection.distance_tolerance,
+  return with_doubts({.distance = tolerance,
                       .points = own,
                       .share_within = share(own - unexplained, own),
                       .unexplained_points = unexplained,

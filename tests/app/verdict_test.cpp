@@ -112,8 +112,22 @@ TEST_F(Verdict, OfAnErrorIsJsonToo) {
   EXPECT_EQ(outcome.status, 1);
   const json line = json::parse(outcome.out);
   EXPECT_EQ(line["grade"], "failed");
+  for (const char* figure : {"points", "share_within", "distance", "unexplained_points", "disagreement"}) {
+    EXPECT_TRUE(line[figure].is_null()) << figure;
+  }
   EXPECT_EQ("cloud2csg: " + line["text"].get<std::string>().substr(std::string("failed: ").size()) + "\n", outcome.err);
   EXPECT_TRUE(line["files"].empty());
+}
+
+TEST_F(Verdict, WarningsComeBeforeAnError) {
+  std::string sheet;  // whose normals are all wrong
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) sheet += std::to_string(i) + " " + std::to_string(j) + " 0 1 0 0\n";
+  }
+  const Outcome outcome = run({"extract", file("sheet.xyz", sheet), "-q", "-o", path("t.json")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err.find("warning: "), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncloud2csg: " + path("sheet.xyz")), std::string::npos) << outcome.err;
 }
 
 TEST_F(Verdict, OfDetectFollowsItsTable) {

@@ -111,8 +111,8 @@ TEST(Reconstruct, NamesWhatItLeavesOut) {
   const Extraction result = reconstruct(cloud);
   EXPECT_EQ(leaf_count(result.tree()), 1U);
   EXPECT_EQ(result.statistics.verdict.grade, Grade::doubtful);
-  EXPECT_TRUE(
-      test::mentions(result.statistics.verdict.doubts, "1 detected surfaces are not on it, the largest a sphere of"));
+  EXPECT_TRUE(test::mentions(result.statistics.verdict.doubts,
+                             "1 of the detected surfaces is not on it, the largest a sphere of"));
   EXPECT_TRUE(reconstruct(raw_cloud(plate(), 0.008)).statistics.verdict.doubts.empty());
 }
 
@@ -123,6 +123,32 @@ TEST(Reconstruct, RefusesAToleranceAsLargeAsTheCloud) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("as large as the cloud"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Reconstruct, WarnsOfAToleranceBelowTheNoise) {
+  const PointCloud cloud = raw_cloud(plate(), 0.008, 5000);
+  const auto warnings = [&](std::optional<double> tolerance) {
+    return find_primitives(cloud, {.detection = {.distance_tolerance = tolerance}}).statistics.warnings;
+  };
+  EXPECT_TRUE(test::mentions(warnings(0.004), "is less than the noise of the points"));
+  EXPECT_FALSE(test::mentions(warnings(0.02), "noise of the points"));
+  EXPECT_FALSE(test::mentions(warnings({}), "noise of the points"));
+}
+
+TEST(Reconstruct, TellsItsDoubtsWhereItFindsNoSolid) {
+  PointCloud sheet;  // whose normals are all wrong
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) {
+      sheet.positions.push_back({0.1 * i, 0.1 * j, 0});
+      sheet.normals.push_back({1, 0, 0});
+    }
+  }
+  try {
+    (void)reconstruct(sheet);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_TRUE(test::mentions(error.parts().warnings, "normals"));
   }
 }
 

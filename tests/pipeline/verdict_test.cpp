@@ -200,6 +200,7 @@ TEST(Verdict, FailsWhereTheEmptySolidIsAsGood) {
 TEST(Verdict, OfDetectionNamesWhatIsOnNoSurface) {
   FoundPrimitives found;
   found.prepared.cloud.positions = flat_lattice();
+  found.prepared.scale.diagonal = 100;
   found.detection.distance_tolerance = 0.25;
   found.unexplained = in_rectangle(found.prepared.cloud.positions, 0, 19, 0, 39);
   EXPECT_EQ(to_text(judge_detection(found)), "good: 92 % of the points within 0.25 of the surface");
@@ -210,6 +211,15 @@ TEST(Verdict, OfDetectionNamesWhatIsOnNoSurface) {
   EXPECT_EQ(to_text(doubtful),
             "doubtful: 88 % of the points within 0.25 of the surface; 12 % of the points lie on no detected surface");
   EXPECT_LT((doubtful.regions.at(0).place - Eigen::Vector3d(9.5, 29.5, 0)).norm(), 2);
+}
+
+TEST(Verdict, OfPointsThatAreAllNoiseIsDoubtful) {
+  PointCloud cloud;
+  RandomStream random(1);
+  for (int i = 0; i < 3000; ++i) cloud.positions.push_back({random.uniform(), random.uniform(), random.uniform()});
+  const Verdict verdict = find_primitives(cloud).statistics.verdict;
+  EXPECT_EQ(verdict.grade, Grade::doubtful);
+  EXPECT_NE(to_text(verdict).find("of the cloud's diagonal, so it says little"), std::string::npos) << to_text(verdict);
 }
 
 TEST(FindPrimitives, GivesSurfacesThatBoundNoSolid) {
