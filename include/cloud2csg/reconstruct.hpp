@@ -31,8 +31,9 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
   field(&O::preparation, "preparation", "Cleaning of the cloud and its normals");
   field(&O::detection, "detection", "Detection of surfaces");
   field(&O::close_unseen, "close_unseen",
-        "Close a side without any points, such as the one on which a scanned part stood, by a plane, and extend the "
-        "walls of bores and bent pipes where no sensor could see them. Without this, nothing tells how far the solid "
+        "Close a side without any points, such as the one on which a scanned part stood, and undersides of overhangs "
+        "by planes, and extend the walls of bores and bent pipes where no sensor could see them. Without this, nothing "
+        "tells how far the solid "
         "reaches there. "
         "Has no effect with known primitives.",
         {.opposite = "leave-open",

@@ -66,22 +66,31 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   const std::optional<UnseenSide> side =
       find_unseen_side(cloud, found.areas, found.detection.surfaces, found.prepared.scale, run);
   if (!side) return;
-  DetectedSurface plane{.surface = {.position = side->points.positions[0], .axis = side->normal}, .points = {}};
-  add_points(found, side->points, plane);
-  found.detection.surfaces.push_back(std::move(plane));
+  const auto close = [&](const PointCloud& points) {
+    DetectedSurface plane{.surface = {.position = points.positions[0], .axis = side->normal}, .points = {}};
+    add_points(found, points, plane);
+    found.detection.surfaces.push_back(std::move(plane));
+  };
+  close(side->points);
+  for (const PointCloud& underside : side->undersides) close(underside);
   // Rounded, and + 0.0 turns -0 into 0.
   const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
   found.warnings.push_back(fmt::format(
-      "the side facing ({:.3g}, {:.3g}, {:.3g}), {:.0f} % of the surface, has no points and was closed by "
+      "the side facing ({:.3g}, {:.3g}, {:.3g}), {:.2g} % of the surface, has no points and was closed by "
       "a plane through {}",
       facing.x(), facing.y(), facing.z(), 100 * side->share,
       place_text(found.origin + bounds_of(side->points.positions).center(), found.prepared.scale.diagonal)));
+  if (side->undersides.empty()) return;
+  found.warnings.push_back(fmt::format(
+      "the underside of {} overhang{}, the largest near {}, has no points and was closed where the walls around it end",
+      side->undersides.size(), side->undersides.size() == 1 ? "" : "s",
+      place_text(found.origin + bounds_of(side->undersides[0].positions).center(), found.prepared.scale.diagonal)));
 }
 
 /// Adds the insides of bends. They replace surfaces that were made of pieces of them.
-void close_hidden_bends(FoundPrimitives& found) {
+void close_hidden_bends(FoundPrimitives& found, const RunContext& run) {
   std::vector<DetectedSurface>& surfaces = found.detection.surfaces;
-  const std::vector<HiddenBend> bends = find_hidden_bends(found.prepared.cloud, surfaces, found.prepared.scale);
+  const std::vector<HiddenBend> bends = find_hidden_bends(found.prepared.cloud, surfaces, found.prepared.scale, run);
   if (bends.empty()) return;
   for (const auto& [inside, hidden] : bends) {
     const std::vector<std::uint32_t>& own = inside.points;
@@ -114,15 +123,14 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
     add_points(found, wall.points, found.detection.surfaces[wall.surface]);
   }
   found.warnings.push_back(
-      fmt::format("no sensor saw far into {} of the holes, the largest near {}: their walls were extended between the "
-                  "parts that were seen",
+      fmt::format("no sensor saw far into {} of the holes, the largest near {}: their walls were taken to go on",
                   walls.size(), place_text(found.origin + middle, found.prepared.scale.diagonal)));
 }
 
 /// Adds points and surfaces where no sensor saw the part, with warnings. Precondition: the surfaces are detected.
 FoundPrimitives with_unseen_closed(FoundPrimitives found, const RunContext& run) {
   close_unseen_side(found, run);
-  close_hidden_bends(found);
+  close_hidden_bends(found, run);
   close_hidden_walls(found, run);
   return found;
 }
@@ -187,14 +195,14 @@ std::pair<PreparedCloud, RestDetection> without_outliers(PreparedCloud prepared,
   return {std::move(prepared), std::move(rest)};
 }
 
-/// @throws Error without surfaces and without points on known primitives
-void check_any_surface(const RestDetection& found, const PointCloud& cloud) {
+/// @throws Error, with the warnings, without surfaces and without points on known primitives
+void check_any_surface(const RestDetection& found, const PointCloud& cloud, const std::vector<std::string>& warnings) {
   if (!found.detection.surfaces.empty() || count_of(found.known) > 0) return;
-  throw Error(
-      {.expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
-                               "within {:.3g}",
-                               cloud.size(), found.detection.distance_tolerance),
-       .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces"});
+  throw Error({.expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
+                                       "within {:.3g}",
+                                       cloud.size(), found.detection.distance_tolerance),
+               .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces",
+               .warnings = warnings});
 }
 
 PreparedCloud prepare_in_frame(const PointCloud& cloud, const Eigen::Vector3d& origin, const PrepareOptions& options,
@@ -242,13 +250,13 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   append(found.warnings, normals_warnings(found.prepared, found.origin));
 
   const std::optional<double>& tolerance = options.detection.distance_tolerance;
-  if (tolerance) append(found.warnings, tolerance_warnings(*tolerance, found.prepared.scale.diagonal));
+  if (tolerance) append(found.warnings, tolerance_warnings(*tolerance, found.prepared.scale));
   RestDetection all = detect_rest(found.prepared.cloud, found.prepared.scale, known, options.detection, run);
   if (!options.preparation.clean.remove_outliers) all.detection.smoothed.clear();
   auto [prepared, rest] = without_outliers(std::move(found.prepared), std::move(all));
   found.prepared = std::move(prepared);
   append(found.warnings, outlier_warnings(found.prepared.cleaning, cloud.size()));
-  check_any_surface(rest, found.prepared.cloud);
+  check_any_surface(rest, found.prepared.cloud, found.warnings);
   found.unexplained = points_of_none(lists_of(rest), found.prepared.cloud.size());
   found.detection = std::move(rest.detection);
   // Planes show the noise better than neighbours, unless detection has seen only a part of the cloud.

@@ -50,6 +50,29 @@ TEST(ReconstructHidden, TakesABentPipeToBeHollowAllAlong) {
   EXPECT_LT(test::iou(reconstruct(scan, {.close_unseen = false}), truth), 0.9);
 }
 
+/// On a table, with a shelf. Sensors saw below it, but not its underside.
+TEST(ReconstructHidden, ClosesTheUndersideOfAnOverhang) {
+  const Model truth{.primitives = {test::placed("base", Box{{4, 4, 1}}, {-2, 0, 0}),
+                                   test::placed("post", Box{{1, 4, 5}}, {-0.5, 0, 2}),
+                                   test::placed("shelf", Box{{4, 4, 0.7}}, {2, 0, 4.15})},
+                    .tree = unite(unite(CsgTree::leaf(0), CsgTree::leaf(1)), CsgTree::leaf(2))};
+  const Extraction result = reconstruct(scan_model(truth, {.on_table = true, .count = 60'000}));
+  EXPECT_GT(test::iou(result, truth), 0.97);
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "the underside of 1 overhang, the largest near"));
+}
+
+/// A pipe that stands on a table. Sensors above it see neither its foot nor the depth of its bore.
+TEST(ReconstructHidden, TakesABoreToGoThrough) {
+  const Model truth{.primitives = {test::placed("pipe", Cylinder{.radius = 1.3, .height = 9}, {0, 0, 0}),
+                                   test::placed("bore", Cylinder{.radius = 1, .height = 10}, {0, 0, 0})},
+                    .tree = subtract(CsgTree::leaf(0), CsgTree::leaf(1))};
+  const PointCloud scan = scan_model(truth, {.on_table = true, .count = 60'000});
+  const Extraction result = reconstruct(scan);
+  EXPECT_GT(test::iou(result, truth), 0.95);
+  EXPECT_TRUE(test::mentions(result.statistics.warnings, "no sensor saw far into"));
+  EXPECT_LT(test::iou(reconstruct(scan, {.close_unseen = false}), truth), 0.9);
+}
+
 /// Coaxial holes with air between them, which sensors saw through.
 TEST(ReconstructHidden, TakesHolesOfTwoEarsForNoBore) {
   Model truth{

@@ -52,6 +52,19 @@ class BoredBlock : public ::testing::Test {
   std::vector<DetectedSurface> surfaces_;
 };
 
+TEST_F(BoredBlock, StandsOnThePlaneOnWhichItsWallsEnd) {
+  const Pose tilted = compose(turn_, {.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Vector3d::UnitX()))});
+  const DetectedSurface skew{.surface = {.axis = tilted.orientation * Vector3d::UnitZ()}, .points = {}};
+  const std::vector<DetectedSurface> others = surfaces_;
+  for (const std::size_t place : {std::size_t{0}, others.size()}) {
+    surfaces_ = others;
+    surfaces_.insert(surfaces_.begin() + static_cast<std::ptrdiff_t>(place), skew);
+    const auto side = find(cloud_without_ground());
+    ASSERT_TRUE(side);
+    EXPECT_GT(side->normal.dot(down()), 0.9999) << place;
+  }
+}
+
 TEST_F(BoredBlock, GetsItsGround) {
   const PointCloud cloud = cloud_without_ground();
   const auto side = find(cloud);

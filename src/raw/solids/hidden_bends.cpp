@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/robust_deviation.hpp"
+#include "raw/solids/bores.hpp"
 #include "raw/solids/edges.hpp"
 #include "raw/solids/wall_cells.hpp"
 
@@ -36,14 +37,6 @@ struct Bend {
     return pose.to_world({out * std::cos(angle), out * std::sin(angle), radius * std::sin(turn)});
   }
 };
-
-/// Angle at which the axis of a cylinder touches the circle through the middle of the bend, if it does.
-std::optional<double> tangent_angle(const Surface& cylinder, const Bend& bend, double tolerance) {
-  const std::optional<Vector3d> place = tangent_place(cylinder, bend.outside, tolerance);
-  if (!place) return std::nullopt;
-  const Vector3d local = bend.pose.to_local(*place);
-  return std::atan2(local.y(), local.x());
-}
 
 /// An angle as near to another one as full turns allow.
 double near_to(double angle, double other) {
@@ -78,10 +71,11 @@ Bend bend_of(const PointCloud& cloud, const std::vector<DetectedSurface>& surfac
   Bend bend = with_ends({.outside = torus.surface, .pose = pose_from_axis(torus.surface.position, torus.surface.axis)},
                         cloud, torus.points);
   for (const DetectedSurface& detected : surfaces) {
-    const std::optional<double> angle = tangent_angle(detected.surface, bend, tolerance);
-    if (!angle) continue;
-    const double at_first = near_to(*angle, bend.first);
-    const double at_last = near_to(*angle, bend.last);
+    const std::optional<Vector3d> place = tangent_place(detected.surface, bend.outside, tolerance);
+    if (!place) continue;
+    const double angle = bend.angle_of(bend.pose.to_local(*place));
+    const double at_first = near_to(angle, bend.first);
+    const double at_last = near_to(angle, bend.last);
     const bool is_first = std::abs(at_first - bend.first) < std::abs(at_last - bend.last);
     const double most = std::min(k_beyond, 0.4 * (bend.last - bend.first));
     if (is_first && std::abs(at_first - bend.first) < most) bend.first = at_first;
@@ -90,15 +84,16 @@ Bend bend_of(const PointCloud& cloud, const std::vector<DetectedSurface>& surfac
   return bend;
 }
 
-/// Whether a bore goes on as the inside of the bend.
-bool leads_into(const PointCloud& cloud, const std::vector<DetectedSurface>& surfaces, const Surface& bore,
-                const Bend& bend, double tolerance) {
-  const std::optional<double> angle = tangent_angle(bore, bend, tolerance);
-  if (!angle) return false;
+/// The place at an end of the bend where a bore goes on as its inside, if it does.
+std::optional<Vector3d> way_into(const PointCloud& cloud, const std::vector<DetectedSurface>& surfaces,
+                                 const Surface& bore, const Bend& bend, double tolerance) {
+  const std::optional<Vector3d> place = tangent_place(bore, bend.outside, tolerance);
+  if (!place) return std::nullopt;
   constexpr double k_same = 0.05;  // radians
-  const bool is_at_end = std::abs(near_to(*angle, bend.first) - bend.first) < k_same ||
-                         std::abs(near_to(*angle, bend.last) - bend.last) < k_same;
-  return is_at_end && !is_blind(bore, bend.place_at(0, *angle, 0), cloud, surfaces);
+  const double angle = bend.angle_of(bend.pose.to_local(*place));
+  const bool is_at_end = std::abs(near_to(angle, bend.first) - bend.first) < k_same ||
+                         std::abs(near_to(angle, bend.last) - bend.last) < k_same;
+  return is_at_end && !is_blind(bore, *place, cloud, surfaces) ? place : std::nullopt;
 }
 
 /// Median distance of a torus' points from the circle through the middle of the bend, if nearly all agree.
@@ -133,9 +128,9 @@ std::optional<double> inner_radius(const PointCloud& cloud, const std::vector<De
     if (!surface.concave || detected.points.empty()) continue;
     std::optional<double> own;
     double distance = 0;
-    if (leads_into(cloud, surfaces, surface, bend, 3 * tolerance)) {
+    if (const auto place = way_into(cloud, surfaces, surface, bend, 3 * tolerance)) {
       own = surface.radius;
-      distance = distance_along(cloud, detected, *tangent_place(surface, bend.outside, 3 * tolerance));
+      distance = distance_along(cloud, detected, *place);
     }
     if (surface.type == SurfaceType::torus) own = radius_around(cloud, detected, bend, tolerance);
     if (!own || *own > bend.outside.minor_radius - tolerance || distance >= nearest) continue;
@@ -184,21 +179,15 @@ PointCloud spread(const PointCloud& cloud, const Surface& inside, const std::vec
   };
   const WallCells seen = with_marks(inner_points);
   const WallCells backed = with_marks(outer_points);
+  const auto place_at = [&](double row, double column) {
+    return bend.place_at(inside.minor_radius, bend.first + row * row_angle, column * column_turn);
+  };
   PointCloud points;
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t column = 0; column < columns; ++column) {
       if (seen.is_any_around(row, column) || !backed.is_any_around(row, column)) continue;
-      for (const double along : {0.25, 0.75}) {
-        for (const double around : {0.25, 0.75}) {
-          const double angle = bend.first + (static_cast<double>(row) + along) * row_angle;
-          const double turn = (static_cast<double>(column) + around) * column_turn;
-          const Vector3d place = bend.place_at(inside.minor_radius, angle, turn);
-          const Vector3d inward = normal(inside, place);
-          points.positions.push_back(place);
-          points.normals.push_back(inward);
-          points.sensor_positions.push_back(place + std::min(cell, inside.minor_radius) * inward);
-        }
-      }
+      add_cell_points(points, inside, static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5, place_at,
+                      [&](const Vector3d&) { return std::min(cell, inside.minor_radius); });
     }
   }
   return points;
@@ -206,40 +195,14 @@ PointCloud spread(const PointCloud& cloud, const Surface& inside, const std::vec
 
 }  // namespace
 
-std::optional<Vector3d> tangent_place(const Surface& cylinder, const Surface& torus, double tolerance) {
-  constexpr double k_most_cosine = 0.1;  // 6 degrees
-  if (cylinder.type != SurfaceType::cylinder || torus.type != SurfaceType::torus) return std::nullopt;
-  const Vector3d offset = cylinder.position - torus.position;
-  const Vector3d foot = offset - offset.dot(cylinder.axis) * cylinder.axis;
-  const double height = foot.dot(torus.axis);
-  const double off = std::hypot(height, (foot - height * torus.axis).norm() - torus.radius);
-  const bool touches = std::abs(cylinder.axis.dot(torus.axis)) < k_most_cosine && off < tolerance;
-  return touches ? std::optional<Vector3d>(torus.position + foot) : std::nullopt;
-}
-
-bool is_blind(const Surface& bore, const Vector3d& place, const PointCloud& cloud,
-              std::span<const DetectedSurface> surfaces) {
-  constexpr std::ptrdiff_t k_least_floor_points = 10;
-  const double length = (place - bore.position).dot(bore.axis);
-  return std::ranges::any_of(surfaces, [&](const DetectedSurface& floor) {
-    const SurfaceType type = floor.surface.type;
-    if (type != SurfaceType::plane && type != SurfaceType::cone && type != SurfaceType::sphere) return false;
-    const auto within = std::ranges::count_if(floor.points, [&](std::uint32_t i) {
-      const Vector3d point = cloud.positions[i];
-      const double share = (point - bore.position).dot(bore.axis) / length;
-      return share > 0 && share < 1 && signed_distance(bore, point) > 0.1 * bore.radius;
-    });
-    return within >= k_least_floor_points;
-  });
-}
-
 std::vector<HiddenBend> find_hidden_bends(const PointCloud& cloud, const std::vector<DetectedSurface>& surfaces,
-                                          const Scale& scale) {
+                                          const Scale& scale, const RunContext& run) {
   std::vector<HiddenBend> bends;
   if (!cloud.has_sensor_positions()) return bends;
   const double tolerance = 3 * scale.noise + 0.5 * scale.spacing;
   for (const DetectedSurface& torus : surfaces) {
     if (torus.surface.type != SurfaceType::torus || torus.surface.concave || torus.points.empty()) continue;
+    run.throw_if_stopped();
     const Bend bend = bend_of(cloud, surfaces, torus, 3 * tolerance);
     if (!(bend.last > bend.first)) continue;
     const std::optional<double> radius = inner_radius(cloud, surfaces, bend, tolerance);

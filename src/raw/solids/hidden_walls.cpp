@@ -13,8 +13,8 @@
 #include "core/base/random.hpp"
 #include "core/geometry/sensor_views.hpp"
 #include "core/geometry/subset.hpp"
+#include "raw/solids/bores.hpp"
 #include "raw/solids/edges.hpp"
-#include "raw/solids/hidden_bends.hpp"
 #include "raw/solids/wall_cells.hpp"
 
 namespace cloud2csg {
@@ -29,9 +29,10 @@ constexpr std::size_t k_most_cells = 1'000'000;
 constexpr double k_hidden_density = 0.3;  // relative to the cloud's density; a lower expected density counts as hidden
 constexpr double k_most_gaps = 0.2;       // share of visible cells among those without points
 constexpr double k_least_hidden = 8;      // fewer cells are no wall
-constexpr std::size_t k_least_floor_points = 10;
+constexpr std::size_t k_stray = 1000;     // one point in so many may be beyond the end of the material
+constexpr std::size_t k_sectors = 16;     // around a bore
 
-/// The range of heights where a wall is seen, or to faces across its axis that end it.
+/// The range of heights where a wall is seen, or to faces across its axis that end it or in which it opens.
 struct Reach {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -42,16 +43,22 @@ struct Reach {
   }
 };
 
-/// Places of a wall without points.
-struct BarePlaces {
-  Points places;
-  std::vector<bool> is_crossed;  ///< by lines of sight
+/// What the sensors could see.
+struct Visibility {
+  const SensorViews& views;
+  double usual;  ///< points per area
+
+  /// Whether missing points at a place with this normal say nothing.
+  [[nodiscard]] bool is_hidden(const Vector3d& place, const Vector3d& normal) const {
+    return views.density_at_bare(place, normal) < k_hidden_density * usual;
+  }
 };
 
 /// An unrolled wall, in cells along and around its axis.
 class RolledWall {
  public:
-  RolledWall(const PointCloud& cloud, std::span<const DetectedSurface> surfaces, std::size_t index, double cell)
+  RolledWall(const PointCloud& cloud, std::span<const DetectedSurface> surfaces, std::size_t index, double cell,
+             const Visibility& visibility)
       : cloud_(cloud), surface_(surfaces[index].surface), pose_(pose_from_axis(surface_.position, surface_.axis)) {
     const std::vector<std::uint32_t>& own = surfaces[index].points;
     if (is_sphere()) {
@@ -63,6 +70,7 @@ class RolledWall {
         const std::optional<Vector3d> bend = bend_ahead(other, surfaces, cell);
         if (bend) reach_.add(pose_.to_local(*bend).z());
       }
+      if (is_whole_bore(own)) go_through(surfaces, visibility, cell);
     }
     const double radius = is_sphere() ? surface_.radius : std::max(radius_at(reach_.low), radius_at(reach_.high));
     columns_ = std::max(k_least_columns, static_cast<std::size_t>(2 * std::numbers::pi * radius / cell));
@@ -100,33 +108,32 @@ class RolledWall {
   }
 
   /// Middles of cells that, with their surroundings, have no points, on lines along the axis that have some.
-  [[nodiscard]] BarePlaces bare_places() const {
-    BarePlaces bare;
+  [[nodiscard]] Points bare_places() const {
+    Points bare;
     for (std::size_t row = 0; row < rows_ && !is_line_seen_.empty(); ++row) {
       for (std::size_t column = 0; column < columns_; ++column) {
         if (is_line_seen_[column] == 0 || seen_.is_any_around(row, column)) continue;
-        bare.places.push_back(place_at(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5));
-        bare.is_crossed.push_back(crossed_.is_any_around(row, column));
+        bare.push_back(place_at(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5));
       }
     }
     return bare;
   }
 
-  void add_points(const Vector3d& middle, PointCloud& points) const {
-    const Vector3d local = pose_.to_local(middle);
-    const double row = row_of(local);
-    const double column = column_of(local);
-    for (const double along : {-0.25, 0.25}) {
-      for (const double around : {-0.25, 0.25}) {
-        const Vector3d place = place_at(row + along, column + around);
-        const Vector3d inward = normal(surface_, place);
-        points.positions.push_back(place);
-        points.normals.push_back(inward);
-        points.sensor_positions.push_back(place + std::min(cell_height(), depth_at(place)) * inward);
-      }
-    }
+  /// Whether lines of sight cross the cell around a place or a cell beside it.
+  [[nodiscard]] bool is_crossed(const Vector3d& place) const {
+    const Vector3d local = pose_.to_local(place);
+    return crossed_.is_any_near(row_of(local), column_of(local));
   }
 
+  void add_points(const Vector3d& middle, PointCloud& points) const {
+    const Vector3d local = pose_.to_local(middle);
+    add_cell_points(
+        points, surface_, row_of(local), column_of(local),
+        [this](double row, double column) { return place_at(row, column); },
+        [this](const Vector3d& place) { return std::min(cell_height(), depth_at(place)); });
+  }
+
+  [[nodiscard]] double length() const { return reach_.high - reach_.low; }
   [[nodiscard]] Vector3d normal_at(const Vector3d& place) const { return normal(surface_, place); }
   [[nodiscard]] double cell_area(const Vector3d& place) const {
     // A sphere's cell has the area of its projection onto the enclosing cylinder (Archimedes).
@@ -144,12 +151,14 @@ class RolledWall {
   [[nodiscard]] double depth_at(const Vector3d& place) const {
     return is_sphere() ? surface_.radius : radius_at(pose_.to_local(place).z());
   }
-  [[nodiscard]] double cell_height() const { return (reach_.high - reach_.low) / static_cast<double>(rows_); }
+  [[nodiscard]] double cell_height() const { return length() / static_cast<double>(rows_); }
   [[nodiscard]] double row_of(const Vector3d& local) const { return (local.z() - reach_.low) / cell_height(); }
-  [[nodiscard]] double column_of(const Vector3d& local) const {
+  /// Around the axis, from 0 to 1.
+  static double turn_of(const Vector3d& local) {
     const double turn = std::atan2(local.y(), local.x()) / (2 * std::numbers::pi);
-    return (turn < 0 ? turn + 1 : turn) * static_cast<double>(columns_);
+    return turn < 0 ? turn + 1 : turn;
   }
+  [[nodiscard]] double column_of(const Vector3d& local) const { return turn_of(local) * static_cast<double>(columns_); }
 
   [[nodiscard]] Vector3d place_at(double row, double column) const {
     const double height = reach_.low + row * cell_height();
@@ -182,6 +191,61 @@ class RolledWall {
     if (static_cast<std::size_t>(within) >= k_least_floor_points) reach_.add(height);
   }
 
+  /// Whether the wall is a bore, and was seen all around.
+  [[nodiscard]] bool is_whole_bore(const std::vector<std::uint32_t>& own) const {
+    if (surface_.type != SurfaceType::cylinder) return false;
+    WallCells sectors(1, k_sectors);
+    for (const std::uint32_t i : own) sectors.mark(0, k_sectors * turn_of(pose_.to_local(cloud_.positions[i])));
+    return sectors.count() == k_sectors;
+  }
+
+  /// Extends the reach of a bore to where the material around it ends, unless other surfaces are in its way there or a
+  /// sensor could see that there is no wall. Points on no surface may be outliers.
+  void go_through(std::span<const DetectedSurface> surfaces, const Visibility& visibility, double cell) {
+    constexpr double k_around = 2;  // radii; material farther off may end elsewhere
+    const Reach seen = reach_;
+    std::vector<double> around, within;  // heights
+    for (const DetectedSurface& other : surfaces) {
+      for (const std::uint32_t i : other.points) {
+        const Vector3d local = pose_.to_local(cloud_.positions[i]);
+        const double off = local.head<2>().norm() - surface_.radius;
+        if (off > cell && off < (k_around - 1) * surface_.radius) around.push_back(local.z());
+        if (off < -cell) within.push_back(local.z());
+      }
+    }
+    if (around.empty()) return;
+    std::ranges::sort(around);
+    const std::size_t stray = around.size() / k_stray;
+    const double low = around[stray];
+    const double high = around[around.size() - 1 - stray];
+    // A floor may be just where the seen part ends, and a face at the end of the material may reach into the bore.
+    const auto is_free = [&](double from, double to) {
+      const auto in_the_way = std::ranges::count_if(within, [&](double z) { return z > from && z < to; });
+      return in_the_way < k_least_floor_points;
+    };
+    if (low < seen.low && is_free(low + cell, seen.low + cell) && is_hidden_between(low, seen.low, visibility)) {
+      reach_.add(low);
+    }
+    if (high > seen.high && is_free(seen.high - cell, high - cell) && is_hidden_between(seen.high, high, visibility)) {
+      reach_.add(high);
+    }
+  }
+
+  [[nodiscard]] bool is_hidden_between(double low, double high, const Visibility& visibility) const {
+    constexpr int k_heights = 8;
+    int hidden = 0;
+    for (int h = 0; h < k_heights; ++h) {
+      for (std::size_t sector = 0; sector < k_sectors; ++sector) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(sector) / k_sectors;
+        const double height = low + (h + 0.5) / k_heights * (high - low);
+        const Vector3d place =
+            pose_.to_world({surface_.radius * std::cos(angle), surface_.radius * std::sin(angle), height});
+        hidden += visibility.is_hidden(place, normal_at(place)) ? 1 : 0;
+      }
+    }
+    return hidden >= (1 - k_most_gaps) * k_heights * k_sectors;
+  }
+
   void mark(const Vector3d& local) {
     const double column = column_of(local);
     seen_.mark(row_of(local), column);
@@ -197,22 +261,43 @@ class RolledWall {
   std::vector<char> is_line_seen_;
 };
 
-/// The bare places that no sensor could see; none if many were visible.
-Points hidden_places(const RolledWall& wall, const SensorViews& views, double usual, const RunContext& run) {
-  const BarePlaces bare = wall.bare_places();
-  const Points& places = bare.places;
-  std::vector<double> densities(places.size());
-  for_each_index_by_chunks(places.size(), 256, run, [&](std::size_t i) {
-    densities[i] = views.density_at_bare(places[i], wall.normal_at(places[i]));
+/// Whether the points that were seen determine the wall all along its length.
+bool is_determined(const DetectedSurface& wall, double length, const PointCloud& cloud, const Scale& scale) {
+  std::vector<Vector3d> points;
+  points.reserve(wall.points.size());
+  for (const std::uint32_t i : wall.points) points.push_back(cloud.positions[i]);
+  const std::optional<SurfaceFit> fit = fit_surface(wall.surface, points);
+  if (!fit) return false;
+  const SurfaceUncertainty& off = fit->uncertainty;
+  return off.position + off.radius + (off.axis + off.half_angle) * length < 3 * scale.noise + 0.5 * scale.spacing;
+}
+
+/// The bare places that no sensor could see.
+Points hidden_among(const Points& bare, const RolledWall& wall, const Visibility& visibility, const RunContext& run) {
+  std::vector<char> is_hidden(bare.size());
+  for_each_index_by_chunks(bare.size(), 256, run, [&](std::size_t i) {
+    is_hidden[i] = visibility.is_hidden(bare[i], wall.normal_at(bare[i])) ? 1 : 0;
   });
   Points hidden;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (!bare.is_crossed[i] && densities[i] < k_hidden_density * usual) hidden.push_back(places[i]);
+  for (std::size_t i = 0; i < bare.size(); ++i) {
+    if (is_hidden[i] != 0) hidden.push_back(bare[i]);
   }
-  const auto gaps = static_cast<double>(places.size() - hidden.size());
-  const bool is_wall =
-      static_cast<double>(hidden.size()) >= k_least_hidden && gaps <= k_most_gaps * static_cast<double>(places.size());
-  return is_wall ? hidden : Points{};
+  return hidden;
+}
+
+/// Whether so many of the bare places are hidden that there is a wall.
+bool is_wall(const Points& hidden, const Points& bare) {
+  const auto gaps = static_cast<double>(bare.size() - hidden.size());
+  return static_cast<double>(hidden.size()) >= k_least_hidden && gaps <= k_most_gaps * static_cast<double>(bare.size());
+}
+
+/// The places that no line of sight crosses.
+Points uncrossed(const Points& places, const RolledWall& wall) {
+  Points rest;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!wall.is_crossed(places[i])) rest.push_back(places[i]);
+  }
+  return rest;
 }
 
 }  // namespace
@@ -238,18 +323,22 @@ std::vector<HiddenWall> find_hidden_walls(const PointCloud& cloud, std::span<con
       views.emplace(seen_points < cloud.size() ? select_points(cloud, seen) : cloud);
       usual = views->usual_density(cloud, seen, run);
     }
-    RolledWall rolled(cloud, surfaces, s, k_cell_spacings * scale.spacing);
-    if (hidden_places(rolled, *views, usual, run).empty()) continue;
+    const Visibility visibility{.views = *views, .usual = usual};
+    RolledWall rolled(cloud, surfaces, s, k_cell_spacings * scale.spacing, visibility);
+    if (!is_determined(surfaces[s], rolled.length(), cloud, scale)) continue;
+    const Points bare = rolled.bare_places();
+    Points hidden = hidden_among(bare, rolled, visibility, run);
+    if (!is_wall(hidden, bare)) continue;
     for (const std::uint32_t i : lines) {
       rolled.cross(cloud.sensor_positions[i], cloud.positions[i], 3 * scale.noise + scale.spacing);
     }
-    HiddenWall wall{.surface = s};
-    const Points hidden = hidden_places(rolled, *views, usual, run);
+    hidden = uncrossed(hidden, rolled);
+    if (!is_wall(hidden, bare)) continue;
+    HiddenWall& wall = walls.emplace_back(HiddenWall{.surface = s});
     for (std::size_t i = 0; i < hidden.size(); ++i) {
       rolled.add_points(hidden[i], wall.points);
       wall.area += rolled.cell_area(hidden[i]);
     }
-    if (wall.points.size() > 0) walls.push_back(std::move(wall));
   }
   return walls;
 }

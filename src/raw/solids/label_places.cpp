@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -64,22 +65,16 @@ class Labelling {
   void add_volume(LabelledPlaces& places) const {
     const WindingField winding(cloud_.positions, cloud_.normals, areas_);
     LatticePlaces lattice = stratified(grown_, options_.volume_places, RandomStream(options_.seed, k_place_stage, 0));
-    const std::vector<bool> is_seen = move_onto_lines(lattice);  // outside, whatever the winding number says
+    const std::vector<bool> is_seen = move_onto_lines(lattice);  // outside, so their winding number is 0
     const Points& candidates = lattice.places;
     std::vector<double> numbers(candidates.size());
     for_each_index_by_chunks(candidates.size(), k_chunk_places, run_,
-                             [&](std::size_t i) { numbers[i] = winding.at(candidates[i]); });
+                             [&](std::size_t i) { numbers[i] = is_seen[i] ? 0 : winding.at(candidates[i]); });
     // All areas share an unknown factor, which places clearly inside determine.
     std::vector<double> inside;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (numbers[i] > 0.5 && !is_seen[i]) inside.push_back(numbers[i]);
-    }
+    std::ranges::copy_if(numbers, std::back_inserter(inside), [](double number) { return number > 0.5; });
     if (inside.empty()) refuse_without_inside();
-    const double unit = median_of(inside);
-    std::vector<int> sides = sides_of(candidates, numbers, unit);
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      if (is_seen[i]) sides[i] = is_inside_by_nearest(candidates[i]) ? 0 : -1;
-    }
+    const std::vector<int> sides = sides_of(candidates, numbers, median_of(inside));
     const auto count_in = static_cast<double>(std::max<std::ptrdiff_t>(std::ranges::count(sides, 1), 1));
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (sides[i] == 0) continue;
@@ -167,11 +162,6 @@ class Labelling {
       sides[i] = sides[i] == 0 || sides[i] == by_nearest ? by_nearest : 0;
     });
     return sides;
-  }
-
-  /// A line of sight may graze a surface, and noise puts it on the other side.
-  [[nodiscard]] bool is_inside_by_nearest(const Eigen::Vector3d& place) const {
-    return !index_.within(place, k_near_spacings * spacing_).empty() && side_by_nearest(place) > 0;
   }
 
   /// The side of the nearest point's plane; 0 within the noise, unless the points around are on the same side.

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/base/random.hpp"
+#include "core/base/robust_deviation.hpp"
+#include "core/geometry/cubes.hpp"
+#include "core/geometry/subset.hpp"
 #include "raw/solids/edges.hpp"
 
 namespace cloud2csg {
@@ -16,13 +20,17 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr std::uint64_t k_side_stage = 0x756e'7365'656e;
-constexpr double k_least_share = 0.02;   ///< share of the surface; less is a hole, not a side
-constexpr double k_least_cosine = 0.5;   ///< between the side's direction and the sum of normals
-constexpr double k_same_cosine = 0.999;  ///< directions closer than this are one
-constexpr double k_most_doubt = 0.8;     ///< greatest ratio of doubtful to missing layers
+constexpr double k_least_share = 0.005;       ///< share of the surface; less is a hole, not a side
+constexpr double k_least_cosine = 0.5;        ///< between the side's direction and the sum of normals
+constexpr double k_same_cosine = 0.999;       ///< directions closer than this are one
+constexpr double k_alike_directions = 0.985;  ///< cosine, of 10 degrees
+constexpr double k_most_doubt = 0.8;          ///< greatest ratio of doubtful to missing layers
 /// Least cosine between the direction to a sensor and the side's normal for seeing the side.
 constexpr double k_sensor_cosine = 0.1;
-constexpr std::size_t k_window = 2;  ///< bins on each side in which a bin's layers are counted
+constexpr std::size_t k_stray = 2000;  ///< one point in so many may be below the side
+constexpr double k_faces_up = 0.5;     ///< cosine
+constexpr double k_standing = 2;       ///< steps above the missing side; the noise is much less
+constexpr std::size_t k_window = 2;    ///< bins on each side in which a bin's layers are counted
 
 /// Points with areas, and the area-weighted sum of their normals.
 struct Surroundings {
@@ -72,7 +80,9 @@ std::vector<Vector3d> directions_up(const Surroundings& all, std::span<const Det
 class LayerCount {
  public:
   LayerCount(const Surroundings& all, const Vector3d& up)
-      : pose_(pose_from_axis(all.middle, up)), step_(std::sqrt(all.area / static_cast<double>(all.cloud.size()))) {
+      : up_(up),
+        pose_(pose_from_axis(all.middle, up)),
+        step_(std::sqrt(all.area / static_cast<double>(all.cloud.size()))) {
     Points local(all.cloud.size());
     for (std::size_t i = 0; i < local.size(); ++i) local.set(i, pose_.to_local(all.cloud.positions[i]));
     const AlignedBox box = bounds_of(local);
@@ -80,10 +90,11 @@ class LayerCount {
     width_ = bins_along(box.sizes().x());
     height_ = bins_along(box.sizes().y());
     sums_.assign((width_ + 1) * (height_ + 1), 0.0);
+    is_open_.assign(width_ * height_, false);
+    face_above_.assign(width_ * height_, foot_);
     double heights = 0, layers = 0;
     for (std::size_t i = 0; i < local.size(); ++i) {
-      const auto x = static_cast<std::size_t>((local.x[i] - origin_.x()) / step_);
-      const auto y = static_cast<std::size_t>((local.y[i] - origin_.y()) / step_);
+      const auto [x, y] = bin_of({local.x[i], local.y[i]});
       const double layer = all.areas[i] * all.cloud.normals[i].dot(up);
       sum(x + 1, y + 1) += layer;
       heights += layer * local.z[i];
@@ -92,7 +103,9 @@ class LayerCount {
     for (std::size_t y = 1; y <= height_; ++y) {
       for (std::size_t x = 1; x <= width_; ++x) sum(x, y) += sum(x - 1, y) + sum(x, y - 1) - sum(x - 1, y - 1);
     }
-    foot_ = low_end(std::move(local.z));
+    foot_ = low_end(local.z, k_stray);
+    top_ = box.max().z();
+    standing_ = std::ranges::count_if(local.z, [&](double z) { return z < foot_ + k_standing * step_; });
     mean_height_ = heights / layers - foot_;
     judge();
   }
@@ -104,58 +117,201 @@ class LayerCount {
   [[nodiscard]] double score() const { return missing_ - doubt_; }
   [[nodiscard]] double doubt() const { return doubt_; }
   [[nodiscard]] double missing() const { return missing_; }
+  /// Number of points just above the missing side. Walls that end on it have many.
+  [[nodiscard]] std::ptrdiff_t standing() const { return standing_; }
 
-  /// A place in each bin with a missing layer, at the height of the lowest points; world coordinates.
-  [[nodiscard]] Points missing_places() const {
-    RandomStream random(0, k_side_stage, 0);
-    Points places;
+  /// Leaves out the bins where lines of sight pass below all that faces up, such as those under an overhang: what is
+  /// missing there is higher than the side. Nearer to their points than `clear`, lines do not count.
+  void leave_open(const PointCloud& cloud, double clear) {
+    if (!cloud.has_sensor_positions()) return;
+    constexpr double k_most_bins = 0.8;  // of the bins in a window; beside a wall, lines to it cross half of them
+    const std::vector<double> lines = lowest_lines(cloud, clear);
+    const std::vector<double> faces = lowest_points(cloud, [](double up) { return up > k_faces_up; });
     for (std::size_t y = 0; y < height_; ++y) {
       for (std::size_t x = 0; x < width_; ++x) {
-        if (layers(x, y) <= 0.5) continue;
-        const double along_x = static_cast<double>(x) + random.uniform();
-        const double along_y = static_cast<double>(y) + random.uniform();
-        places.push_back(pose_.to_world({origin_.x() + step_ * along_x, origin_.y() + step_ * along_y, foot_}));
+        const Window window = window_around(x, y);
+        double face = std::numeric_limits<double>::infinity();
+        for_each_bin(window, [&](std::size_t bin) { face = std::min(face, faces[bin]); });
+        std::size_t crossed = 0;
+        for_each_bin(window, [&](std::size_t bin) { crossed += lines[bin] < face - clear ? 1 : 0; });
+        face_above_[y * width_ + x] = face;
+        is_open_[y * width_ + x] =
+            std::isfinite(face) && static_cast<double>(crossed) > k_most_bins * static_cast<double>(window.size());
       }
     }
-    return places;
+    judge();
+  }
+
+  /// A place in each bin with a missing layer, at the height of the lowest points; world coordinates.
+  [[nodiscard]] Points missing_places() const { return places_at(foot_, bins_with_missing_layer(false)); }
+
+  /// The same for each group of bins that are left open, if the walls around it end at one height: world coordinates.
+  [[nodiscard]] std::vector<Points> underside_places(const PointCloud& cloud) const {
+    constexpr std::ptrdiff_t k_least_walls = 12;  // bins; fewer agree by chance
+    const std::vector<double> walls = lowest_points(cloud, [](double up) { return std::abs(up) < k_faces_up; });
+    std::vector<Points> undersides;
+    for (const std::vector<std::uint32_t>& group : groups_of(bins_with_missing_layer(true))) {
+      std::vector<double> ends;
+      for (const std::uint32_t bin : group) {
+        const bool is_below =
+            walls[bin] > foot_ + k_standing * step_ && walls[bin] < face_above_[bin] - k_standing * step_;
+        if (is_below) ends.push_back(walls[bin]);
+      }
+      if (std::ssize(ends) < k_least_walls) continue;
+      const double middle = median_of(ends);
+      const auto off = std::erase_if(ends, [&](double end) { return std::abs(end - middle) > 2 * step_; });
+      // Most lowest points are somewhat higher than the end of their wall.
+      if (3 * off < ends.size()) undersides.push_back(places_at(low_end(ends, 20), group));
+    }
+    return undersides;
   }
 
  private:
+  struct Bin {
+    std::size_t x, y;
+  };
   void judge() {
+    missing_ = doubt_ = 0;
     for (std::size_t y = 0; y < height_; ++y) {
       for (std::size_t x = 0; x < width_; ++x) {
+        if (is_open_[y * width_ + x]) continue;
         const double found = layers(x, y);
         missing_ += found > 0.5 ? 1 : 0;
         doubt_ += std::abs(found - (found > 0.5 ? 1 : 0));
       }
     }
   }
+  /// By bin: the least height of the points whose normals have a suitable cosine with the direction up.
+  template <class IsSuitable>
+  [[nodiscard]] std::vector<double> lowest_points(const PointCloud& cloud, IsSuitable is_suitable) const {
+    std::vector<double> lowest(is_open_.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!is_suitable(cloud.normals[i].dot(up_))) continue;
+      const Vector3d local = pose_.to_local(cloud.positions[i]);
+      double& own = lowest[index_of(local.head<2>())];
+      own = std::min(own, local.z());
+    }
+    return lowest;
+  }
+  /// By bin: the least height of the lines of sight over it.
+  [[nodiscard]] std::vector<double> lowest_lines(const PointCloud& cloud, double clear) const {
+    constexpr std::size_t k_most_lines = 200'000;  // they cross nearly each bin under an overhang
+    std::vector<double> lowest(is_open_.size(), std::numeric_limits<double>::infinity());
+    for (const std::uint32_t i : one_of_every_few(cloud.size(), k_most_lines, RandomStream(0, k_side_stage, 1))) {
+      const Vector3d start = pose_.to_local(cloud.positions[i]);
+      const Vector3d line = pose_.to_local(cloud.sensor_positions[i]) - start;
+      // Above the part there is nothing to cross.
+      const double length = line.norm() * std::min(1.0, line.z() > 0 ? (top_ - start.z()) / line.z() : 1.0);
+      if (!std::isfinite(length)) continue;
+      const Vector3d way = line.normalized();
+      for (double along = clear; along < length; along += step_) {
+        const Vector3d place = start + along * way;
+        if (!is_over(place.head<2>())) break;
+        double& own = lowest[index_of(place.head<2>())];
+        own = std::min(own, place.z());
+      }
+    }
+    return lowest;
+  }
+  /// Ascending.
+  [[nodiscard]] std::vector<std::uint32_t> bins_with_missing_layer(bool is_open) const {
+    std::vector<std::uint32_t> bins;
+    for (std::size_t y = 0; y < height_; ++y) {
+      for (std::size_t x = 0; x < width_; ++x) {
+        const std::size_t bin = y * width_ + x;
+        if (is_open_[bin] == is_open && layers(x, y) > 0.5) bins.push_back(static_cast<std::uint32_t>(bin));
+      }
+    }
+    return bins;
+  }
+  /// Connected groups of bins.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> groups_of(const std::vector<std::uint32_t>& bins) const {
+    std::vector<std::uint64_t> squares;
+    squares.reserve(bins.size());
+    for (const std::uint32_t bin : bins) {
+      const auto [x, y] = bin_at(bin);
+      squares.push_back(cube_of({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, 0.5}, 1));
+    }
+    std::vector<std::vector<std::uint32_t>> groups = connected_groups(squares);
+    for (std::vector<std::uint32_t>& group : groups) {
+      for (std::uint32_t& bin : group) bin = bins[bin];
+    }
+    return groups;
+  }
+  /// A place in each bin; world coordinates.
+  [[nodiscard]] Points places_at(double height, const std::vector<std::uint32_t>& bins) const {
+    RandomStream random(0, k_side_stage, 0);
+    Points places;
+    for (const std::uint32_t bin : bins) {
+      const auto [column, row] = bin_at(bin);
+      const double x = static_cast<double>(column) + random.uniform();
+      const double y = static_cast<double>(row) + random.uniform();
+      places.push_back(pose_.to_world({origin_.x() + step_ * x, origin_.y() + step_ * y, height}));
+    }
+    return places;
+  }
+  [[nodiscard]] Bin bin_at(std::size_t index) const { return {.x = index % width_, .y = index / width_}; }
+  /// Precondition: the place is over the bins.
+  [[nodiscard]] Bin bin_of(const Vector2d& place) const {
+    const Vector2d at = (place - origin_) / step_;
+    return {static_cast<std::size_t>(at.x()), static_cast<std::size_t>(at.y())};
+  }
+  [[nodiscard]] std::size_t index_of(const Vector2d& place) const {
+    const auto [x, y] = bin_of(place);
+    return y * width_ + x;
+  }
+  [[nodiscard]] bool is_over(const Vector2d& place) const {
+    const Vector2d at = (place - origin_) / step_;
+    return (at.array() >= 0).all() && at.x() < static_cast<double>(width_) && at.y() < static_cast<double>(height_);
+  }
   [[nodiscard]] std::size_t bins_along(double extent) const {
     return static_cast<std::size_t>(extent / step_) + 2 * k_window + 1;
   }
-  /// The lowest height, except for a few stray points.
-  static double low_end(std::vector<double> heights) {
-    const std::size_t few = std::min(heights.size() / 2000, heights.size() - 1);
+  /// The lowest height, except for one in so many.
+  static double low_end(std::vector<double> heights, std::size_t stray) {
+    const std::size_t few = std::min(heights.size() / stray, heights.size() - 1);
     std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(few), heights.end());
     return heights[few];
+  }
+  /// Bins from the first to before the last.
+  struct Window {
+    std::size_t left, right, low, high;
+
+    [[nodiscard]] std::size_t size() const { return (right - left) * (high - low); }
+  };
+  template <class Work>
+  void for_each_bin(const Window& window, Work work) const {
+    for (std::size_t y = window.low; y < window.high; ++y) {
+      for (std::size_t x = window.left; x < window.right; ++x) work(y * width_ + x);
+    }
+  }
+  [[nodiscard]] Window window_around(std::size_t x, std::size_t y) const {
+    return {.left = x - std::min(x, k_window),
+            .right = std::min(x + k_window + 1, width_),
+            .low = y - std::min(y, k_window),
+            .high = std::min(y + k_window + 1, height_)};
   }
   [[nodiscard]] double& sum(std::size_t x, std::size_t y) { return sums_[y * (width_ + 1) + x]; }
   [[nodiscard]] double sum(std::size_t x, std::size_t y) const { return sums_[y * (width_ + 1) + x]; }
   /// Number of layers around a bin that face up minus those that face down.
   [[nodiscard]] double layers(std::size_t x, std::size_t y) const {
-    const std::size_t left = x - std::min(x, k_window), right = std::min(x + k_window + 1, width_);
-    const std::size_t low = y - std::min(y, k_window), high = std::min(y + k_window + 1, height_);
-    const double area = step_ * step_ * static_cast<double>((right - left) * (high - low));
+    const Window window = window_around(x, y);
+    const auto [left, right, low, high] = window;
+    const double area = step_ * step_ * static_cast<double>(window.size());
     return (sum(right, high) - sum(left, high) - sum(right, low) + sum(left, low)) / area;
   }
 
+  Vector3d up_;
   Pose pose_;
   double step_;
   Vector2d origin_;
   std::size_t width_ = 0, height_ = 0;
-  std::vector<double> sums_;  ///< over all bins below and to the left of a corner
-  double foot_ = 0, mean_height_ = 0;
+  std::vector<double> sums_;        ///< over all bins below and to the left of a corner
+  std::vector<double> face_above_;  ///< by bin: the lowest face around it that faces up
+  std::vector<bool> is_open_;       ///< by bin: nothing is missing at the height of the side
+  double foot_ = 0, top_ = 0, mean_height_ = 0;
   double missing_ = 0, doubt_ = 0;
+  std::ptrdiff_t standing_ = 0;
 };
 
 }  // namespace
@@ -165,28 +321,40 @@ std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud, std::span<co
                                            const RunContext& run) {
   const Surroundings all = survey(cloud, areas, scale);
   if (!(all.sum.norm() > k_least_share * all.area)) return std::nullopt;
-  std::optional<LayerCount> best;
-  Vector3d best_up = Vector3d::Zero();
+  struct Candidate {
+    Vector3d up;
+    double score;
+    std::ptrdiff_t standing;
+  };
+  std::vector<Candidate> candidates;
   for (const Vector3d& up : directions_up(all, surfaces)) {
     run.throw_if_stopped();
-    LayerCount count(all, up);
+    const LayerCount count(all, up);
     if (count.mean_height() < 3 * scale.spacing + 6 * scale.noise) continue;  // a sheet
-    if (!best || count.score() > best->score()) {
-      best = std::move(count);
-      best_up = up;
-    }
+    candidates.push_back({.up = up, .score = count.score(), .standing = count.standing()});
   }
-  if (!best || best->doubt() > k_most_doubt * best->missing()) return std::nullopt;
-  const double found = best->missing() * best->step() * best->step();
+  if (candidates.empty()) return std::nullopt;
+  // Directions nearly alike count the same layers, but walls end on the right one.
+  const Vector3d nearly = std::ranges::max_element(candidates, {}, &Candidate::score)->up;
+  std::erase_if(candidates, [&](const Candidate& other) { return other.up.dot(nearly) < k_alike_directions; });
+  const Vector3d best_up = std::ranges::max_element(candidates, {}, &Candidate::standing)->up;
+  LayerCount best(all, best_up);
+  best.leave_open(cloud, 3 * scale.noise + scale.spacing);
+  if (best.doubt() > k_most_doubt * best.missing()) return std::nullopt;
+  const double found = best.missing() * best.step() * best.step();
   if (found < k_least_share * all.area) return std::nullopt;
 
-  UnseenSide side{.normal = -best_up, .share = found / (all.area + found), .points = {}};
-  side.points.positions = best->missing_places();
-  for (std::size_t i = 0; i < side.points.size(); ++i) {
-    side.points.normals.push_back(side.normal);
-    if (!cloud.has_sensor_positions()) continue;
-    side.points.sensor_positions.push_back(side.points.positions[i] + scale.diagonal * side.normal);
-  }
+  const auto closing = [&](Points places) {
+    PointCloud points{.positions = std::move(places)};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points.normals.push_back(-best_up);
+      if (!cloud.has_sensor_positions()) continue;
+      points.sensor_positions.push_back(points.positions[i] - scale.diagonal * best_up);
+    }
+    return points;
+  };
+  UnseenSide side{.normal = -best_up, .share = found / (all.area + found), .points = closing(best.missing_places())};
+  for (Points& places : best.underside_places(cloud)) side.undersides.push_back(closing(std::move(places)));
   return side;
 }
 
