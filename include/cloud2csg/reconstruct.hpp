@@ -30,15 +30,14 @@ void option_table(OptionsOf<ReconstructOptions>, auto&& field) {
         k_library);
   field(&O::preparation, "preparation", "Cleaning of the cloud and its normals");
   field(&O::detection, "detection", "Detection of surfaces");
-  field(&O::close_unseen, "close_unseen",
-        "Close a side without any points, such as the one on which a scanned part stood, and undersides of overhangs "
-        "by planes, and extend the walls of bores and bent pipes where no sensor could see them. Without this, nothing "
-        "tells how far the solid "
-        "reaches there. "
-        "Has no effect with known primitives.",
-        {.opposite = "leave-open",
-         .otherwise = "Do not close a side without any points, such as the one on which a scanned part stood, by a "
-                      "plane, nor extend walls of bores and bent pipes that no sensor saw"});
+  field(
+      &O::close_unseen, "close_unseen",
+      "Close a side without any points, such as the one on which a scanned part stood, and undersides of overhangs "
+      "by planes, and extend the walls of bores and bent pipes where no sensor could see them. Without this, nothing "
+      "tells how far the solid reaches there. Has no effect with known primitives.",
+      {.opposite = "leave-open",
+       .otherwise = "Do not close a side without any points, such as the one on which a scanned part stood, nor "
+                    "undersides of overhangs by planes, nor extend walls of bores and bent pipes that no sensor saw"});
   field(&O::solids, "solids", "Choice of the solids");
   field(&O::extraction, "extraction", "Extraction of a tree over the solids", k_library);
   field(&O::refine, "refine",

@@ -32,7 +32,7 @@ constexpr double k_least_hidden = 8;      // fewer cells are no wall
 constexpr std::size_t k_stray = 1000;     // one point in so many may be beyond the end of the material
 constexpr std::size_t k_sectors = 16;     // around a bore
 
-/// The range of heights where a wall is seen, or to faces across its axis that end it or in which it opens.
+/// The range of heights where a wall is seen, or to where faces across its axis or the end of the material end it.
 struct Reach {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -160,11 +160,14 @@ class RolledWall {
   }
   [[nodiscard]] double column_of(const Vector3d& local) const { return turn_of(local) * static_cast<double>(columns_); }
 
-  [[nodiscard]] Vector3d place_at(double row, double column) const {
-    const double height = reach_.low + row * cell_height();
-    const double angle = 2 * std::numbers::pi * column / static_cast<double>(columns_);
+  /// The place at a height and a share of the turn around the axis.
+  [[nodiscard]] Vector3d on_wall(double height, double turn) const {
+    const double angle = 2 * std::numbers::pi * turn;
     const double radius = radius_at(height);
     return pose_.to_world({radius * std::cos(angle), radius * std::sin(angle), height});
+  }
+  [[nodiscard]] Vector3d place_at(double row, double column) const {
+    return on_wall(reach_.low + row * cell_height(), column / static_cast<double>(columns_));
   }
 
   /// Where the wall goes over into the inside of a bend, if it does.
@@ -188,7 +191,7 @@ class RolledWall {
     const double radius = radius_at(height);
     const auto within = std::ranges::count_if(
         face.points, [&](std::uint32_t i) { return pose_.to_local(cloud_.positions[i]).head<2>().norm() < radius; });
-    if (static_cast<std::size_t>(within) >= k_least_floor_points) reach_.add(height);
+    if (within >= k_least_floor_points) reach_.add(height);
   }
 
   /// Whether the wall is a bore, and was seen all around.
@@ -236,10 +239,8 @@ class RolledWall {
     int hidden = 0;
     for (int h = 0; h < k_heights; ++h) {
       for (std::size_t sector = 0; sector < k_sectors; ++sector) {
-        const double angle = 2 * std::numbers::pi * static_cast<double>(sector) / k_sectors;
         const double height = low + (h + 0.5) / k_heights * (high - low);
-        const Vector3d place =
-            pose_.to_world({surface_.radius * std::cos(angle), surface_.radius * std::sin(angle), height});
+        const Vector3d place = on_wall(height, static_cast<double>(sector) / k_sectors);
         hidden += visibility.is_hidden(place, normal_at(place)) ? 1 : 0;
       }
     }
