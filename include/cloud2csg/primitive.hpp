@@ -72,9 +72,10 @@ struct Extrusion {
   double height;
 };
 /// The profile in the half-plane (r, z), r >= 0, turned about local z. It meets the axis in lines with r = 0, which
-/// are no surface, or not at all.
+/// are no surface, or not at all. Below a full turn it is a sector from local +x towards +y.
 struct Revolution {
   Profile profile;
+  double angle_deg = 360;  ///< above 0, at most 360
 };
 /// A formula in x, y, z (muParser), negative inside. `bounds` encloses the displaced solid in its local frame.
 struct Expression {

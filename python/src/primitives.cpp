@@ -146,12 +146,20 @@ void bind_flat_shapes(py::module_& module) {
       .def("__repr__", [](const Extrusion& self) {
         return fmt::format("Extrusion({}, height={})", text_of(self.profile), self.height);
       });
-  py::class_<Revolution>(module, "Revolution",
-                         "A profile in the half-plane (r, z), r >= 0, turned about local z. profile: as of Extrusion.")
-      .def(py::init([](const PathLists& profile) { return Revolution{make_profile(profile)}; }), py::arg("profile"))
+  py::class_<Revolution>(
+      module, "Revolution",
+      "A profile in the half-plane (r, z), r >= 0, turned about local z, from local x towards y where "
+      "the angle is below 360. profile: as of Extrusion.")
+      .def(py::init([](const PathLists& profile, double angle_deg) {
+             return Revolution{make_profile(profile), angle_deg};
+           }),
+           py::arg("profile"), py::arg("angle_deg") = 360)
       .def_property_readonly(
           "profile", [](const Revolution& self) { return lists_of(self.profile); }, "Closed paths of (r, z, bulge).")
-      .def("__repr__", [](const Revolution& self) { return fmt::format("Revolution({})", text_of(self.profile)); });
+      .def_readonly("angle_deg", &Revolution::angle_deg, "The turn, in degrees.")
+      .def("__repr__", [](const Revolution& self) {
+        return fmt::format("Revolution({}, angle_deg={})", text_of(self.profile), self.angle_deg);
+      });
   py::class_<Expression>(module, "Expression",
                          "A solid given by a formula in x, y, z (muParser syntax), negative inside. lower and upper, "
                          "shape (3,), are corners of a box around the solid, in its own frame.")

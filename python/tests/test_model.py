@@ -20,7 +20,7 @@ def test_primitives_are_what_was_given():
         "polytope": cloud2csg.Polytope([[2, 0, 0, 2], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1],
                                         [0, 0, -1, 1]]),
         "extrusion": cloud2csg.Extrusion([[(0, 0), (2, 0, 1), (2, 1), (0, 1)], [(1, 0.5, 1), (1.2, 0.5, 1)]], height=3),
-        "revolution": cloud2csg.Revolution(profile=[[(0, 0), (1, 0), (0, 2, 0)]]),
+        "revolution": cloud2csg.Revolution(profile=[[(0, 0), (1, 0), (0, 2, 0)]], angle_deg=90),
         "expression": cloud2csg.Expression("sqrt(x^2 + y^2 + z^2) - 1", (-1, -1, -1), (1, 1, 1)),
     }
     primitives = [cloud2csg.Primitive(name, shape, (1, 2, 3), (0, 2, 0, 0)) for name, shape in shapes.items()]
@@ -31,6 +31,7 @@ def test_primitives_are_what_was_given():
         assert repr(primitive.shape) == repr(shape) and primitive.displacement_frequency is None
     np.testing.assert_allclose(model.primitives[6].shape.planes[0], [1, 0, 0, 1])
     assert model.primitives[7].shape.profile[0][:2] == [[0, 0, 0], [2, 0, 1]] and model.primitives[7].shape.height == 3
+    assert model.primitives[8].shape.angle_deg == 90 and cloud2csg.Revolution([[(0, 0), (1, 0), (0, 2)]]).angle_deg == 360
     assert cloud2csg.Primitive("a", cloud2csg.Box((1, 1, 1)), displacement_frequency=2).displacement_frequency == 2
 
 

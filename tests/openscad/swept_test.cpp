@@ -83,6 +83,7 @@ TEST(OpenScadSweep, OurFilesComeBackWithTheirProfiles) {
     RandomStream random(seed);
     const Profile profile = parts(random);
     Primitive primitive{.id = "part", .shape = Revolution{profile}, .pose = test::random_pose(random)};
+    if (random.chance(0.5)) std::get<Revolution>(primitive.shape).angle_deg = random.uniform(1, 359);
     if (random.chance(0.5)) primitive.shape = Extrusion{.profile = profile, .height = random.uniform(0.1, 2)};
     const std::string text = to_openscad({.primitives = {primitive}, .tree = CsgTree::leaf(0)});
     SCOPED_TRACE(text);
@@ -113,6 +114,7 @@ TEST(OpenScadSweep, RandomRevolutionsAtTheAxisComeBack) {
     const Model again = parse_openscad(text);
     ASSERT_EQ(again.primitives.size(), 1U);
     expect_same_profile(solid.profile, profile_of(again.primitives[0]));
+    EXPECT_NEAR(std::get<Revolution>(again.primitives[0].shape).angle_deg, solid.angle_deg, 1e-6);
   }
 }
 
@@ -121,6 +123,7 @@ TEST(OpenScadSweep, OurFlatFilesComeBackWithTheirHolesAndParts) {
     RandomStream random(seed);
     const Profile profile = parts(random);
     Primitive primitive{.id = "part", .shape = Revolution{profile}, .pose = test::random_pose(random)};
+    if (random.chance(0.5)) std::get<Revolution>(primitive.shape).angle_deg = random.uniform(1, 359);
     if (random.chance(0.5)) primitive.shape = Extrusion{.profile = profile, .height = 1};
     const std::string text = to_openscad_csg({.primitives = {primitive}, .tree = CsgTree::leaf(0)});
     SCOPED_TRACE(text);
@@ -252,6 +255,7 @@ TEST(OpenScadSweep, SpecialCasesAreAsOpenScadDrawsThem) {
   EXPECT_EQ(std::get<Extrusion>(only("linear_extrude() square(3);").shape).height, 100);
   EXPECT_EQ(std::get<Extrusion>(only("linear_extrude(center = true, height = 4) square(3);").shape).height, 4);
   EXPECT_EQ(only("rotate_extrude(angle = -400) square(3);").shape.index(), Shape(Revolution{}).index());
+  EXPECT_EQ(std::get<Revolution>(only("rotate_extrude(angle = 90) square(3);").shape).angle_deg, 90);
   const auto torus = std::get<Torus>(only("rotate_extrude() { difference() { union() {} translate([20, 0]) circle(5); "
                                           "} translate([10, 0]) circle(3); }")
                                          .shape);
@@ -259,33 +263,39 @@ TEST(OpenScadSweep, SpecialCasesAreAsOpenScadDrawsThem) {
   EXPECT_EQ(torus.minor_radius, 3);
 }
 
+double distance_at(const Model& model, const Vector3d& place) {
+  return implicit_value(*model.tree, model.primitives, test::single(place))[0];
+}
+
+void expect_inside(const Model& model, const std::vector<Vector3d>& places) {
+  for (const Vector3d& place : places) EXPECT_LT(distance_at(model, place), 0) << place.transpose();
+}
+
+void expect_outside(const Model& model, const std::vector<Vector3d>& places) {
+  for (const Vector3d& place : places) EXPECT_GT(distance_at(model, place), 0) << place.transpose();
+}
+
 TEST(OpenScadSweep, SolidsAreMappedAsOthers) {
   const Model model = parse_openscad(
       "mirror([0, 0, 1]) scale([2, 1, 3]) linear_extrude(1) polygon([[0, 0], [1, 0], [0, 1]]);"
       "translate([9, 0, 0]) scale(2) linear_extrude(height = 1, center = true) polygon([[0, 0], [1, 0], [0, 1]]);");
-  const auto is_in = [&](double x, double y, double z) {
-    return implicit_value(*model.tree, model.primitives, test::single({x, y, z}))[0] < 0;
-  };
-  EXPECT_TRUE(is_in(1.9, 0.01, -2.9));
-  EXPECT_FALSE(is_in(1.9, 0.01, 0.1));
-  EXPECT_FALSE(is_in(0.1, 1.01, -1));
-  EXPECT_TRUE(is_in(9.1, 1.8, 0.9));
+  expect_inside(model, {{1.9, 0.01, -2.9}, {9.1, 1.8, 0.9}});
+  expect_outside(model, {{1.9, 0.01, 0.1}, {0.1, 1.01, -1}});
   EXPECT_NE(test::refusal("scale([1, 2, 1]) linear_extrude(1) circle(1);").find("keeps round solids round"),
             std::string::npos);
   const Model sheared = parse_openscad("translate([1, 0, 0]) scale([2, 1, 1]) rotate(45) linear_extrude(1) square(1);");
   EXPECT_EQ(sheared.primitives.size(), 1U);
-  for (const auto& [place, expected] : std::vector<std::pair<Vector3d, bool>>{{{1, 1.4, 0.5}, true},
-                                                                              {{2.3, 0.7, 0.5}, true},
-                                                                              {{2.3, 0.7, 1.1}, false},
-                                                                              {{2.3, 1.1, 0.5}, false},
-                                                                              {{-0.3, 0.7, 0.5}, true}}) {
-    EXPECT_EQ(implicit_value(*sheared.tree, sheared.primitives, test::single(place))[0] < 0, expected)
-        << place.transpose();
-  }
+  expect_inside(sheared, {{1, 1.4, 0.5}, {2.3, 0.7, 0.5}, {-0.3, 0.7, 0.5}});
+  expect_outside(sheared, {{2.3, 0.7, 1.1}, {2.3, 1.1, 0.5}});
   EXPECT_NE(test::refusal("scale([2, 1, 1]) rotate([0, 45, 0]) linear_extrude(1) square(1);").find("upright"),
             std::string::npos);
   const Primitive knob = parse_openscad("scale([2, 2, 3]) rotate_extrude() square([1, 2]);").primitives.at(0);
   EXPECT_TRUE(bounds(knob).isApprox(AlignedBox(Vector3d(-2, -2, 0), Vector3d(2, 2, 6)), 1e-12));
+  const Model sectors = parse_openscad(
+      "mirror([0, 1, 0]) rotate_extrude(angle = 30) square([2, 1]);"
+      "translate([9, 0, 0]) rotate_extrude(angle = -90) translate([1, 0]) square(1);");
+  expect_inside(sectors, {{1.5, -0.1, 0.5}, {10.4, -0.1, 0.5}});
+  expect_outside(sectors, {{1.5, 0.1, 0.5}, {1.5, -0.9, 0.5}, {10.4, 0.1, 0.5}, {8.9, -1.5, 0.5}});
   const Primitive nut = parse_openscad("linear_extrude(1) circle(1, $fn = 6);").primitives.at(0);
   EXPECT_EQ(profile_of(nut).paths.at(0).size(), 6U);
 }
@@ -304,7 +314,7 @@ TEST(OpenScadSweep, SaysWhatIsNoSweptSolid) {
       {"linear_extrude(center = true, 5) square(1);", "column 31: expected a height as the first argument"},
       {"linear_extrude(5) square([1, 2, 3]);", "a square with two sizes"},
       {"linear_extrude(-1) square(1);", "a height above 0"},
-      {"rotate_extrude(angle = 90) square(1);", "line 1, column 1: expected a full turn"},
+      {"rotate_extrude(angle = 0) square(1);", "line 1, column 1: expected an angle other than 0"},
       {"rotate_extrude()\n  circle(1);",
        "line 2, column 3: expected a shape entirely to the right of the axis (x >= 0)"},
       {"rotate_extrude() translate([1, 0]) polygon([[0, 0], [1, 1], [-1, 1]]);",

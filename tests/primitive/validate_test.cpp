@@ -168,6 +168,13 @@ TEST(Validate, TakesProfilesOnOneSideOfTheAxisOnly) {
   EXPECT_EQ(refused_field(Revolution{{{tip}}}), "profile/0/0") << "touches the axis";
 }
 
+TEST(Validate, RefusesSectorsOfNoOrMoreThanAFullTurn) {
+  for (const double angle : {0.0, -90.0, 360.001, k_nan}) {
+    EXPECT_EQ(refused_field(Revolution{{{square(0, 3)}}, angle}), "angle_deg") << angle;
+  }
+  EXPECT_EQ(refused_field(Revolution{{{square(0, 3)}}, 0.001}), "");
+}
+
 TEST(Validate, RefusesFormulasThatAreNotOfXYZ) {
   EXPECT_EQ(refused_field(formula("x^2 + y^2 + z^2 - 1")), "");
   EXPECT_EQ(refused_field(formula("(x <= 0.5) ? x : 2 * x - 0.5")), "");

@@ -93,6 +93,17 @@ TEST_F(WriteBrep, TurnedArcsThatEndOnTheAxisHaveTheirVolumes) {
   }
 }
 
+TEST_F(WriteBrep, SectorsHaveTheirShareOfAFullTurn) {
+  const ClosedPath on_axis{{.point = {0, 0}}, {.point = {2, 0}}, {.point = {2, 3}}, {.point = {0, 3}}};
+  for (const double angle : {1.0, 90.0, 180.0, 200.0, 359.0}) {
+    const Revolution wedge{.profile = {.paths = {on_axis}}, .angle_deg = angle};
+    expect_solid(CsgTree::leaf(0), {turned("wedge", wedge)}, 12 * k_pi * angle / 360);
+    const Revolution bend{.profile = {.paths = {test::circle_path({2, 0}, 0.5), test::circle_path({2, 0}, 0.25)}},
+                          .angle_deg = angle};
+    expect_solid(CsgTree::leaf(0), {turned("bend", bend)}, 0.75 * k_pi * k_pi * angle / 360);
+  }
+}
+
 TEST_F(WriteBrep, SolidsWithoutExactSurfacesHaveFacets) {
   const Expression egg{.distance = "sqrt(x^2 + y^2 + 4 * z^2) - 1",
                        .bounds = AlignedBox(Eigen::Vector3d(-1.2, -1.2, -0.6), Eigen::Vector3d(1.2, 1.2, 0.6))};

@@ -62,23 +62,24 @@ Profile any_profile(const Draw& draw) {
   return profile;
 }
 
-/// A ring, or a solid around the axis with a flat or pointed bottom.
+/// A ring, or a solid around the axis with a flat or pointed bottom; a full turn or a sector.
 template <class Draw>
 Revolution any_revolution(const Draw& draw) {
+  const double angle_deg = draw(0.0, 1.0) < 0.5 ? 360.0 : draw(5.0, 355.0);
   if (draw(0.0, 1.0) < 0.5) {
     Profile ring = any_profile(draw);
     const double far = draw(0.1, 1.0) - bounds_of(ring).min().x();
     for (ClosedPath& path : ring.paths) {
       for (PathCorner& corner : path) corner.point.x() += far;
     }
-    return {ring};
+    return {ring, angle_deg};
   }
   const double low = draw(-1.0, -0.2);
   ClosedPath path{{.point = {0, low}},
                   {.point = {draw(0.3, 1.0), low + (draw(0.0, 1.0) < 0.5 ? 0.0 : draw(-0.3, 0.3))}, .bulge = 0},
                   {.point = {draw(0.3, 1.0), draw(0.0, 0.5)}, .bulge = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(0.1, 0.4)},
                   {.point = {0, draw(0.6, 1.0)}}};
-  return {{.paths = {path}}};
+  return {{.paths = {path}}, angle_deg};
 }
 
 }  // namespace cloud2csg::test

@@ -169,15 +169,26 @@ AlignedBox extrusion_bounds(const Extrusion& extrusion, const Pose& pose) {
   return box;
 }
 
-/// A ring of radius r at height z reaches z a + r sqrt(1 - a^2) along an axis of the world with cosine a to local z.
+/// Least and greatest dot product of the direction with the unit vectors of a turn from +x by the angle.
+std::pair<double, double> extent_of_turn(const Revolution& revolution, const Eigen::Vector2d& direction) {
+  const double reach = direction.norm();
+  if (is_full_turn(revolution)) return {-reach, reach};
+  const double angle = turn_of(revolution);
+  const Eigen::Vector2d start(1, 0);
+  const Eigen::Vector2d end(std::cos(angle), std::sin(angle));
+  return extent_along(segment_between(start, std::tan(angle / 4), end), direction);
+}
+
+/// A point of the profile at (r, z) reaches r t + z a along an axis of the world with cosine a to local z, where t is
+/// the extent of the turn.
 AlignedBox revolution_bounds(const Revolution& revolution, const Pose& pose) {
-  const Eigen::Vector3d local_z = pose.orientation * Eigen::Vector3d::UnitZ();
+  const Eigen::Matrix3d to_local = pose.orientation.conjugate().toRotationMatrix();
   AlignedBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    const double cosine = local_z[axis];
-    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    box.max()[axis] = pose.position[axis] + extent_along(revolution.profile, {sine, cosine}).second;
-    box.min()[axis] = pose.position[axis] + extent_along(revolution.profile, {-sine, cosine}).first;
+    const Eigen::Vector3d direction = to_local.col(axis);
+    const auto [least, most] = extent_of_turn(revolution, direction.head<2>());
+    box.max()[axis] = pose.position[axis] + extent_along(revolution.profile, {most, direction.z()}).second;
+    box.min()[axis] = pose.position[axis] + extent_along(revolution.profile, {least, direction.z()}).first;
   }
   return box;
 }

@@ -11,6 +11,7 @@
 #include "core/primitive/displacement-inl.hpp"
 #include "core/primitive/profile-inl.hpp"
 #include "core/primitive/revolved-inl.hpp"
+#include "core/primitive/shape.hpp"
 #include "core/primitive/solids-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -53,7 +54,12 @@ void run_formula(Tag tag, const Primitive& primitive, const Placement& placement
   } else if (const auto* revolution = std::get_if<Revolution>(&shape)) {
     const std::vector<ProfileEdge> edges = profile_edges(revolution->profile, true);
     using Profile = PathsProfile<Tag>;
-    run_placed(tag, Revolved<Tag, Profile>(tag, Profile(tag, edges)), placement, loop);
+    if (is_full_turn(*revolution)) {
+      run_placed(tag, Revolved<Tag, Profile>(tag, Profile(tag, edges)), placement, loop);
+    } else {
+      const std::vector<ProfileEdge> caps = profile_edges(revolution->profile, false);
+      run_placed(tag, SectorFormula<Tag>(tag, edges, caps, turn_of(*revolution)), placement, loop);
+    }
   }
 }
 

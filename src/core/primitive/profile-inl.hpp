@@ -6,6 +6,7 @@
 #define CLOUD2CSG_PRIMITIVE_PROFILE_INL
 #endif
 
+#include <cmath>
 #include <span>
 
 #include "core/primitive/placement.hpp"
@@ -155,6 +156,57 @@ class ExtrusionFormula {
  private:
   PathsProfile<Tag> profile_;
   V half_height_, zero_, one_, tiny_;
+};
+
+/// The profile turned about local z by less than a full turn. `sides` are the edges without those on the axis, `caps`
+/// all edges. In a frame whose x axis is in the middle of the sector, both caps are one.
+template <class Tag>
+class SectorFormula {
+ public:
+  using V = Lanes<Tag>;
+
+  HWY_INLINE SectorFormula(Tag tag, std::span<const ProfileEdge> sides, std::span<const ProfileEdge> caps, double angle)
+      : turned_(tag, PathsProfile<Tag>(tag, sides)),
+        cap_(tag, caps),
+        cosine_(broadcast(tag, std::cos(0.5 * angle))),
+        sine_(broadcast(tag, std::sin(0.5 * angle))),
+        zero_(broadcast(tag, 0.0)),
+        one_(broadcast(tag, 1.0)),
+        tiny_(tiny_square(tag)) {}
+
+  HWY_INLINE Field<V> at(const Vector<V>& p) const {
+    const V middle_x = p.x * cosine_ + p.y * sine_;
+    const V middle_y = p.y * cosine_ - p.x * sine_;
+    // In the plane of the nearer cap, and off it.
+    const V along = middle_x * cosine_ + absolute(middle_y) * sine_;
+    const V off = absolute(middle_y) * cosine_ - middle_x * sine_;
+    const ProfileField<V> cap = cap_.at(along, p.z);
+    const V beyond = larger(cap.distance, zero_);
+    const V squared = beyond * beyond + off * off;
+    const auto is_regular = squared > tiny_;
+    const V length = select(is_regular, square_root(squared), one_);
+    const auto is_within = zero_ >= off;
+    const V distance = select_or_zero(is_regular, select(is_within, negated(length), length));
+    const V share = select(is_within, negated(one_), one_) / length;
+    const V share_beyond = select_or_zero(is_regular, beyond * share) / cap.length;
+    const V gradient_along = share_beyond * cap.direction_r;
+    const V gradient_off = select(is_regular, off * share, one_);
+    const V gradient_x = gradient_along * cosine_ - gradient_off * sine_;
+    const V folded_y = gradient_along * sine_ + gradient_off * cosine_;
+    const V gradient_y = select(middle_y < zero_, negated(folded_y), folded_y);
+
+    const Field<V> side = turned_.at(p);
+    const auto is_side = both(is_within, side.distance >= distance);
+    return {select(is_side, side.distance, distance),
+            {select(is_side, side.gradient.x, gradient_x * cosine_ - gradient_y * sine_),
+             select(is_side, side.gradient.y, gradient_x * sine_ + gradient_y * cosine_),
+             select(is_side, side.gradient.z, share_beyond * cap.direction_z)}};
+  }
+
+ private:
+  Revolved<Tag, PathsProfile<Tag>> turned_;
+  PathsProfile<Tag> cap_;
+  V cosine_, sine_, zero_, one_, tiny_;
 };
 
 }  // namespace cloud2csg::HWY_NAMESPACE

@@ -1,6 +1,7 @@
 #include "core/primitive/shape.hpp"
 
 #include <array>
+#include <numbers>
 #include <type_traits>
 
 #include "cloud2csg/primitive.hpp"
@@ -29,6 +30,14 @@ bool is_convex(const Primitive& primitive) {
          std::visit(Overloaded{[](const Torus&) { return false; }, [](const Extrusion&) { return false; },
                                [](const Revolution&) { return false; }, [](const auto&) { return true; }},
                     primitive.shape);
+}
+
+bool is_full_turn(const Revolution& revolution) {
+  return revolution.angle_deg >= 360;
+}
+
+double turn_of(const Revolution& revolution) {
+  return revolution.angle_deg / 180 * std::numbers::pi;
 }
 
 std::vector<double> lengths_of(const Shape& shape) {

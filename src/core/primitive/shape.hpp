@@ -14,6 +14,12 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
+/// Whether a revolution has no caps: it turns by 360 degrees.
+[[nodiscard]] bool is_full_turn(const Revolution& revolution);
+
+/// In radians.
+[[nodiscard]] double turn_of(const Revolution& revolution);
+
 /// Sizes, radii and heights in the order of the struct. Empty for shapes without a fixed number of lengths.
 [[nodiscard]] std::vector<double> lengths_of(const Shape& shape);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/primitive/polytope.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -130,23 +131,10 @@ class LocalSurface {
 
   PrimitiveSurface operator()(const Extrusion& extrusion) const {
     const std::vector<ProfileSegment> segments = segments_of(extrusion.profile);
-    const Eigen::AlignedBox2d box = bounds_of(extrusion.profile);
-    const double cap_area = area_of(extrusion.profile);
     const double height = extrusion.height;
     std::vector<double> lengths(segments.size());
     std::ranges::transform(segments, lengths.begin(), [](const ProfileSegment& s) { return s.length(); });
-    const WeightedChoice side(lengths);
-    const double area = 2 * cap_area + height * side.total();
-    const auto draw = [=](RandomStream& random) {
-      if (random.uniform() * area < 2 * cap_area) {
-        const double sign = random.chance(0.5) ? 1.0 : -1.0;
-        Eigen::Vector2d place;
-        do {
-          for (int axis = 0; axis < 2; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
-        } while (!is_inside(segments, place));
-        return SurfacePoint{.position = {place.x(), place.y(), 0.5 * sign * height},
-                            .normal = sign * Vector3d::UnitZ()};
-      }
+    const auto draw = [segments, height, side = WeightedChoice(lengths)](RandomStream& random) {
       const ProfileSegment& s = segments[side.draw(random)];
       const double share = random.uniform();
       const Eigen::Vector2d place = s.at(share);
@@ -154,16 +142,26 @@ class LocalSurface {
       return SurfacePoint{.position = {place.x(), place.y(), random.uniform(-0.5, 0.5) * height},
                           .normal = {normal.x(), normal.y(), 0}};
     };
-    return {.area = area, .draw = draw};
+    return with_caps({.area = height * WeightedChoice(lengths).total(), .draw = draw}, extrusion);
   }
 
   PrimitiveSurface operator()(const Revolution& revolution) const {
-    return turned_surface(segments_of(revolution.profile), 0, 2 * pi);
+    return with_caps(turned_surface(segments_of(revolution.profile), 0, turn_of(revolution)), revolution);
   }
 
   PrimitiveSurface operator()(const Expression& /*expression*/) const { return {}; }
 
  private:
+  template <class Swept>
+  static PrimitiveSurface with_caps(PrimitiveSurface sides, const Swept& swept) {
+    std::vector<PrimitiveSurface> parts{std::move(sides)};
+    const std::vector<ProfileSegment> segments = segments_of(swept.profile);
+    for (const ProfileCap& cap : caps_of(swept)) {
+      parts.push_back(cap_surface(cap, segments, bounds_of(segments), area_of(swept.profile)));
+    }
+    return joined(std::move(parts));
+  }
+
   static SurfacePoint on_side(const Cone& cone, double slant, RandomStream& random) {
     // A ring is as long as its radius, so the square of the radius is uniform.
     const double bottom = cone.radius_bottom;
@@ -268,6 +266,47 @@ PrimitiveSurface turned_surface(std::vector<ProfileSegment> segments, double fro
     }
   };
   return {.area = area, .draw = draw};
+}
+
+std::vector<ProfileCap> caps_of(const Extrusion& extrusion) {
+  std::vector<ProfileCap> caps;
+  for (const double side : {-1.0, 1.0}) {
+    caps.push_back({.origin = 0.5 * side * extrusion.height * Vector3d::UnitZ(),
+                    .x_axis = Vector3d::UnitX(),
+                    .y_axis = Vector3d::UnitY(),
+                    .normal = side * Vector3d::UnitZ()});
+  }
+  return caps;
+}
+
+std::vector<ProfileCap> caps_of(const Revolution& revolution) {
+  if (is_full_turn(revolution)) return {};
+  const double angle = turn_of(revolution);
+  const Vector3d end(std::cos(angle), std::sin(angle), 0);
+  return {{Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitZ(), -Vector3d::UnitY()},
+          {Vector3d::Zero(), end, Vector3d::UnitZ(), Vector3d::UnitZ().cross(end)}};
+}
+
+PrimitiveSurface cap_surface(const ProfileCap& cap, std::vector<ProfileSegment> segments,
+                             const Eigen::AlignedBox2d& box, double area) {
+  const auto draw = [cap, segments = std::move(segments), box](RandomStream& random) {
+    Eigen::Vector2d place;
+    do {
+      for (int axis = 0; axis < 2; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
+    } while (!is_inside(segments, place));
+    return SurfacePoint{.position = cap.origin + place.x() * cap.x_axis + place.y() * cap.y_axis, .normal = cap.normal};
+  };
+  return {.area = area, .draw = draw};
+}
+
+PrimitiveSurface joined(std::vector<PrimitiveSurface> parts) {
+  std::vector<double> areas;
+  for (const PrimitiveSurface& part : parts) areas.push_back(part.area);
+  const WeightedChoice choice(areas);
+  const auto draw = [parts = std::move(parts), choice](RandomStream& random) {
+    return parts[choice.draw(random)].draw(random);
+  };
+  return {.area = choice.total(), .draw = draw};
 }
 
 PrimitiveSurface placed(PrimitiveSurface local, const Pose& pose) {

@@ -74,6 +74,23 @@ struct PrimitiveSurface {
 /// The surface that segments in the half-plane (r, z), r >= 0, sweep about z between two angles in radians.
 [[nodiscard]] PrimitiveSurface turned_surface(std::vector<ProfileSegment> segments, double from, double to);
 
+/// A flat end of a swept profile: where the plane of the profile is in space.
+struct ProfileCap {
+  Eigen::Vector3d origin, x_axis, y_axis;
+  Eigen::Vector3d normal;  ///< outward
+};
+
+/// Two, or none of a full turn.
+[[nodiscard]] std::vector<ProfileCap> caps_of(const Extrusion& extrusion);
+[[nodiscard]] std::vector<ProfileCap> caps_of(const Revolution& revolution);
+
+/// The part of a cap within a box in the plane of the profile, by the profile's segments and the part's area.
+[[nodiscard]] PrimitiveSurface cap_surface(const ProfileCap& cap, std::vector<ProfileSegment> segments,
+                                           const Eigen::AlignedBox2d& box, double area);
+
+/// All parts. O(log parts) a point.
+[[nodiscard]] PrimitiveSurface joined(std::vector<PrimitiveSurface> parts);
+
 /// The surface of a primitive whose own frame has this pose. `local` is in that frame; its reach must be 0.
 [[nodiscard]] PrimitiveSurface placed(PrimitiveSurface local, const Pose& pose);
 

@@ -91,7 +91,12 @@ void validate(const Primitive& primitive) {
                    validate_profile(extrusion.profile);
                    require_positive("height", extrusion.height);
                  },
-                 [](const Revolution& revolution) { validate_turned_profile(revolution.profile); },
+                 [](const Revolution& revolution) {
+                   validate_turned_profile(revolution.profile);
+                   if (!(revolution.angle_deg > 0 && revolution.angle_deg <= 360)) {
+                     refuse("angle_deg", fmt::format("above 0 and at most 360, not {}", revolution.angle_deg));
+                   }
+                 },
                  [](const Expression& expression) { validate_expression(expression); }},
       primitive.shape);
   validate_pose(primitive.pose);

@@ -220,7 +220,8 @@ Shape shape_of(const json& value, const std::string& type, const std::string& wh
   if (type == "half_space") return HalfSpace{};
   if (type == "polytope") return polytope_of(value, where);
   if (type == "extrusion") return Extrusion{.profile = profile_of(value), .height = number("height")};
-  if (type == "revolution") return Revolution{.profile = profile_of(value)};
+  if (type == "revolution")
+    return Revolution{.profile = profile_of(value), .angle_deg = value.value("angle_deg", 360.0)};
   const json& bounds = value["bounds"];
   return Expression{.distance = value["distance"].get<std::string>(),
                     .bounds = AlignedBox(vector_of(bounds[0]), vector_of(bounds[1]))};

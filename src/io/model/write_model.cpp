@@ -10,6 +10,7 @@
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/model.hpp"
 #include "core/base/files.hpp"
+#include "core/primitive/shape.hpp"
 
 // Not by nlohmann's dump(), which recurses as deep as the tree. One primitive or leaf a line is easy to edit.
 namespace cloud2csg {
@@ -72,7 +73,8 @@ std::string fields_of(const Extrusion& extrusion) {
   return fmt::format(R"({}, "height": {})", text_of(extrusion.profile), extrusion.height);
 }
 std::string fields_of(const Revolution& revolution) {
-  return text_of(revolution.profile);
+  if (is_full_turn(revolution)) return text_of(revolution.profile);
+  return fmt::format(R"({}, "angle_deg": {})", text_of(revolution.profile), revolution.angle_deg);
 }
 std::string fields_of(const Expression& expression) {
   return fmt::format(R"("distance": {}, "bounds": [{}, {}])", quoted(expression.distance),

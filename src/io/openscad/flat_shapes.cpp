@@ -147,9 +147,12 @@ Sweep sweep_of(const Arguments& call) {
     const double middle = call.flag("center", Arguments::k_by_name) ? 0.0 : 0.5 * height;
     return {.height = height, .frame = Affine3d(Eigen::Translation3d(0, 0, middle))};
   }
-  const double angle = call.number("angle", Arguments::k_by_name, 360);
-  call.require(angle >= 360 || angle <= -360, "a full turn, by an angle of 360");
-  return {.height = std::nullopt};
+  const double angle = std::clamp(call.number("angle", Arguments::k_by_name, 360), -360.0, 360.0);
+  call.require(angle != 0, "an angle other than 0");
+  Sweep sweep{.height = std::nullopt, .angle_deg = std::abs(angle)};
+  if (angle < 0 && angle > -360)
+    sweep.frame = Eigen::AngleAxisd(angle / 180 * std::numbers::pi, Eigen::Vector3d::UnitZ());
+  return sweep;
 }
 
 std::optional<Profile> flat_profile(const Arguments& call, bool is_turned) {
@@ -207,7 +210,7 @@ Shape swept(FlatShape shape, const Sweep& sweep) {
       if (std::abs(corner.point.x()) <= tolerance) corner.point.x() = 0;
     }
   }
-  return Revolution{.profile = std::move(shape.profile)};
+  return Revolution{.profile = std::move(shape.profile), .angle_deg = sweep.angle_deg};
 }
 
 }  // namespace cloud2csg::scad

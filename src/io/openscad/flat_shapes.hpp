@@ -27,10 +27,11 @@ struct FlatTree {
 /// How linear_extrude or rotate_extrude makes solids.
 struct Sweep {
   std::optional<double> height;  ///< of an extrusion
+  double angle_deg = 360;        ///< of a revolution, above 0
   Eigen::Affine3d frame = Eigen::Affine3d::Identity();
 };
 
-/// @throws Refusal also for a taper, a twist or less than a full turn
+/// @throws Refusal also for a taper, a twist or an angle of 0
 [[nodiscard]] Sweep sweep_of(const Arguments& call);
 
 /// The profile of circle, square or polygon; absent for other calls. A circle is round. In an extrusion, $fn up to 8

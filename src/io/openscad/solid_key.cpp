@@ -23,7 +23,10 @@ std::vector<double> key_of(const Primitive& primitive) {
     numbers.push_back(extrusion->height);
     add_profile(extrusion->profile);
   }
-  if (const auto* revolution = std::get_if<Revolution>(&primitive.shape)) add_profile(revolution->profile);
+  if (const auto* revolution = std::get_if<Revolution>(&primitive.shape)) {
+    numbers.push_back(revolution->angle_deg);
+    add_profile(revolution->profile);
+  }
   if (const auto* polytope = std::get_if<Polytope>(&primitive.shape)) {
     for (const Plane& plane : polytope->planes) {
       add(plane.normal);

@@ -227,6 +227,15 @@ std::optional<Primitive> sheared(const Shape& shape, const Affine3d& frame) {
                    .pose = {.position = frame.translation(), .orientation = nearest_rotation(axes)}};
 }
 
+/// A mirror under which the shape is the same: for an extrusion that of z, for a sector the one through its middle, for
+/// all others that of x.
+Eigen::Matrix3d mirror_of(const Shape& shape) {
+  if (std::holds_alternative<Extrusion>(shape)) return Vector3d(1, 1, -1).asDiagonal();
+  const auto* revolution = std::get_if<Revolution>(&shape);
+  if (revolution == nullptr || is_full_turn(*revolution)) return Vector3d(-1, 1, 1).asDiagonal();
+  return Eigen::AngleAxisd(turn_of(*revolution), Vector3d::UnitZ()) * Vector3d(1, -1, 1).asDiagonal();
+}
+
 }  // namespace
 
 double round_radius(const Arguments& call) {
@@ -307,8 +316,7 @@ Primitive place_solid(const Shape& shape, const Affine3d& frame, std::size_t off
         fmt::format("expected a scaling that keeps round solids round and upright, found {:.6g}, {:.6g}, {:.6g}",
                     across, scale.y(), along));
   }
-  // Extrusions are symmetric in z, all others in x.
-  if (axes.determinant() < 0) axes.col(std::holds_alternative<Extrusion>(shape) ? 2 : 0) *= -1;
+  if (axes.determinant() < 0) axes = axes * mirror_of(shape);
   placed.pose.orientation = nearest_rotation(axes);
   return placed;
 }

@@ -38,10 +38,10 @@ constexpr std::array k_cadquery_functions{
                                      cq.Vector(0, 0, height)) for outline, *holes in regions]
     return placed(solids[0].fuse(*solids[1:]) if solids[1:] else solids[0], position, axis, degrees)
 )"},
-    script::Function{"= revolution(", R"(def revolution(regions, position, axis=(0, 0, 1), degrees=0):
+    script::Function{"= revolution(", R"(def revolution(regions, angle, position, axis=(0, 0, 1), degrees=0):
     def place(x, y):
         return cq.Vector(x, 0, y)
-    solids = [cq.Solid.revolve(path(outline, place), [path(hole, place) for hole in holes], 360,
+    solids = [cq.Solid.revolve(path(outline, place), [path(hole, place) for hole in holes], angle,
                                cq.Vector(0, 0, 0), cq.Vector(0, 0, 1)) for outline, *holes in regions]
     return placed(solids[0].fuse(*solids[1:]) if solids[1:] else solids[0], position, axis, degrees)
 )"},
@@ -167,9 +167,12 @@ class SolidWriter {
   }
   std::string operator()(const brep::SweptProfile& swept) {
     add("regions", script::regions_text(swept.regions));
-    if (!swept.height) return "revolution";
-    add("height", number_(*swept.height));
-    return "extrusion";
+    if (swept.height) {
+      add("height", number_(*swept.height));
+      return "extrusion";
+    }
+    add("angle", script::NumberFormat(1.0)(swept.angle_deg));
+    return "revolution";
   }
   std::string operator()(const brep::Facets& facets) {
     add("shells", script::shells_text(facets));

@@ -36,10 +36,10 @@ constexpr std::array k_freecad_functions{
     faces = faces_of(regions, lambda x, y: FreeCAD.Vector(x, y, -height / 2))
     return swept(label, [face.extrude(FreeCAD.Vector(0, 0, height)) for face in faces], position, rotation)
 )"},
-    script::Function{" = revolution(", R"(def revolution(label, regions, position, rotation=(0, 0, 0, 1)):
+    script::Function{" = revolution(", R"(def revolution(label, regions, angle, position, rotation=(0, 0, 0, 1)):
     faces = faces_of(regions, lambda x, y: FreeCAD.Vector(x, 0, y))
     axis = FreeCAD.Vector(0, 0, 1)
-    return swept(label, [face.revolve(FreeCAD.Vector(0, 0, 0), axis, 360) for face in faces], position, rotation)
+    return swept(label, [face.revolve(FreeCAD.Vector(0, 0, 0), axis, angle) for face in faces], position, rotation)
 )"},
     script::Function{" = polyhedron(", R"(def polyhedron(label, shells, position, rotation=(0, 0, 0, 1)):
     shape = None
@@ -169,7 +169,7 @@ Making making_of(const brep::KernelSolid& solid, const std::string& lists) {
             return {"torus", fmt::format("major={}, minor={}", exact(torus.major_radius), exact(torus.minor_radius))};
           },
           [&lists](const brep::SweptProfile& swept) -> Making {
-            if (!swept.height) return {"revolution", lists};
+            if (!swept.height) return {"revolution", fmt::format("{}, angle={}", lists, exact(swept.angle_deg))};
             return {"extrusion", fmt::format("{}, height={}", lists, exact(*swept.height))};
           },
           [&lists](const brep::Facets& /*facets*/) -> Making {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/primitive/profile.hpp"
+#include "core/primitive/shape.hpp"
 #include "io/scripts/script_solids.hpp"
 
 namespace cloud2csg::openscad {
@@ -84,7 +85,10 @@ class Body {
                        value("height", extrusion.height), profile);
   }
   std::string operator()(const Revolution& revolution) const {
-    return "rotate_extrude(convexity = 10) " + profile_text(revolution.profile);
+    const std::string profile = profile_text(revolution.profile);
+    if (is_full_turn(revolution)) return "rotate_extrude(convexity = 10) " + profile;
+    const std::string angle = parameters_.add("angle", script::NumberFormat(1.0)(revolution.angle_deg));
+    return fmt::format("rotate_extrude(angle = {}, convexity = 10) {}", angle, profile);
   }
   std::string operator()(const Polytope& /*polytope*/) const { return facets(); }
   std::string operator()(const Expression& /*expression*/) const { return facets(); }
@@ -169,9 +173,10 @@ Eigen::Vector3d rotation_angles(const Primitive& primitive) {
   const Eigen::Matrix3d matrix = primitive.pose.orientation.toRotationMatrix();
   if (primitive.displacement) return euler_angles(matrix);
   if (std::holds_alternative<Sphere>(primitive.shape)) return Eigen::Vector3d::Zero();
+  const auto* revolution = std::get_if<Revolution>(&primitive.shape);
   const bool is_round =
       std::holds_alternative<Cylinder>(primitive.shape) || std::holds_alternative<Cone>(primitive.shape) ||
-      std::holds_alternative<Torus>(primitive.shape) || std::holds_alternative<Revolution>(primitive.shape);
+      std::holds_alternative<Torus>(primitive.shape) || (revolution != nullptr && is_full_turn(*revolution));
   return is_round ? axis_angles(matrix.col(2)) : euler_angles(matrix);
 }
 

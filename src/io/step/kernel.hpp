@@ -27,6 +27,7 @@ struct Facets {
 struct SweptProfile {
   std::vector<ProfileRegion> regions;
   std::optional<double> height;
+  double angle_deg = 360;  ///< of a Revolution
 };
 
 struct KernelSolid {
@@ -105,7 +106,7 @@ class KernelHost {
 /// Symbols of the module's two functions. Only equal versions of module and library are compatible.
 inline constexpr const char* k_kernel_version_symbol = "cloud2csg_kernel_version";
 inline constexpr const char* k_kernel_run_symbol = "cloud2csg_kernel_run";
-inline constexpr int k_kernel_version = 3;
+inline constexpr int k_kernel_version = 4;
 using KernelVersion = int (*)();
 /// @throws Cancelled, and what the host throws
 using KernelRun = void (*)(const KernelJob* job, const KernelHost* host, KernelResult* result);

@@ -50,7 +50,7 @@ KernelSolid kernel_solid(const Primitive& primitive, const AlignedBox& extent, c
         } else if constexpr (std::is_same_v<Type, Extrusion>) {
           return {.shape = SweptProfile{regions_of(shape.profile), shape.height}, .pose = primitive.pose};
         } else if constexpr (std::is_same_v<Type, Revolution>) {
-          return {.shape = SweptProfile{regions_of(shape.profile), {}}, .pose = primitive.pose};
+          return {.shape = SweptProfile{regions_of(shape.profile), {}, shape.angle_deg}, .pose = primitive.pose};
         } else if constexpr (std::is_same_v<Type, Expression>) {
           return {.shape = Facets(), .pose = primitive.pose};
         } else {

@@ -173,7 +173,8 @@ bool is_turned_around_axis(const Primitive& primitive) {
   if (primitive.displacement) return false;
   return std::visit(Overloaded{[](const Cylinder&) { return true; }, [](const Cone&) { return true; },
                                [](const Torus&) { return true; }, [](const HalfSpace&) { return true; },
-                               [](const Revolution&) { return true; }, [](const auto&) { return false; }},
+                               [](const Revolution& revolution) { return is_full_turn(revolution); },
+                               [](const auto&) { return false; }},
                     primitive.shape);
 }
 

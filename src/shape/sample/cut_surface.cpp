@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/primitive/profile.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -167,45 +168,31 @@ class CutSurface {
     return turned({segment_between(below, 1, above), segment_between(above, 1, below)});
   }
 
-  PrimitiveSurface operator()(const Revolution& revolution) const { return turned(segments_of(revolution.profile)); }
+  PrimitiveSurface operator()(const Revolution& revolution) const {
+    return with_caps(turned(segments_of(revolution.profile), turn_of(revolution)), revolution);
+  }
 
   PrimitiveSurface operator()(const Polytope& polytope) const { return of_triangles(triangles_of(polytope)); }
 
   PrimitiveSurface operator()(const Extrusion& extrusion) const {
     const std::vector<ProfileSegment> segments = segments_of(extrusion.profile);
     const Vector2d middle = centre_.head<2>();
-    const AlignedBox2d whole = bounds_of(extrusion.profile);
-    const AlignedBox2d box =
-        whole.intersection(AlignedBox2d(middle - Vector2d::Constant(radius_), middle + Vector2d::Constant(radius_)));
     const double end = 0.5 * extrusion.height;
     const double lower = std::max(-end, centre_.z() - radius_);
     const double upper = std::min(end, centre_.z() + radius_);
-    const double cap_area = box.isEmpty()         ? 0
-                            : box.contains(whole) ? area_of(extrusion.profile)
-                                                  : area_within(segments, box);
     const std::vector<ProfileSegment> sides = near(segments, middle, radius_);
     std::vector<double> areas;
-    for (const double z : {-end, end}) areas.push_back(std::abs(z - centre_.z()) <= radius_ ? cap_area : 0);
     for (const ProfileSegment& side : sides) areas.push_back(side.length() * std::max(upper - lower, 0.0));
     const WeightedChoice choice(areas);
-    const auto draw = [=](RandomStream& random) {
-      const std::size_t chosen = choice.draw(random);
-      if (chosen < 2) {
-        const double sign = chosen == 0 ? -1 : 1;
-        Vector2d place;
-        do {
-          for (int axis = 0; axis < 2; ++axis) place[axis] = random.uniform(box.min()[axis], box.max()[axis]);
-        } while (!is_inside(segments, place));
-        return SurfacePoint{.position = {place.x(), place.y(), sign * end}, .normal = sign * Vector3d::UnitZ()};
-      }
-      const ProfileSegment& side = sides[chosen - 2];
+    const auto draw = [sides, choice, lower, upper](RandomStream& random) {
+      const ProfileSegment& side = sides[choice.draw(random)];
       const double share = random.uniform();
       const Vector2d place = side.at(share);
       const Vector2d normal = side.normal(share);
       return SurfacePoint{.position = {place.x(), place.y(), random.uniform(lower, upper)},
                           .normal = {normal.x(), normal.y(), 0}};
     };
-    return {.area = choice.total(), .draw = draw};
+    return with_caps({.area = choice.total(), .draw = draw}, extrusion);
   }
 
   /// Both are unbounded.
@@ -213,13 +200,38 @@ class CutSurface {
   PrimitiveSurface operator()(const Expression& /*expression*/) const { return {}; }
 
  private:
-  /// What a profile's segments sweep when they turn about z.
-  [[nodiscard]] PrimitiveSurface turned(std::vector<ProfileSegment> segments) const {
+  /// What a profile's segments sweep when they turn about z from +x by the angle.
+  [[nodiscard]] PrimitiveSurface turned(std::vector<ProfileSegment> segments, double angle = 2 * pi) const {
     const double off = std::hypot(centre_.x(), centre_.y());
-    const double middle = std::atan2(centre_.y(), centre_.x());
     const double half = off > radius_ ? std::asin(radius_ / off) : pi;
     // Turned into one half-plane, the ball becomes a disc.
-    return turned_surface(near(std::move(segments), Vector2d(off, centre_.z()), radius_), middle - half, middle + half);
+    segments = near(std::move(segments), Vector2d(off, centre_.z()), radius_);
+    const double middle = std::atan2(centre_.y(), centre_.x());
+    if (angle >= 2 * pi) return turned_surface(std::move(segments), middle - half, middle + half);
+    const double from_middle = std::remainder(middle - 0.5 * angle, 2 * pi);
+    if (std::abs(from_middle) + half > pi) return turned_surface(std::move(segments), 0, angle);
+    const double from = std::max(0.0, 0.5 * angle + from_middle - half);
+    const double to = std::min(angle, 0.5 * angle + from_middle + half);
+    return turned_surface(std::move(segments), from, std::max(from, to));
+  }
+
+  /// The parts of a swept profile's ends in the ball's box, and the sides.
+  template <class Swept>
+  [[nodiscard]] PrimitiveSurface with_caps(PrimitiveSurface sides, const Swept& swept) const {
+    std::vector<PrimitiveSurface> parts{std::move(sides)};
+    const std::vector<ProfileSegment> segments = segments_of(swept.profile);
+    const AlignedBox2d whole = bounds_of(segments);
+    for (const ProfileCap& cap : caps_of(swept)) {
+      const Vector3d arm = centre_ - cap.origin;
+      if (std::abs(cap.normal.dot(arm)) > radius_) continue;
+      const Vector2d middle(cap.x_axis.dot(arm), cap.y_axis.dot(arm));
+      const Vector2d reach = Vector2d::Constant(radius_);
+      const AlignedBox2d box = whole.intersection(AlignedBox2d(middle - reach, middle + reach));
+      if (box.isEmpty()) continue;
+      const double area = box.contains(whole) ? area_of(swept.profile) : area_within(segments, box);
+      parts.push_back(cap_surface(cap, segments, box, area));
+    }
+    return joined(std::move(parts));
   }
 
   [[nodiscard]] PrimitiveSurface of_triangles(std::vector<Triangle> triangles) const {

@@ -59,8 +59,8 @@ class FaceOfWires:
         return Shape(solids.extrusion(self.wires, direction.p[2]), None)
 
     def revolve(self, base, axis, angle):
-        assert (base.p, axis.p, angle) == ((0, 0, 0), (0, 0, 1), 360)
-        return Shape(solids.revolution(self.wires), None)
+        assert (base.p, axis.p) == ((0, 0, 0), (0, 0, 1))
+        return Shape(solids.revolution(self.wires, angle), None)
 
 
 def Face(outline):

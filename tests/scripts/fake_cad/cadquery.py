@@ -80,8 +80,8 @@ class Solid:
 
     @staticmethod
     def revolve(outerWire, innerWires, angleDegrees, axisStart, axisEnd):
-        assert angleDegrees == 360 and (axisStart.p, axisEnd.p) == (ORIGIN.p, UP.p)
-        return Shape(solids.revolution([outerWire, *innerWires]))
+        assert (axisStart.p, axisEnd.p) == (ORIGIN.p, UP.p)
+        return Shape(solids.revolution([outerWire, *innerWires], angleDegrees))
 
     @staticmethod
     def makeSolid(shell):

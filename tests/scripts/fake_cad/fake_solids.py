@@ -158,8 +158,12 @@ def extrusion(wires, height):
     return lambda p: low <= p[2] <= low + height and is_in_paths(paths, p[0], p[1])
 
 
-def revolution(wires):
-    """About z, of wires in the plane of x and z."""
+def revolution(wires, degrees):
+    """About z from x towards y, of wires in the plane of x and z."""
     assert all(y == 0 and x >= 0 for wire in wires for x, y, _ in wire)
     paths = [[(x, z) for x, _, z in wire] for wire in wires]
-    return lambda p: is_in_paths(paths, math.hypot(p[0], p[1]), p[2])
+
+    def inside(p):
+        turn = math.degrees(math.atan2(p[1], p[0])) % 360
+        return turn <= degrees and is_in_paths(paths, math.hypot(p[0], p[1]), p[2])
+    return inside

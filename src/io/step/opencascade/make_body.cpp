@@ -42,6 +42,7 @@
 #include <gp_Quaternion.hxx>
 #include <gp_Trsf.hxx>
 #include <map>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -328,20 +329,30 @@ TopoDS_Wire wire_of(const std::vector<ProfileSegment>& path, const PlaceOf& plac
   return wire.Wire();
 }
 
+double angle_of(const SweptProfile& swept) {
+  return swept.angle_deg / 180 * std::numbers::pi;
+}
+
+TopoDS_Shape swept_solid(const TopoDS_Face& face, const SweptProfile& swept) {
+  if (swept.height) return BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, *swept.height)).Shape();
+  const gp_Ax1 axis(gp_Pnt(0, 0, 0), gp_Dir(0, 0, -1));
+  if (swept.angle_deg < 360) return BRepPrimAPI_MakeRevol(face, axis, angle_of(swept)).Shape();
+  return BRepPrimAPI_MakeRevol(face, axis).Shape();
+}
+
 Bodies bodies_of(const SweptProfile& swept, const Pose& pose) {
   const double half = 0.5 * swept.height.value_or(0);
-  // A revolved face looks along -y, into the turn.
+  // A revolved face looks along -y, into the turn, which starts at the end of a sector and runs backwards.
+  const double angle = swept.angle_deg < 360 ? angle_of(swept) : 0;
+  const Eigen::Vector2d start(std::cos(angle), std::sin(angle));
   const PlaceOf place = [&](const Eigen::Vector2d& p) {
-    return swept.height ? gp_Pnt(p.x(), p.y(), -half) : gp_Pnt(p.x(), 0, p.y());
+    return swept.height ? gp_Pnt(p.x(), p.y(), -half) : gp_Pnt(p.x() * start.x(), p.x() * start.y(), p.y());
   };
   Bodies bodies;
   for (const ProfileRegion& region : swept.regions) {
     BRepBuilderAPI_MakeFace face(wire_of(region.outline, place, !swept.height), true);
     for (const auto& hole : region.holes) face.Add(wire_of(hole, place, !swept.height));
-    const gp_Ax1 axis(gp_Pnt(0, 0, 0), gp_Dir(0, 0, -1));
-    const TopoDS_Shape solid = swept.height ? BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0, 0, 2 * half)).Shape()
-                                            : BRepPrimAPI_MakeRevol(face.Face(), axis).Shape();
-    bodies.push_back(body_of(placed(solid, pose)));
+    bodies.push_back(body_of(placed(swept_solid(face.Face(), swept), pose)));
   }
   return bodies;
 }
