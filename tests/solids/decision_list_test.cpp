@@ -70,7 +70,6 @@ TermPart any_profile() {
   // Extrusions end at caps, not beyond the part.
   if (family.chart.is_turned) {
     part.range = any_range(family.slabs.count());
-    part.is_sector = family.is_sector(part.range);
   } else {
     part.range = any_range(family.slabs.count() - 2);
     part.range = {part.range.first + 1, part.range.last + 1};

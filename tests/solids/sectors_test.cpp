@@ -76,6 +76,21 @@ TEST(SectorEnds, TakePlanesAndBendsThatGoOnButNoOthers) {
 }
 
 /// A piece beside another about the same axis may reach over the other's end, but not over the first end.
+/// A pipe's points near its start lie on the bend, too.
+TEST(SectorEnds, AreWhereAPipeOfThatThicknessGoesOn) {
+  const Bend made = bend(-4, 94, 1000);
+  const auto pipe = [](double radius, const Eigen::Vector3d& position, const Eigen::Vector3d& axis) {
+    DetectedSurface found;
+    found.surface = {.type = SurfaceType::cylinder, .position = position, .axis = axis, .radius = radius};
+    return found;
+  };
+  const std::vector<double> ends = ends_of(made, {pipe(0.5, {3, -7, 0}, {0, 1, 0}), pipe(0.3, {7, 3, 0}, {1, 0, 0})});
+  ASSERT_EQ(ends.size(), 2U);
+  EXPECT_NEAR(ends[0], 0, 1e-9);
+  EXPECT_NEAR(ends[1], 94, 1) << "a thinner pipe";
+  EXPECT_NEAR(ends_of(made, {pipe(0.5, {0, 3, -7}, {0, 0, 1})})[1], 94, 1) << "a pipe across the bend";
+}
+
 TEST(SectorEnds, TheFirstIsInAGapOfAll) {
   Bend one = bend(0, 90, 1000);
   Bend other = bend(45, 135, 500);

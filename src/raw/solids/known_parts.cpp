@@ -13,6 +13,7 @@
 
 #include "core/geometry/subset.hpp"
 #include "core/primitive/profile.hpp"
+#include "core/primitive/surface_points.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -243,6 +244,7 @@ class SurfaceList {
         add_turned_line(s);
       }
     }
+    for (const ProfileCap& cap : caps_of(revolution)) add_plane(cap.normal, 0);
   }
   void operator()(const Expression& /*expression*/) {}
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "core/geometry/subset.hpp"
 
@@ -80,7 +81,15 @@ bool goes_on_at(const Surface& torus, const Vector3d& place, double minor_radius
   return off < k_share * minor_radius && std::abs(torus.minor_radius - minor_radius) < k_share * minor_radius;
 }
 
-/// Where a surface is likely to end: along planes through the axis, and where another bend goes on.
+/// Where a bend ends and a straight pipe goes on: at its nearest point to the bend's middle. Absent for other surfaces.
+std::optional<Vector3d> start_of_pipe(const Surface& torus, const Surface& pipe) {
+  if (torus.type != SurfaceType::torus || pipe.type != SurfaceType::cylinder) return std::nullopt;
+  if (std::abs(pipe.axis.dot(torus.axis)) > k_gap) return std::nullopt;
+  const Vector3d start = pipe.position + pipe.axis.dot(torus.position - pipe.position) * pipe.axis;
+  return goes_on_at(torus, start, pipe.radius) ? std::optional(start) : std::nullopt;
+}
+
+/// Where a surface is likely to end: along planes through the axis, and where another bend or a pipe goes on.
 std::vector<double> likely_ends(const Pose& frame, const Surface& surface, std::span<const DetectedSurface> surfaces,
                                 double tolerance) {
   std::vector<double> likely;
@@ -92,6 +101,8 @@ std::vector<double> likely_ends(const Pose& frame, const Surface& surface, std::
     if (s.surface.type == SurfaceType::plane && is_through_axis) {
       const double angle = angle_of(Vector2d(-axis.y(), axis.x()));
       likely.insert(likely.end(), {angle, wrapped(angle + std::numbers::pi)});
+    } else if (const std::optional<Vector3d> start = start_of_pipe(surface, s.surface)) {
+      likely.push_back(angle_of(frame.to_local(*start).head<2>()));
     } else if (are_bends && place.head<2>().norm() > tolerance) {
       for (const double side : {1.0, -1.0}) {
         const Vector2d towards = side * place.head<2>().normalized();

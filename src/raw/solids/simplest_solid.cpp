@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/primitive/profile.hpp"
+#include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -153,7 +154,7 @@ Primitive simplest(const Primitive& solid) {
   }
   const auto* extrusion = std::get_if<Extrusion>(&solid.shape);
   const auto* revolution = std::get_if<Revolution>(&solid.shape);
-  if (extrusion == nullptr && revolution == nullptr) return solid;
+  if (extrusion == nullptr && (revolution == nullptr || !is_full_turn(*revolution))) return solid;
   const Profile& profile = extrusion != nullptr ? extrusion->profile : revolution->profile;
   if (profile.paths.size() != 1) return solid;
   const std::vector<ProfileSegment> sides = segments_of(profile.paths[0]);

@@ -139,7 +139,6 @@ PricedTerm best_profile(const TermSpace& space, std::uint32_t index, const Gains
     }
     TermPart part{.kind = PartKind::profile, .family = index, .range = interval.range};
     part.faces = choose_faces(family.chart.drawing, face_gains, k_segment_price * costs.leaf / unit, run);
-    part.is_sector = family.is_sector(interval.range);
     part.segments = segments_of(family.chart.drawing, part.faces);
     if (part.segments == 0) continue;
     part.bare_leaves = size * family.bare_price * border_price(family.chart.drawing, part.faces);
@@ -273,7 +272,6 @@ double cost_of(const Term& term, const TermCosts& costs) {
   double leaves = 0;
   for (const TermPart& part : term.parts) {
     leaves += price_of_segments(part.segments) + part.bare_leaves;
-    leaves += part.is_sector ? 1.0 : 0.0;
     leaves += (part.is_known ? costs.known : 1.0) + price_of_planes(part.planes.size());
   }
   return leaves * costs.leaf;

@@ -99,7 +99,6 @@ struct TermPart {
   FaceSet faces = {};        ///< for a profile
   std::size_t segments = 0;  ///< of the profile
   double bare_leaves = 0;    ///< price of a profile's surfaces where no points are
-  bool is_sector = false;    ///< of a revolution
   bool is_inverted = false;  ///< the outside
   bool is_known = false;
   friend bool operator==(const TermPart&, const TermPart&) = default;

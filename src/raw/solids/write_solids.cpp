@@ -23,7 +23,6 @@
 namespace cloud2csg {
 namespace {
 
-constexpr double k_same_angle = 1e-9;
 constexpr double k_most_overshoot = 0.01;  // in diagonals of the bounds, which are far out
 
 struct Span {
@@ -143,36 +142,21 @@ Primitive extrusion_solid(const Pose& frame, Profile profile, const Span& span) 
           .pose = {.position = frame.position + frame.orientation * place, .orientation = frame.orientation}};
 }
 
-/// About the frame's axis from angle `low` to `high`, at most half a turn; wide and high enough for the turned outline.
-Primitive wedge_solid(const Pose& frame, const Profile& outline, double low, double high) {
-  constexpr double k_more = 0.05;  // of the radius
-  const Eigen::AlignedBox2d box = bounds_of(outline);
-  const double radius = (1 + k_more) * box.max().x();
-  const double step = high - low > std::numbers::pi / 2 + k_same_angle ? 0.5 * (high - low) : high - low;
-  ClosedPath path;
-  const auto add = [&path](double angle, double distance) {
-    path.push_back({.point = distance * Eigen::Vector2d(std::cos(angle), std::sin(angle))});
-  };
-  if (high - low < std::numbers::pi - k_same_angle) add(low, 0);
-  add(low, radius);
-  for (double angle = low + 0.5 * step; angle < high; angle += step) add(angle, radius / std::cos(0.5 * step));
-  add(high, radius);
-  const double more = k_more * radius;
-  return simplest(extrusion_solid(frame, {.paths = {path}}, {box.min().y() - more, box.max().y() + more}));
-}
-
-/// Its local origin is in the middle of the profile.
-Primitive profile_solid(const Chart& chart, const FaceSet& faces, const Span& span) {
-  Profile profile = outline_of(chart.drawing, faces);
-  if (!chart.is_turned) return extrusion_solid(chart.frame, std::move(profile), span);
+/// Turned by all of the range's angles. Its local origin is in the middle of the profile.
+Primitive revolution_solid(const ProfileFamily& family, Profile profile, BinRange range) {
   const double middle = bounds_of(profile).center().y();
   for (ClosedPath& path : profile.paths) {
     for (PathCorner& corner : path) corner.point.y() -= middle;
   }
-  const Eigen::Vector3d up = chart.frame.orientation * Eigen::Vector3d::UnitZ();
-  return {.id = {},
-          .shape = Revolution{std::move(profile)},
-          .pose = {.position = chart.frame.position + middle * up, .orientation = chart.frame.orientation}};
+  const Pose& frame = family.chart.frame;
+  Revolution revolution{std::move(profile)};
+  Pose pose{.position = frame.to_world({0, 0, middle}), .orientation = frame.orientation};
+  if (family.is_sector(range)) {
+    const Span turn = span_of(family.slabs, range, {}, 0);
+    revolution.angle_deg = (turn.high - turn.low) / std::numbers::pi * 180;
+    pose.orientation = pose.orientation * Eigen::AngleAxisd(turn.low, Eigen::Vector3d::UnitZ());
+  }
+  return {.id = {}, .shape = std::move(revolution), .pose = pose};
 }
 
 /// Solids that add to the part end with it. Solids that subtract reach beyond all those.
@@ -186,10 +170,12 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
     return within(rule, span_of(bins, part.range, {}, most), wanted, origin, axis);
   };
   if (part.kind == PartKind::profile) {
-    const Chart& chart = space.profiles[part.family].chart;
-    const Pose& frame = chart.frame;
-    return simplest(
-        profile_solid(chart, part.faces, span_along(frame.position, frame.orientation * Eigen::Vector3d::UnitZ())));
+    const ProfileFamily& family = space.profiles[part.family];
+    Profile outline = outline_of(family.chart.drawing, part.faces);
+    if (family.chart.is_turned) return simplest(revolution_solid(family, std::move(outline), part.range));
+    const Pose& frame = family.chart.frame;
+    const Span span = span_along(frame.position, frame.orientation * Eigen::Vector3d::UnitZ());
+    return simplest(extrusion_solid(frame, std::move(outline), span));
   }
   const Surface& surface = space.revolved[part.family].surface;
   const bool has_ends = surface.type == SurfaceType::cylinder || surface.type == SurfaceType::cone;
@@ -226,31 +212,14 @@ class SolidWriter {
   }
 
   /// The part as if it was not inverted.
-  WrittenTerm write(const TermSpace& space, TermPart part, const Overshoots& overshoots, bool adds) {
-    if (!part.is_sector) {
-      const PrimitiveIndex solid = add(space, part, overshoots, adds);
-      return {.tree = CsgTree::leaf(solid), .reach = bounds(solids[solid])};
-    }
-    const ProfileFamily& family = space.profiles[part.family];
-    const double low = family.slabs.edges[part.range.first];
-    const double high = family.slabs.edges[part.range.last + 1];
-    part.range = {0, family.slabs.count() - 1};
-    part.is_sector = false;
-    part.bare_leaves = 0;  // sectors share the revolution
-    const WrittenTerm sector = write(space, part, overshoots, adds);
-    const Pose& frame = family.chart.frame;
-    const Profile outline = outline_of(family.chart.drawing, part.faces);
-    const bool is_large = high - low > std::numbers::pi + k_same_angle;
-    const Primitive wedge = is_large ? wedge_solid(frame, outline, high, low + 2 * std::numbers::pi)
-                                     : wedge_solid(frame, outline, low, high);
-    const CsgTree leaf = CsgTree::leaf(add(wedge, "wedge"));
-    if (is_large) return {.tree = subtract(sector.tree, leaf), .reach = sector.reach};
-    return {.tree = intersect(sector.tree, leaf), .reach = sector.reach.intersection(bounds(wedge))};
+  WrittenTerm write(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
+    const PrimitiveIndex solid = add(space, part, overshoots, adds);
+    return {.tree = CsgTree::leaf(solid), .reach = bounds(solids[solid])};
   }
 
-  /// @returns its index. Its id is the name, or else its type, and a number.
-  PrimitiveIndex add(Primitive solid, const std::string& name = "") {
-    solid.id = new_id(name.empty() ? std::string(type_name(solid.shape)) : name);
+  /// @returns its index. Its id is its type and a number.
+  PrimitiveIndex add(Primitive solid) {
+    solid.id = new_id(std::string(type_name(solid.shape)));
     solids.push_back(std::move(solid));
     return static_cast<PrimitiveIndex>(solids.size() - 1);
   }
