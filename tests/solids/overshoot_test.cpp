@@ -83,6 +83,22 @@ TEST(Overshoot, SolidsThatTouchOverlapAfterwards) {
   expect_box(bounds(solids[1]), {-1, -1, 1 - k_percent}, {1, 1, 3});
 }
 
+/// The bend moves first, and the bar then shares no face with it any more.
+TEST(Overshoot, ABendReachesIntoTheBarThatGoesOn) {
+  const ClosedPath square{{.point = {1.5, -0.5}}, {.point = {2.5, -0.5}}, {.point = {2.5, 0.5}}, {.point = {1.5, 0.5}}};
+  const Revolution quarter{.profile = {.paths = {square}}, .angle_deg = 90};
+  const Primitive bend = test::placed("bend", quarter, {0, 0, 0});
+  Primitive bar = test::placed("bar", Box{{1, 1, 2}}, {2, -1, 0});
+  bar.pose.orientation = Eigen::AngleAxisd(std::acos(-1) / 2, Vector3d::UnitX());
+  const AlignedBox part = bounds(bend).merged(bounds(bar));
+  const CsgTree tree = unite(CsgTree::leaf(0), CsgTree::leaf(1));
+  const PrimitiveSet solids = with_overshoots({bend, bar}, tree, 0, part);
+  const double turn = std::get<Revolution>(solids[0].shape).angle_deg - 90;
+  EXPECT_NEAR(turn / 180 * std::acos(-1) * 2.5, 0.01 * part.diagonal().norm(), 1e-9);
+  EXPECT_NEAR(bounds(solids[0]).min().x(), 0, 1e-9) << "the other end is free";
+  EXPECT_EQ(std::get<Box>(solids[1].shape).size.z(), 2);
+}
+
 TEST(Overshoot, GivenSolidsStay) {
   const PrimitiveSet given{test::placed("plate", Box{{8, 6, 2}}, {0, 0, 0}),
                            test::placed("bore", Cylinder{.radius = 1, .height = 2}, {1, 1, 0})};

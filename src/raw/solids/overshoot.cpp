@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include "core/geometry/boxes.hpp"
 #include "core/primitive/profile.hpp"
+#include "core/primitive/shape.hpp"
 #include "raw/solids/overshooting_outline.hpp"
 #include "raw/solids/simplest_solid.hpp"
 
@@ -20,6 +21,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double k_most = 0.01;  // in diagonals of the part
+/// In greatest overshoots: an end shares the surfaces of others that are as near. Solids that overlap others by more,
+/// as those do that moved before, leave the ends of these as they are measured.
+constexpr double k_shared = 0.1;
 
 /// A box as an extrusion, a cylinder or cone as a revolution; other solids as they are.
 Primitive as_swept(Primitive solid) {
@@ -74,8 +78,9 @@ Points points_at(const Primitive& solid, const Vector2d& place, const AlignedBox
     }
     return points;
   }
-  for (const double turn : positions_between(0, 1, {}, step / (2 * std::numbers::pi * place.x()))) {
-    const double angle = 2 * std::numbers::pi * turn;
+  const double turn = turn_of(std::get<Revolution>(solid.shape));
+  for (const double share : positions_between(0, 1, {}, step / (turn * place.x()))) {
+    const double angle = share * turn;
     points.push_back(solid.pose.to_world({place.x() * std::cos(angle), place.x() * std::sin(angle), place.y()}));
   }
   return points;
@@ -129,6 +134,21 @@ class Indifference {
     return true;
   }
 
+  /// Whether another solid's surface is between the points and those at the same places in the other list. A surface
+  /// along the way, as where a bend goes on as a pipe, may lie between a few.
+  [[nodiscard]] bool has_surface_between(const Points& points, const Points& others, PrimitiveIndex solid) const {
+    constexpr double k_few = 0.01;
+    const AlignedBox box = bounds_of(points).merged(bounds_of(others));
+    return std::ranges::any_of(used_, [&](PrimitiveIndex other) {
+      if (other == solid || !bounds_[other].intersects(box)) return false;
+      const std::vector<double> here = signed_distance(solids_[other], points);
+      const std::vector<double> there = signed_distance(solids_[other], others);
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < here.size(); ++i) count += (here[i] < 0) != (there[i] < 0) ? 1 : 0;
+      return static_cast<double>(count) > k_few * static_cast<double>(here.size());
+    });
+  }
+
  private:
   [[nodiscard]] bool is_same_with_and_without(PrimitiveIndex solid, std::vector<bool> is_inside) const {
     is_inside[solid] = false;
@@ -146,13 +166,13 @@ class Indifference {
 /// Makes one solid overshoot.
 class SolidOvershoot {
  public:
-  SolidOvershoot(const Primitive& solid, const AlignedBox& part, Levels levels,
-                 const std::function<bool(const Points&)>& is_free)
-      : solid_(as_swept(solid)),
+  SolidOvershoot(const PrimitiveSet& solids, PrimitiveIndex index, const Indifference& others, const AlignedBox& part)
+      : index_(index),
+        solid_(as_swept(solids[index])),
+        others_(others),
         part_(part),
-        levels_(std::move(levels)),
-        most_(k_most * part.diagonal().norm()),
-        is_free_(is_free) {
+        levels_(others.levels_around(index)),
+        most_(k_most * part.diagonal().norm()) {
     // The drawing of a revolution has r and z.
     if (std::holds_alternative<Revolution>(solid_.shape)) levels_ = {{{}, levels_[2], {}}};
   }
@@ -165,43 +185,74 @@ class SolidOvershoot {
       for (const double end : {-1.0, 1.0}) is_moved = move_end(*extrusion, end) || is_moved;
     } else if (auto* const revolution = std::get_if<Revolution>(&solid_.shape)) {
       is_moved = move_outline(revolution->profile, true);
+      for (const double end : {-1.0, 1.0}) {
+        if (!is_full_turn(*revolution)) is_moved = move_end(*revolution, end) || is_moved;
+      }
     }
     return is_moved ? std::optional(simplest(solid_)) : std::nullopt;
   }
 
  private:
+  [[nodiscard]] bool is_free(const Points& points) const { return others_.holds_at(points, index_); }
+
   bool move_outline(Profile& profile, bool is_turned) {
     std::optional<Profile> moved = with_free_segments_out(
         profile, is_turned, most_, levels_,
-        [&](const Vector2d& place) { return is_free_(points_at(solid_, place, part_, levels_, most_)); });
+        [&](const Vector2d& place) { return is_free(points_at(solid_, place, part_, levels_, most_)); });
     if (moved) profile = std::move(*moved);
     return moved.has_value();
   }
 
-  bool move_end(Extrusion& extrusion, double end) {
-    const std::vector<Vector2d> places = places_in(extrusion.profile, levels_, most_);
+  /// How far to move an end of a swept profile out: not if it shares no surface, or where it is not free.
+  /// `beyond(place, by)` is the place of the profile so far beyond the end.
+  template <class Beyond>
+  [[nodiscard]] std::optional<double> overshoot_of(const Profile& profile, const Beyond& beyond) const {
+    const std::vector<Vector2d> places = places_in(profile, levels_, most_);
+    const auto points_beyond = [&](double by) {
+      Points points;
+      for (const Vector2d& place : places) points.push_back(solid_.pose.to_world(beyond(place, by)));
+      return points;
+    };
+    const double near = k_shared * most_;
+    if (places.empty() || !others_.has_surface_between(points_beyond(-near), points_beyond(near), index_)) return {};
     for (const double share : k_overshoot_shares) {
       const double by = share * most_;
-      Points points;
-      for (const Vector2d& place : places) {
-        for (int k = 1; k <= k_probes_across; ++k) {
-          const double height = 0.5 * extrusion.height + by * k / k_probes_across;
-          points.push_back(solid_.pose.to_world({place.x(), place.y(), end * height}));
-        }
-      }
-      if (points.empty() || !is_free_(points)) continue;
-      extrusion.height += by;
-      solid_.pose.position += solid_.pose.orientation * Vector3d(0, 0, 0.5 * end * by);
-      return true;
+      const auto is_free_at = [&](int k) { return is_free(points_beyond(by * k / k_probes_across)); };
+      if (std::ranges::all_of(std::views::iota(1, k_probes_across + 1), is_free_at)) return by;
     }
-    return false;
+    return {};
   }
 
+  bool move_end(Extrusion& extrusion, double end) {
+    const auto by = overshoot_of(extrusion.profile, [&](const Vector2d& place, double beyond) {
+      return Vector3d(place.x(), place.y(), end * (0.5 * extrusion.height + beyond));
+    });
+    if (!by) return false;
+    extrusion.height += *by;
+    solid_.pose.position += solid_.pose.orientation * Vector3d(0, 0, 0.5 * end * *by);
+    return true;
+  }
+
+  bool move_end(Revolution& revolution, double end) {
+    const double radius = bounds_of(revolution.profile).max().x();
+    const double last = end > 0 ? turn_of(revolution) : 0;
+    const auto by = overshoot_of(revolution.profile, [&](const Vector2d& place, double beyond) {
+      const double angle = last + end * beyond / radius;
+      return Vector3d(place.x() * std::cos(angle), place.x() * std::sin(angle), place.y());
+    });
+    if (!by) return false;
+    const double turn = *by / radius;
+    revolution.angle_deg += turn / std::numbers::pi * 180;
+    if (end < 0) solid_.pose.orientation = solid_.pose.orientation * Eigen::AngleAxisd(-turn, Vector3d::UnitZ());
+    return true;
+  }
+
+  PrimitiveIndex index_;
   Primitive solid_;
+  const Indifference& others_;
   const AlignedBox& part_;
   Levels levels_;
   double most_;
-  const std::function<bool(const Points&)>& is_free_;
 };
 
 }  // namespace
@@ -212,11 +263,7 @@ PrimitiveSet with_overshoots(PrimitiveSet solids, const CsgTree& tree, std::size
     if (run.stop.stop_requested()) break;
     if (index < fixed || !is_plain(solids[index])) continue;
     const Indifference indifference(solids, tree);
-    const std::function<bool(const Points&)> is_free = [&](const Points& points) {
-      return indifference.holds_at(points, index);
-    };
-    if (std::optional<Primitive> moved =
-            SolidOvershoot(solids[index], part, indifference.levels_around(index), is_free).solid()) {
+    if (std::optional<Primitive> moved = SolidOvershoot(solids, index, indifference, part).solid()) {
       solids[index].shape = std::move(moved->shape);
       solids[index].pose = moved->pose;
     }
