@@ -138,6 +138,7 @@ TEST(OutlineOf, ACircleIsTwoHalves) {
   const Profile profile = outline_of(drawing, disc);
   ASSERT_EQ(profile.paths.size(), 1U);
   EXPECT_EQ(profile.paths[0].size(), 2U);
+  EXPECT_TRUE(is_circle(segments_of(profile.paths[0])));
   validate_profile(profile);
   EXPECT_NEAR(area_of(profile), std::numbers::pi, 1e-9);
 }

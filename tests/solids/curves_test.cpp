@@ -78,6 +78,15 @@ TEST(Merged, CurvesThatAreNearBecomeTheOneWithMorePoints) {
   EXPECT_EQ(curves[0].points.size(), 42U) << "of both";
 }
 
+/// The points of a whole circle end a little before it, and its least x and y within other points.
+TEST(WithEndsOfCircles, TheBoxGrowsWhereAnArcWithPointsEnds) {
+  const std::vector<Curve> curves{arc({2, 2}, 1, 3, 357), arc({-5, -5}, 8.01, 200, 250), line({0, 0}, {0, 3.02})};
+  const Eigen::AlignedBox2d seen(Vector2d(0, 0), Vector2d(2.99, 2.9));
+  const Eigen::AlignedBox2d grown = with_ends_of_circles(seen, curves, 0.02);
+  EXPECT_TRUE(grown.min().isZero());
+  EXPECT_EQ(grown.max(), Vector2d(3, 2.9)) << "the top is too far, the other arc's right end has no points";
+}
+
 TEST(WithClosedGaps, CirclesGrowUntilTheyTouch) {
   const std::vector<Curve> curves{line({-1, 1}, {1, 1}), arc({0, 0}, 0.995, 0, 359)};
   EXPECT_NEAR(with_closed_gaps(curves, 0.05, 0.01)[1].offset, 1, 1e-12);

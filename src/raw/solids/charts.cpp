@@ -316,7 +316,7 @@ class ChartMaker {
       for (const ProfileSegment& piece : pieces_of(curves[c], extents[c])) add(piece, c);
     }
     const std::size_t first_of_border = pieces.size();
-    const Border border = border_of(chart, curves, ends);
+    const Border border = border_of(chart, curves, with_ends_of_circles(ends, curves, options_.tolerance));
     for (std::size_t side = 0; side < k_sides; ++side) {
       const Curve line = line_along(border.box, side);
       add(segment_between(line.points[0], 0, line.points[1]), border.curves[side]);

@@ -212,6 +212,21 @@ std::vector<ProfileSegment> pieces_of(const Curve& curve, const CurveExtent& ext
   return {segment_between(at(0), bulge, at(0.5)), segment_between(at(0.5), bulge, at(1))};
 }
 
+Eigen::AlignedBox2d with_ends_of_circles(const Eigen::AlignedBox2d& seen, std::span<const Curve> curves,
+                                         double tolerance) {
+  Eigen::AlignedBox2d grown = seen;
+  for (const Curve& curve : curves) {
+    if (!curve.is_circle) continue;
+    for (const Vector2d& way : {Vector2d(1, 0), Vector2d(0, 1), Vector2d(-1, 0), Vector2d(0, -1)}) {
+      const Vector2d end = curve.normal + curve.offset * way;
+      const double near = k_least_arc_reach * curve.offset;
+      const auto is_near = [&](const Vector2d& p) { return (p - end).norm() < near; };
+      if (seen.exteriorDistance(end) <= tolerance && std::ranges::any_of(curve.points, is_near)) grown.extend(end);
+    }
+  }
+  return grown;
+}
+
 double bare_length(const ProfileSegment& piece, const Curve& curve, double near) {
   if (curve.count == 0) return piece.length();
   constexpr std::array k_probes{0.1, 0.3, 0.5, 0.7, 0.9};

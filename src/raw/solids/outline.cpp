@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "cloud2csg/error.hpp"
@@ -60,12 +59,22 @@ std::vector<std::vector<BorderEdge>> loops_of(const std::vector<BorderEdge>& bor
   return loops;
 }
 
+/// The circle of the longest edge: crossings with other curves are a little off it.
+ClosedPath circle_of(const std::vector<BorderEdge>& loop) {
+  const auto length = [](const BorderEdge& edge) { return edge.segment.length(); };
+  const ProfileSegment& arc = std::ranges::max_element(loop, {}, length)->segment;
+  const Vector2d arm(arc.radius, 0);
+  const double bulge = std::copysign(1.0, arc.bulge);
+  return {{.point = arc.centre - arm, .bulge = bulge}, {.point = arc.centre + arm, .bulge = bulge}};
+}
+
 /// Joins edges of one curve.
 ClosedPath path_of(std::vector<BorderEdge> loop) {
   const auto changes = [&](std::size_t k) { return loop[k].curve != loop[(k + loop.size() - 1) % loop.size()].curve; };
   std::size_t first = 0;
   while (first < loop.size() && !changes(first)) ++first;
-  if (first < loop.size()) std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(first), loop.end());
+  if (first == loop.size()) return circle_of(loop);
+  std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(first), loop.end());
   ClosedPath path;
   double angle = 0;
   const auto finish = [&] {
@@ -75,9 +84,7 @@ ClosedPath path_of(std::vector<BorderEdge> loop) {
     angle = 0;
   };
   for (std::size_t k = 0; k < loop.size(); ++k) {
-    // A lone circle gets its second half after half a turn.
-    const bool is_half = first == loop.size() && path.size() == 1 && std::abs(angle) >= std::numbers::pi - 1e-9;
-    if (k == 0 || is_half || (k > 0 && loop[k].curve != loop[k - 1].curve)) {
+    if (k == 0 || loop[k].curve != loop[k - 1].curve) {
       finish();
       path.push_back({.point = loop[k].segment.start});
     }
