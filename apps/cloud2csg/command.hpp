@@ -88,19 +88,6 @@ auto naming(const std::string& files, const Work& work) {
   }
 }
 
-/// The result of `work`. Adds doubts from before it to an Error.
-template <typename Work>
-auto after_doubts(const std::vector<std::string>& doubts, const Work& work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    if (doubts.empty()) throw;
-    Error::Parts parts = error.parts();
-    parts.warnings.insert(parts.warnings.begin(), doubts.begin(), doubts.end());
-    throw Error(std::move(parts));
-  }
-}
-
 /// An error in the command line that shows only when the command runs.
 class WrongUsage : public Error {
  public:

@@ -15,6 +15,7 @@
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
+#include "core/base/doubts.hpp"
 #include "core/base/files.hpp"
 #include "core/base/run.hpp"
 #include "field_arguments.hpp"

@@ -26,12 +26,6 @@ bool is_coarse(double tolerance, double diagonal) {
   return tolerance > k_coarse * diagonal;
 }
 
-Error with_warnings(const Error& error, std::vector<std::string> warnings) {
-  Error::Parts parts = error.parts();
-  parts.warnings = std::move(warnings);
-  return Error(std::move(parts));
-}
-
 double share(std::size_t part, std::size_t all) {
   return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
 }

@@ -27,8 +27,6 @@ inline void append(std::vector<std::string>& warnings, std::span<const std::stri
 /// Warns of a given tolerance that is coarse, or less than the noise. @throws Error for one as large as the cloud
 [[nodiscard]] std::vector<std::string> tolerance_warnings(double tolerance, const Scale& scale);
 
-[[nodiscard]] Error with_warnings(const Error& error, std::vector<std::string> warnings);
-
 /// `origin`: that of the prepared cloud's frame
 [[nodiscard]] std::vector<std::string> normals_warnings(const PreparedCloud& prepared, const Eigen::Vector3d& origin);
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
+#include "core/base/doubts.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/run.hpp"
 #include "paper/objective/objective.hpp"
@@ -108,7 +109,6 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   }
   const Stopwatch watch;
   FoundPrimitives found = find_in_time(cloud, options, run);
-  if (found.no_solid) throw with_warnings(*found.no_solid, found.warnings);
   ReconstructOptions rest = options;
   std::optional<double>& limit = rest.extraction.time_limit_seconds;
   std::optional<double>& tolerance = rest.extraction.segmentation.distance_tolerance;
@@ -116,7 +116,10 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   const bool is_over = limit && *limit <= watch.seconds();
   limit = seconds_left(limit, watch);
   const Stopwatch extracting;
-  Extraction result = extract_over(found, rest.extraction, run);
+  Extraction result = after_doubts(found.warnings, [&] {
+    if (found.no_solid) throw Error(*found.no_solid);
+    return extract_over(found, rest.extraction, run);
+  });
   ExtractStatistics& statistics = result.statistics;
   if (is_over) statistics.complete = false;
   if (options.refine) {
