@@ -131,6 +131,9 @@ void bind_flat_shapes(py::module_& module) {
       .def_property_readonly("planes", &planes_of,
                              "Rows (nx, ny, nz, offset), shape (k, 4), with normals of unit length.")
       .def("__repr__", [](const Polytope& self) { return fmt::format("<Polytope of {} planes>", self.planes.size()); });
+}
+
+void bind_profiles(py::module_& module) {
   py::class_<Extrusion>(
       module, "Extrusion",
       "A profile in local x, y times |z| <= height / 2. profile: closed paths, each a list of corners "
@@ -160,6 +163,9 @@ void bind_flat_shapes(py::module_& module) {
       .def("__repr__", [](const Revolution& self) {
         return fmt::format("Revolution({}, angle_deg={})", text_of(self.profile), self.angle_deg);
       });
+}
+
+void bind_expression(py::module_& module) {
   py::class_<Expression>(module, "Expression",
                          "A solid given by a formula in x, y, z (muParser syntax), negative inside. lower and upper, "
                          "shape (3,), are corners of a box around the solid, in its own frame.")
@@ -256,6 +262,8 @@ void bind_primitive(py::module_& module) {
 
 void bind_primitives(py::module_& module) {
   bind_flat_shapes(module);
+  bind_profiles(module);
+  bind_expression(module);
   bind_round_shapes(module);
   bind_primitive(module);
 }

@@ -300,8 +300,9 @@ PrimitiveSurface cap_surface(const ProfileCap& cap, std::vector<ProfileSegment> 
 }
 
 PrimitiveSurface joined(std::vector<PrimitiveSurface> parts) {
-  std::vector<double> areas;
-  for (const PrimitiveSurface& part : parts) areas.push_back(part.area);
+  if (parts.size() == 1) return std::move(parts.front());
+  std::vector<double> areas(parts.size());
+  std::ranges::transform(parts, areas.begin(), &PrimitiveSurface::area);
   const WeightedChoice choice(areas);
   const auto draw = [parts = std::move(parts), choice](RandomStream& random) {
     return parts[choice.draw(random)].draw(random);

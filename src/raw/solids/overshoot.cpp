@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 #include "core/geometry/boxes.hpp"
@@ -217,8 +216,11 @@ class SolidOvershoot {
     if (places.empty() || !others_.has_surface_between(points_beyond(-near), points_beyond(near), index_)) return {};
     for (const double share : k_overshoot_shares) {
       const double by = share * most_;
-      const auto is_free_at = [&](int k) { return is_free(points_beyond(by * k / k_probes_across)); };
-      if (std::ranges::all_of(std::views::iota(1, k_probes_across + 1), is_free_at)) return by;
+      bool is_free_so_far = true;
+      for (int k = 1; k <= k_probes_across && is_free_so_far; ++k) {
+        is_free_so_far = is_free(points_beyond(by * k / k_probes_across));
+      }
+      if (is_free_so_far) return by;
     }
     return {};
   }

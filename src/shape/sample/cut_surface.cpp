@@ -182,6 +182,7 @@ class CutSurface {
     const double upper = std::min(end, centre_.z() + radius_);
     const std::vector<ProfileSegment> sides = near(segments, middle, radius_);
     std::vector<double> areas;
+    areas.reserve(sides.size());
     for (const ProfileSegment& side : sides) areas.push_back(side.length() * std::max(upper - lower, 0.0));
     const WeightedChoice choice(areas);
     const auto draw = [sides, choice, lower, upper](RandomStream& random) {
