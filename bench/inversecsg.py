@@ -160,6 +160,14 @@ def row(cells, widths):
     return "| " + " | ".join(str(cell).rjust(width) for cell, width in zip(cells, widths)) + " |"
 
 
+def print_lines(head, lines):
+    widths = [max(len(str(line[k])) for line in [head, *lines]) for k in range(len(head))]
+    print(row(head, widths))
+    print("|" + "|".join("-" * (width + 1) + ":" for width in widths) + "|")
+    for line in lines:
+        print(row(line, widths))
+
+
 def print_table(rows):
     head = ["model", "variant", "points", "surfaces", "leaves", "price", "verdict", "IoU", "mean", "Hausdorff", "s", *STAGES]
     lines = []
@@ -170,11 +178,7 @@ def print_table(rows):
         lines.append([r["model"], r["variant"], r["points"], r["surfaces"], r["leaves"], f"{r['price']:.1f}", r["verdict"],
                       f"{r['iou']:.4f}", f"{r['mean']:.4f}", f"{r['hausdorff']:.3f}", f"{r['seconds']:.2f}",
                       *(f"{r['stages'][stage]:.2f}" for stage in STAGES)])
-    widths = [max(len(str(line[k])) for line in [head, *lines]) for k in range(len(head))]
-    print(row(head, widths))
-    print("|" + "|".join("-" * (width + 1) + ":" for width in widths) + "|")
-    for line in lines:
-        print(row(line, widths))
+    print_lines(head, lines)
 
 
 def print_summary(rows, variants):
@@ -192,6 +196,18 @@ def print_summary(rows, variants):
             print(f"    at most 0.005 below normals=none on {kept}, the worst {worst}: {ious[worst] - without[worst]:+.4f}")
 
 
+def meshes_in(folder, names=None):
+    """The meshes of a folder, and the scripts that are no mesh's source; of these names only, if there are any."""
+    meshes = sorted(path for path in folder.iterdir() if path.suffix in ENDINGS)
+    made = {path.stem for path in meshes if path.suffix != ".scad"}
+    meshes = [path for path in meshes if path.suffix != ".scad" or path.stem not in made]
+    if names:
+        meshes = [path for path in meshes if path.stem in names]
+    if not meshes:
+        sys.exit(f"{folder}: no meshes ({', '.join(ENDINGS)})")
+    return meshes
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
@@ -206,14 +222,7 @@ def main():
     arguments = parser.parse_args()
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
-    meshes = sorted(path for path in arguments.folder.iterdir() if path.suffix in ENDINGS)
-    # A script with the name of a mesh is the source of that mesh.
-    made = {path.stem for path in meshes if path.suffix != ".scad"}
-    meshes = [path for path in meshes if path.suffix != ".scad" or path.stem not in made]
-    if arguments.models:
-        meshes = [path for path in meshes if path.stem in arguments.models]
-    if not meshes:
-        sys.exit(f"{arguments.folder}: no meshes ({', '.join(ENDINGS)})")
+    meshes = meshes_in(arguments.folder, arguments.models)
     rows = []
     for mesh in meshes:
         for variant in arguments.variants:
