@@ -15,9 +15,9 @@
 #include "cloud2csg/model.hpp"
 #include "cloud2csg/point_cloud.hpp"
 #include "cloud2csg/reconstruct.hpp"
-#include "core/base/doubts.hpp"
 #include "core/base/files.hpp"
 #include "core/base/run.hpp"
+#include "core/base/warnings.hpp"
 #include "field_arguments.hpp"
 #include "io/formats/formats.hpp"
 #include "outputs.hpp"
@@ -292,7 +292,7 @@ int ExtractCommand::run(const std::stop_token& stop) const {
   std::vector<std::string> doubts = std::move(given.warnings);
   doubts.insert(doubts.end(), input.warnings.begin(), input.warnings.end());
   const double read_seconds = total.seconds();
-  Extraction result = after_doubts(doubts, [&] { return extract(std::move(input), given.primitives, session.run()); });
+  Extraction result = with_warnings(doubts, [&] { return extract(std::move(input), given.primitives, session.run()); });
   ExtractStatistics& outcome = result.statistics;
   outcome.warnings.insert(outcome.warnings.begin(), doubts.begin(), doubts.end());
   outcome.seconds.read = read_seconds;

@@ -159,7 +159,7 @@ void bind_profiles(py::module_& module) {
            py::arg("profile"), py::arg("angle_deg") = 360)
       .def_property_readonly(
           "profile", [](const Revolution& self) { return lists_of(self.profile); }, "Closed paths of (r, z, bulge).")
-      .def_readonly("angle_deg", &Revolution::angle_deg, "The turn, in degrees.")
+      .def_readonly("angle_deg", &Revolution::angle_deg, "The turn in degrees, above 0 and at most 360.")
       .def("__repr__", [](const Revolution& self) {
         return fmt::format("Revolution({}, angle_deg={})", text_of(self.profile), self.angle_deg);
       });

@@ -14,6 +14,7 @@
 #include "cloud2csg/advanced/winding_number.hpp"
 #include "cloud2csg/error.hpp"
 #include "core/base/run.hpp"
+#include "core/base/warnings.hpp"
 #include "core/geometry/place_text.hpp"
 #include "core/geometry/subset.hpp"
 #include "pipeline/diagnostics.hpp"
@@ -195,14 +196,14 @@ std::pair<PreparedCloud, RestDetection> without_outliers(PreparedCloud prepared,
   return {std::move(prepared), std::move(rest)};
 }
 
-/// @throws Error, with the warnings, without surfaces and without points on known primitives
-void check_any_surface(const RestDetection& found, const PointCloud& cloud, const std::vector<std::string>& warnings) {
+/// @throws Error without surfaces and without points on known primitives
+void check_any_surface(const RestDetection& found, const PointCloud& cloud) {
   if (!found.detection.surfaces.empty() || count_of(found.known) > 0) return;
-  throw Error({.expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
-                                       "within {:.3g}",
-                                       cloud.size(), found.detection.distance_tolerance),
-               .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces",
-               .warnings = warnings});
+  throw Error(
+      {.expected = fmt::format("no plane, sphere, cylinder, cone or torus explains enough of the {} points "
+                               "within {:.3g}",
+                               cloud.size(), found.detection.distance_tolerance),
+       .remedy = "give a larger `detection.distance_tolerance`, or a cloud of an object made of such surfaces"});
 }
 
 PreparedCloud prepare_in_frame(const PointCloud& cloud, const Eigen::Vector3d& origin, const PrepareOptions& options,
@@ -237,6 +238,27 @@ void choose(FoundPrimitives& found, std::span<const KnownSolid> known, const Rec
              .remedy = "give a cloud of some thousand points that covers most of the surface of a closed object"});
 }
 
+/// What follows detection.
+FoundPrimitives with_solids(FoundPrimitives found, RestDetection rest, const PrimitiveSet& known,
+                            const ReconstructOptions& options, Stopwatch& watch, const RunContext& run) {
+  check_any_surface(rest, found.prepared.cloud);
+  found.unexplained = points_of_none(lists_of(rest), found.prepared.cloud.size());
+  found.detection = std::move(rest.detection);
+  // Planes show the noise better than neighbours, unless detection has seen only a part of the cloud.
+  if (known.empty()) found.prepared.scale.noise = found.detection.noise;
+  // Known primitives have ends of their own.
+  if (options.close_unseen && known.empty()) found = with_unseen_closed(std::move(found), run);
+  found.detect_seconds = watch.lap();
+
+  run.report("solids", 0, 0);
+  choose(found, known_solids(known, std::move(rest.known)), options, run);
+  append(found.warnings, found.choice.warnings);
+  // An early stop of the choice still leaves a tree.
+  add_evidence(found, options.detection, without_stop(run));
+  found.choose_seconds = watch.lap();
+  return found;
+}
+
 /// find_primitives() without warnings about known primitives.
 FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& options, const RunContext& run) {
   check_known(options.known);
@@ -256,22 +278,10 @@ FoundPrimitives find_all(const PointCloud& cloud, const ReconstructOptions& opti
   auto [prepared, rest] = without_outliers(std::move(found.prepared), std::move(all));
   found.prepared = std::move(prepared);
   append(found.warnings, outlier_warnings(found.prepared.cleaning, cloud.size()));
-  check_any_surface(rest, found.prepared.cloud, found.warnings);
-  found.unexplained = points_of_none(lists_of(rest), found.prepared.cloud.size());
-  found.detection = std::move(rest.detection);
-  // Planes show the noise better than neighbours, unless detection has seen only a part of the cloud.
-  if (known.empty()) found.prepared.scale.noise = found.detection.noise;
-  // Known primitives have ends of their own.
-  if (options.close_unseen && known.empty()) found = with_unseen_closed(std::move(found), run);
-  found.detect_seconds = watch.lap();
-
-  run.report("solids", 0, 0);
-  choose(found, known_solids(known, std::move(rest.known)), options, run);
-  append(found.warnings, found.choice.warnings);
-  // An early stop of the choice still leaves a tree.
-  add_evidence(found, options.detection, without_stop(run));
-  found.choose_seconds = watch.lap();
-  return found;
+  const std::vector<std::string> warnings = found.warnings;
+  return with_warnings(warnings, [&, &detected = rest] {
+    return with_solids(std::move(found), std::move(detected), known, options, watch, run);
+  });
 }
 
 }  // namespace

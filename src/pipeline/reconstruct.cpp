@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "cloud2csg/error.hpp"
-#include "core/base/doubts.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/run.hpp"
+#include "core/base/warnings.hpp"
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"
@@ -116,7 +116,7 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   const bool is_over = limit && *limit <= watch.seconds();
   limit = seconds_left(limit, watch);
   const Stopwatch extracting;
-  Extraction result = after_doubts(found.warnings, [&] {
+  Extraction result = with_warnings(found.warnings, [&] {
     if (found.no_solid) throw Error(*found.no_solid);
     return extract_over(found, rest.extraction, run);
   });

@@ -293,9 +293,9 @@ TEST(OpenScadSweep, SolidsAreMappedAsOthers) {
   EXPECT_TRUE(bounds(knob).isApprox(AlignedBox(Vector3d(-2, -2, 0), Vector3d(2, 2, 6)), 1e-12));
   const Model sectors = parse_openscad(
       "mirror([0, 1, 0]) rotate_extrude(angle = 30) square([2, 1]);"
-      "translate([9, 0, 0]) rotate_extrude(angle = -90) translate([1, 0]) square(1);");
-  expect_inside(sectors, {{1.5, -0.1, 0.5}, {10.4, -0.1, 0.5}});
-  expect_outside(sectors, {{1.5, 0.1, 0.5}, {1.5, -0.9, 0.5}, {10.4, 0.1, 0.5}, {8.9, -1.5, 0.5}});
+      "translate([9, 0, 0]) rotate_extrude(angle = -60, start = -30) translate([1, 0]) square(1);");
+  expect_inside(sectors, {{1.5, -0.1, 0.5}, {9.1, -1.5, 0.5}});
+  expect_outside(sectors, {{1.5, 0.1, 0.5}, {1.5, -0.9, 0.5}, {10.4, -0.1, 0.5}, {8.9, -1.5, 0.5}});
   const Primitive nut = parse_openscad("linear_extrude(1) circle(1, $fn = 6);").primitives.at(0);
   EXPECT_EQ(profile_of(nut).paths.at(0).size(), 6U);
 }
@@ -315,6 +315,7 @@ TEST(OpenScadSweep, SaysWhatIsNoSweptSolid) {
       {"linear_extrude(5) square([1, 2, 3]);", "a square with two sizes"},
       {"linear_extrude(-1) square(1);", "a height above 0"},
       {"rotate_extrude(angle = 0) square(1);", "line 1, column 1: expected an angle other than 0"},
+      {"rotate_extrude(45) square(1);", "line 1, column 16: expected an angle by its name"},
       {"rotate_extrude()\n  circle(1);",
        "line 2, column 3: expected a shape entirely to the right of the axis (x >= 0)"},
       {"rotate_extrude() translate([1, 0]) polygon([[0, 0], [1, 1], [-1, 1]]);",

@@ -127,6 +127,7 @@ struct KnownSolid {
   };
   const Profile disc{{{{{1e4, 0}, 1}, {{-1e4, 0}, 1}}}};
   const Profile triangle{{{{{1e4, -1e4}}, {{3e4, -1e4}}, {{1e4, 1e4}}}}};
+  const Profile half_square{{{{{0, -1e4}}, {{1e4, -1e4}}, {{1e4, 1e4}}, {{0, 1e4}}}}};
   const double third = std::sqrt(1.0 / 3);
   const double half = std::sqrt(0.5);
   return {
@@ -139,6 +140,10 @@ struct KnownSolid {
       less(Torus{1e4, 0.5}, {1e4, 0, 0}, 24 + 1.5 * k_pi, 8 - 0.5 * k_pi),
       less(Extrusion{disc, 2e4}, {1e4, 0, 1e4}, 22, 6),
       less(Revolution{triangle}, {-1e4, 0, 0}, 16, 4),
+      less(Revolution{half_square, 90}, {0, 0, 0}, 22, 6),
+      less(Revolution{half_square, 270}, {0, 0, 0}, 10, 2),
+      less(Revolution{half_square, 180}, {0, -0.5, 0}, 12, 2),
+      less(Revolution{half_square, 300}, {-5e3, 3e3, 0}, 24, 8),
       less(Polytope{{{{0, 0, 1}, 0},
                      {{half, 0, -half}, 1e4},
                      {{-third, third, -third}, 1e4},

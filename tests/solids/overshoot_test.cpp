@@ -99,6 +99,18 @@ TEST(Overshoot, ABendReachesIntoTheBarThatGoesOn) {
   EXPECT_EQ(std::get<Box>(solids[1].shape).size.z(), 2);
 }
 
+/// The greatest overshoot is half a radian at the ring.
+TEST(Overshoot, ASectorStaysLessThanAFullTurn) {
+  const ClosedPath square{{.point = {0.1, -0.1}}, {.point = {0.2, -0.1}}, {.point = {0.2, 0.1}}, {.point = {0.1, 0.1}}};
+  const PrimitiveSet solids{test::placed("ring", Revolution{{.paths = {square}}, 350}, {0, 0, 0}),
+                            test::placed("half", Box{{8, 3, 2}}, {0, 1.5, 0}),
+                            test::placed("plate", Box{{8, 6, 2}}, {0, 0, 0})};
+  const CsgTree tree = unite(unite(CsgTree::leaf(0), CsgTree::leaf(1)), CsgTree::leaf(2));
+  const PrimitiveSet moved = with_overshoots(solids, tree, 0, k_part);
+  EXPECT_LT(std::get<Revolution>(moved[0].shape).angle_deg, 360);
+  EXPECT_NO_THROW(validate(moved[0]));
+}
+
 TEST(Overshoot, GivenSolidsStay) {
   const PrimitiveSet given{test::placed("plate", Box{{8, 6, 2}}, {0, 0, 0}),
                            test::placed("bore", Cylinder{.radius = 1, .height = 2}, {1, 1, 0})};

@@ -75,7 +75,6 @@ TEST(SectorEnds, TakePlanesAndBendsThatGoOnButNoOthers) {
   EXPECT_NEAR(own[1], 110, 1);
 }
 
-/// A piece beside another about the same axis may reach over the other's end, but not over the first end.
 /// A pipe's points near its start lie on the bend, too.
 TEST(SectorEnds, AreWhereAPipeOfThatThicknessGoesOn) {
   const Bend made = bend(-4, 94, 1000);
@@ -91,6 +90,7 @@ TEST(SectorEnds, AreWhereAPipeOfThatThicknessGoesOn) {
   EXPECT_NEAR(ends_of(made, {pipe(0.5, {0, 3, -7}, {0, 0, 1})})[1], 94, 1) << "a pipe across the bend";
 }
 
+/// A piece beside another about the same axis may reach over the other's end, but not over the first end.
 TEST(SectorEnds, TheFirstIsInAGapOfAll) {
   Bend one = bend(0, 90, 1000);
   Bend other = bend(45, 135, 500);

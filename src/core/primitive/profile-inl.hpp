@@ -159,7 +159,8 @@ class ExtrusionFormula {
 };
 
 /// The profile turned about local z by less than a full turn. `sides` are the edges without those on the axis, `caps`
-/// all edges. In a frame whose x axis is in the middle of the sector, both caps are one.
+/// all edges. In a frame whose x axis is in the middle of the sector, places are mirrored to y >= 0, so only one cap
+/// counts.
 template <class Tag>
 class SectorFormula {
  public:

@@ -134,7 +134,8 @@ class LocalSurface {
     const double height = extrusion.height;
     std::vector<double> lengths(segments.size());
     std::ranges::transform(segments, lengths.begin(), [](const ProfileSegment& s) { return s.length(); });
-    const auto draw = [segments, height, side = WeightedChoice(lengths)](RandomStream& random) {
+    const WeightedChoice side(lengths);
+    const auto draw = [segments, height, side](RandomStream& random) {
       const ProfileSegment& s = segments[side.draw(random)];
       const double share = random.uniform();
       const Eigen::Vector2d place = s.at(share);
@@ -142,7 +143,7 @@ class LocalSurface {
       return SurfacePoint{.position = {place.x(), place.y(), random.uniform(-0.5, 0.5) * height},
                           .normal = {normal.x(), normal.y(), 0}};
     };
-    return with_caps({.area = height * WeightedChoice(lengths).total(), .draw = draw}, extrusion);
+    return with_caps({.area = height * side.total(), .draw = draw}, extrusion);
   }
 
   PrimitiveSurface operator()(const Revolution& revolution) const {

@@ -88,7 +88,7 @@ struct ProfileCap {
 [[nodiscard]] PrimitiveSurface cap_surface(const ProfileCap& cap, std::vector<ProfileSegment> segments,
                                            const Eigen::AlignedBox2d& box, double area);
 
-/// All parts. O(log parts) a point.
+/// All parts, whose reach must be 0. O(log parts) a point.
 [[nodiscard]] PrimitiveSurface joined(std::vector<PrimitiveSurface> parts);
 
 /// The surface of a primitive whose own frame has this pose. `local` is in that frame; its reach must be 0.

@@ -125,6 +125,21 @@ double height_of(const Arguments& call) {
   return height;
 }
 
+/// From `start` by `angle`, backwards for a negative one. A full turn has no start.
+Sweep turn_of(const Arguments& call) {
+  const Value* const given = call.find("angle", 0);
+  if (given != nullptr && call.find("angle", Arguments::k_by_name) == nullptr) {
+    throw Refusal(given->offset, "expected an angle by its name");
+  }
+  const double angle = std::clamp(call.number("angle", Arguments::k_by_name, 360), -360.0, 360.0);
+  call.require(angle != 0, "an angle other than 0");
+  Sweep sweep{.height = std::nullopt, .angle_deg = std::abs(angle)};
+  if (sweep.angle_deg == 360) return sweep;
+  const double start = call.number("start", Arguments::k_by_name, 0) + std::min(angle, 0.0);
+  sweep.frame = Eigen::AngleAxisd(start / 180 * std::numbers::pi, Eigen::Vector3d::UnitZ());
+  return sweep;
+}
+
 /// Whether the shape cuts only a pinhole next to the axis from a circle, as a square does that our files write. Without
 /// it, the torus may be no valid solid.
 bool leaves_pinhole(const Profile& shape, const ProfileSegment& circle_arc) {
@@ -147,12 +162,7 @@ Sweep sweep_of(const Arguments& call) {
     const double middle = call.flag("center", Arguments::k_by_name) ? 0.0 : 0.5 * height;
     return {.height = height, .frame = Affine3d(Eigen::Translation3d(0, 0, middle))};
   }
-  const double angle = std::clamp(call.number("angle", Arguments::k_by_name, 360), -360.0, 360.0);
-  call.require(angle != 0, "an angle other than 0");
-  Sweep sweep{.height = std::nullopt, .angle_deg = std::abs(angle)};
-  if (angle < 0 && angle > -360)
-    sweep.frame = Eigen::AngleAxisd(angle / 180 * std::numbers::pi, Eigen::Vector3d::UnitZ());
-  return sweep;
+  return turn_of(call);
 }
 
 std::optional<Profile> flat_profile(const Arguments& call, bool is_turned) {

@@ -314,8 +314,8 @@ class Program {
     sweeping_call_ = {};
     const FlatTree shapes{.shapes = std::exchange(flat_, {}), .nodes = {postfix_.begin() + begin, postfix_.end()}};
     postfix_.erase(postfix_.begin() + begin, postfix_.end());
-    const bool is_full_turn = !sweep.height && sweep.angle_deg >= 360;
-    if (const std::optional<LeafSolid> torus = is_full_turn ? torus_of(shapes) : std::nullopt) {
+    const bool may_be_torus = !sweep.height && sweep.angle_deg == 360;
+    if (const std::optional<LeafSolid> torus = may_be_torus ? torus_of(shapes) : std::nullopt) {
       add_leaf(torus->shape, "torus", frame * torus->frame, name.offset);
       return true;
     }

@@ -233,7 +233,8 @@ Eigen::Matrix3d mirror_of(const Shape& shape) {
   if (std::holds_alternative<Extrusion>(shape)) return Vector3d(1, 1, -1).asDiagonal();
   const auto* revolution = std::get_if<Revolution>(&shape);
   if (revolution == nullptr || is_full_turn(*revolution)) return Vector3d(-1, 1, 1).asDiagonal();
-  return Eigen::AngleAxisd(turn_of(*revolution), Vector3d::UnitZ()) * Vector3d(1, -1, 1).asDiagonal();
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(turn_of(*revolution), Vector3d::UnitZ()).toRotationMatrix();
+  return turn * Vector3d(1, -1, 1).asDiagonal();
 }
 
 }  // namespace

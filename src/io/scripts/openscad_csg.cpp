@@ -56,7 +56,8 @@ class FlatBody {
     for (const ProfileRegion& region : swept.regions) {
       radius = std::max(radius, bounds_of(region.outline).max().x());
     }
-    const std::string angle = swept.angle_deg < 360 ? fmt::format("angle = {}, ", number_(swept.angle_deg)) : "";
+    const std::string angle =
+        swept.angle_deg < 360 ? fmt::format("angle = {}, ", script::NumberFormat(1.0)(swept.angle_deg)) : "";
     return fmt::format("rotate_extrude({}{}, convexity = 2) {{ {} }}", angle, round(radius), profile);
   }
   /// FreeCAD requires a convexity.

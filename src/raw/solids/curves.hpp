@@ -37,8 +37,8 @@ struct Curve {
 /// Circles that come within `tolerance` of other curves grow until they touch, so that faces close. `reach` as below.
 [[nodiscard]] std::vector<Curve> with_closed_gaps(std::vector<Curve> curves, double reach, double tolerance);
 
-/// The box of the points, grown by at most `tolerance` to where circles with points nearby end: points hardly ever show
-/// the last of a circle. O(points of the circles)
+/// The box of the points, grown by at most `tolerance` to where circles with points nearby end: the outermost point of
+/// a circle is hardly ever among the points. O(points of the circles)
 [[nodiscard]] Eigen::AlignedBox2d with_ends_of_circles(const Eigen::AlignedBox2d& seen, std::span<const Curve> curves,
                                                        double tolerance);
 

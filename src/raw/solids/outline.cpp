@@ -59,7 +59,7 @@ std::vector<std::vector<BorderEdge>> loops_of(const std::vector<BorderEdge>& bor
   return loops;
 }
 
-/// The circle of the longest edge: crossings with other curves are a little off it.
+/// The circle of the longest edge. Edges are turned a little to meet at crossings, a long one the least.
 ClosedPath circle_of(const std::vector<BorderEdge>& loop) {
   const auto length = [](const BorderEdge& edge) { return edge.segment.length(); };
   const ProfileSegment& arc = std::ranges::max_element(loop, {}, length)->segment;

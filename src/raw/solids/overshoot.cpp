@@ -20,8 +20,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double k_most = 0.01;  // in diagonals of the part
-/// In greatest overshoots: an end shares the surfaces of others that are as near. Solids that overlap others by more,
-/// as those do that moved before, leave the ends of these as they are measured.
+/// In greatest overshoots: an end shares a face with another solid that is as near. The face of a solid that was moved
+/// before is farther away, and the end stays.
 constexpr double k_shared = 0.1;
 
 /// A box as an extrusion, a cylinder or cone as a revolution; other solids as they are.
@@ -133,8 +133,8 @@ class Indifference {
     return true;
   }
 
-  /// Whether another solid's surface is between the points and those at the same places in the other list. A surface
-  /// along the way, as where a bend goes on as a pipe, may lie between a few.
+  /// Whether another solid's surface is between the points and those at the same places in the other list. One between
+  /// very few does not count: it goes along the way, as where a bend goes on as a pipe.
   [[nodiscard]] bool has_surface_between(const Points& points, const Points& others, PrimitiveIndex solid) const {
     constexpr double k_few = 0.01;
     const AlignedBox box = bounds_of(points).merged(bounds_of(others));
@@ -202,8 +202,8 @@ class SolidOvershoot {
     return moved.has_value();
   }
 
-  /// How far to move an end of a swept profile out: not if it shares no surface, or where it is not free.
-  /// `beyond(place, by)` is the place of the profile so far beyond the end.
+  /// How far to move an end of a swept profile out. Absent if it shares no face with another solid, or if the space
+  /// beyond is not free. `beyond(place, by)` is the place of the profile so far beyond the end.
   template <class Beyond>
   [[nodiscard]] std::optional<double> overshoot_of(const Profile& profile, const Beyond& beyond) const {
     const std::vector<Vector2d> places = places_in(profile, levels_, most_);
@@ -244,7 +244,9 @@ class SolidOvershoot {
     });
     if (!by) return false;
     const double turn = *by / radius;
-    revolution.angle_deg += turn / std::numbers::pi * 180;
+    const double angle_deg = revolution.angle_deg + turn / std::numbers::pi * 180;
+    if (!(angle_deg < 360)) return false;
+    revolution.angle_deg = angle_deg;
     if (end < 0) solid_.pose.orientation = solid_.pose.orientation * Eigen::AngleAxisd(-turn, Vector3d::UnitZ());
     return true;
   }

@@ -81,10 +81,11 @@ bool goes_on_at(const Surface& torus, const Vector3d& place, double minor_radius
   return off < k_share * minor_radius && std::abs(torus.minor_radius - minor_radius) < k_share * minor_radius;
 }
 
-/// Where a bend ends and a straight pipe goes on: at its nearest point to the bend's middle. Absent for other surfaces.
+/// Where a bend ends and a straight pipe goes on: at the point of the pipe's axis nearest to the centre of the torus.
+/// Absent for other surfaces.
 std::optional<Vector3d> start_of_pipe(const Surface& torus, const Surface& pipe) {
   if (torus.type != SurfaceType::torus || pipe.type != SurfaceType::cylinder) return std::nullopt;
-  if (std::abs(pipe.axis.dot(torus.axis)) > k_gap) return std::nullopt;
+  if (std::abs(pipe.axis.dot(torus.axis)) > k_level) return std::nullopt;
   const Vector3d start = pipe.position + pipe.axis.dot(torus.position - pipe.position) * pipe.axis;
   return goes_on_at(torus, start, pipe.radius) ? std::optional(start) : std::nullopt;
 }

@@ -17,7 +17,7 @@ std::vector<std::uint8_t> decisions_of(const DecisionList& list, std::size_t pla
   return is_in;
 }
 
-/// The ends of a sector stay where they are.
+/// The ends of a sector are not drawn in.
 bool has_ends(const TermSpace& space, const TermPart& part) {
   return part.kind == PartKind::revolved ||
          (part.kind == PartKind::profile && !space.profiles[part.family].chart.is_turned);

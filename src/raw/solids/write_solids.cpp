@@ -211,7 +211,7 @@ class SolidWriter {
     return index;
   }
 
-  /// The part as if it was not inverted.
+  /// The part as if it was not inverted, and where it may be.
   WrittenTerm write(const TermSpace& space, const TermPart& part, const Overshoots& overshoots, bool adds) {
     const PrimitiveIndex solid = add(space, part, overshoots, adds);
     return {.tree = CsgTree::leaf(solid), .reach = bounds(solids[solid])};

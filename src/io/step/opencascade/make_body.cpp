@@ -342,7 +342,7 @@ TopoDS_Shape swept_solid(const TopoDS_Face& face, const SweptProfile& swept) {
 
 Bodies bodies_of(const SweptProfile& swept, const Pose& pose) {
   const double half = 0.5 * swept.height.value_or(0);
-  // A revolved face looks along -y, into the turn, which starts at the end of a sector and runs backwards.
+  // The face is at the end of the turn, which runs backwards from there: that is where the face looks.
   const double angle = swept.angle_deg < 360 ? angle_of(swept) : 0;
   const Eigen::Vector2d start(std::cos(angle), std::sin(angle));
   const PlaceOf place = [&](const Eigen::Vector2d& p) {
