@@ -78,6 +78,24 @@ TEST(Merged, CurvesThatAreNearBecomeTheOneWithMorePoints) {
   EXPECT_EQ(curves[0].points.size(), 42U) << "of both";
 }
 
+TEST(PiecesOf, OfATurnedDrawingEndOnTheAxis) {
+  const Curve slope = line({-1, 0}, {3, 4});
+  for (const bool is_turned : {false, true}) {
+    const std::vector<ProfileSegment> pieces = pieces_of(slope, {slope.along({-1, 0}), slope.along({3, 4})}, is_turned);
+    ASSERT_EQ(pieces.size(), 1U);
+    EXPECT_TRUE(pieces[0].start.isApprox(is_turned ? Vector2d(0, 1) : Vector2d(-1, 0), 1e-12));
+  }
+  EXPECT_TRUE(pieces_of(slope, {slope.along({-1, 0}), slope.along({-0.5, 0.5})}, true).empty());
+  const Curve circle = arc({0.5, 2}, 1, -180, 180);
+  double length = 0;
+  for (const ProfileSegment& piece : pieces_of(circle, {std::numbers::pi, 3 * std::numbers::pi}, true)) {
+    EXPECT_GE(bounds_of(std::span(&piece, 1)).min().x(), 0);
+    EXPECT_TRUE(piece.start.x() == 0 || piece.end.x() == 0);
+    length += piece.length();
+  }
+  EXPECT_NEAR(length, 4 * std::numbers::pi / 3, 1e-9) << "two thirds of the circle";
+}
+
 /// The points of a whole circle end a little before it, and its least x and y within other points.
 TEST(WithEndsOfCircles, TheBoxGrowsWhereAnArcWithPointsEnds) {
   const std::vector<Curve> curves{arc({2, 2}, 1, 3, 357), arc({-5, -5}, 8.01, 200, 250), line({0, 0}, {0, 3.02})};

@@ -16,13 +16,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-double share_of(const ProfileSegment& s, const Vector2d& point) {
-  if (!s.is_arc()) return (point - s.start).dot(s.end - s.start) / (s.end - s.start).squaredNorm();
-  // Just before the start is the start.
-  const double share = angle_from_start(s, point - s.centre) / s.angle;
-  return share > 0.5 + std::numbers::pi / std::abs(s.angle) ? 0.0 : share;
-}
-
 /// A direction of an edge: 2 * edge, plus 1 from its end to its start.
 using HalfEdge = std::uint32_t;
 
@@ -231,6 +224,13 @@ class Builder {
 };
 
 }  // namespace
+
+double share_of(const ProfileSegment& s, const Vector2d& point) {
+  if (!s.is_arc()) return (point - s.start).dot(s.end - s.start) / (s.end - s.start).squaredNorm();
+  // Just before the start is the start.
+  const double share = angle_from_start(s, point - s.centre) / s.angle;
+  return share > 0.5 + std::numbers::pi / std::abs(s.angle) ? 0.0 : share;
+}
 
 CurveArrangement arrange(std::span<const ProfileSegment> pieces, double tolerance) {
   return Builder(pieces, tolerance).build();

@@ -9,6 +9,9 @@
 
 namespace cloud2csg {
 
+/// The share of a segment's length at which a point on it is; outside [0, 1] beyond its ends. O(1)
+[[nodiscard]] double share_of(const ProfileSegment& segment, const Eigen::Vector2d& point);
+
 /// The faces into which pieces of lines and circles divide the plane.
 struct CurveArrangement {
   struct Edge {

@@ -313,7 +313,7 @@ class ChartMaker {
     };
     const std::vector<CurveExtent> extents = extents_of(curves, k_reach * diagonal);
     for (std::uint32_t c = 0; c < curves.size(); ++c) {
-      for (const ProfileSegment& piece : pieces_of(curves[c], extents[c])) add(piece, c);
+      for (const ProfileSegment& piece : pieces_of(curves[c], extents[c], chart.is_turned)) add(piece, c);
     }
     const std::size_t first_of_border = pieces.size();
     const Border border = border_of(chart, curves, with_ends_of_circles(ends, curves, options_.tolerance));

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "raw/solids/arrangement.hpp"
+
 namespace cloud2csg {
 namespace {
 
@@ -141,6 +143,45 @@ class Extender {
   std::vector<CurveExtent> near_, extents_ = {};  // with the reach, and what they grow to
 };
 
+std::vector<ProfileSegment> whole_pieces_of(const Curve& curve, const CurveExtent& extent) {
+  if (!curve.is_circle) {
+    const Vector2d direction = to_the_left(curve.normal);
+    const Vector2d foot = curve.offset * curve.normal;
+    return {segment_between(foot + extent.low * direction, 0, foot + extent.high * direction)};
+  }
+  const double around = circumference(curve);
+  constexpr double k_nearly_whole = 0.95;
+  const double length = extent.high - extent.low > k_nearly_whole * around ? around : extent.high - extent.low;
+  const auto at = [&](double share) {
+    const double angle = (extent.low + share * length) / curve.offset;
+    return Vector2d(curve.normal + curve.offset * Vector2d(std::cos(angle), std::sin(angle)));
+  };
+  const double bulge = std::tan(length / curve.offset / 8);  // of a half
+  return {segment_between(at(0), bulge, at(0.5)), segment_between(at(0.5), bulge, at(1))};
+}
+
+/// The parts of a piece with x >= 0.
+std::vector<ProfileSegment> right_of_axis(const ProfileSegment& piece) {
+  std::vector<double> shares{0, 1};
+  for (const Vector2d& place : crossings(piece, segment_between({0, 0}, 0, {0, 1}), 0)) {
+    const double share = share_of(piece, place);
+    if (share > 0 && share < 1) shares.push_back(share);
+  }
+  if (shares.size() == 2) return piece.at(0.5).x() < 0 ? std::vector<ProfileSegment>() : std::vector{piece};
+  std::ranges::sort(shares);
+  std::vector<ProfileSegment> parts;
+  for (std::size_t k = 1; k < shares.size(); ++k) {
+    if (piece.at(0.5 * (shares[k - 1] + shares[k])).x() < 0) continue;
+    const auto end = [&](double share) {
+      const Vector2d place = piece.at(share);
+      return share > 0 && share < 1 ? Vector2d(0, place.y()) : place;
+    };
+    const double bulge = std::tan((shares[k] - shares[k - 1]) * piece.angle / 4);
+    parts.push_back(segment_between(end(shares[k - 1]), bulge, end(shares[k])));
+  }
+  return parts;
+}
+
 }  // namespace
 
 bool is_same(const Curve& a, const Curve& b, double tolerance) {
@@ -195,21 +236,14 @@ std::vector<CurveExtent> extents_of(std::span<const Curve> curves, double reach)
   return Extender(curves, reach).extents();
 }
 
-std::vector<ProfileSegment> pieces_of(const Curve& curve, const CurveExtent& extent) {
-  if (!curve.is_circle) {
-    const Vector2d direction = to_the_left(curve.normal);
-    const Vector2d foot = curve.offset * curve.normal;
-    return {segment_between(foot + extent.low * direction, 0, foot + extent.high * direction)};
+std::vector<ProfileSegment> pieces_of(const Curve& curve, const CurveExtent& extent, bool is_turned) {
+  const std::vector<ProfileSegment> pieces = whole_pieces_of(curve, extent);
+  if (!is_turned) return pieces;
+  std::vector<ProfileSegment> parts;
+  for (const ProfileSegment& piece : pieces) {
+    for (const ProfileSegment& part : right_of_axis(piece)) parts.push_back(part);
   }
-  const double around = circumference(curve);
-  constexpr double k_nearly_whole = 0.95;
-  const double length = extent.high - extent.low > k_nearly_whole * around ? around : extent.high - extent.low;
-  const auto at = [&](double share) {
-    const double angle = (extent.low + share * length) / curve.offset;
-    return Vector2d(curve.normal + curve.offset * Vector2d(std::cos(angle), std::sin(angle)));
-  };
-  const double bulge = std::tan(length / curve.offset / 8);  // of a half
-  return {segment_between(at(0), bulge, at(0.5)), segment_between(at(0.5), bulge, at(1))};
+  return parts;
 }
 
 Eigen::AlignedBox2d with_ends_of_circles(const Eigen::AlignedBox2d& seen, std::span<const Curve> curves,

@@ -52,8 +52,9 @@ struct CurveExtent {
 /// be hidden. O(curves^2)
 [[nodiscard]] std::vector<CurveExtent> extents_of(std::span<const Curve> curves, double reach);
 
-/// One segment for a line, two for a circle.
-[[nodiscard]] std::vector<ProfileSegment> pieces_of(const Curve& curve, const CurveExtent& extent);
+/// One segment for a line, two for a circle. Of a turned drawing the parts with x >= 0. O(1)
+[[nodiscard]] std::vector<ProfileSegment> pieces_of(const Curve& curve, const CurveExtent& extent,
+                                                    bool is_turned = false);
 
 /// The length of a piece of the curve that is farther than `near` from all its points; all of it without points.
 [[nodiscard]] double bare_length(const ProfileSegment& piece, const Curve& curve, double near);
