@@ -237,7 +237,7 @@ std::vector<CurveExtent> extents_of(std::span<const Curve> curves, double reach)
 }
 
 std::vector<ProfileSegment> pieces_of(const Curve& curve, const CurveExtent& extent, bool is_turned) {
-  const std::vector<ProfileSegment> pieces = whole_pieces_of(curve, extent);
+  std::vector<ProfileSegment> pieces = whole_pieces_of(curve, extent);
   if (!is_turned) return pieces;
   std::vector<ProfileSegment> parts;
   for (const ProfileSegment& piece : pieces) {
