@@ -155,12 +155,13 @@ class LocalSurface {
  private:
   template <class Swept>
   static PrimitiveSurface with_caps(PrimitiveSurface sides, const Swept& swept) {
-    std::vector<PrimitiveSurface> parts{std::move(sides)};
+    std::vector<PrimitiveSurface> ends;
     const std::vector<ProfileSegment> segments = segments_of(swept.profile);
     for (const ProfileCap& cap : caps_of(swept)) {
-      parts.push_back(cap_surface(cap, segments, bounds_of(segments), area_of(swept.profile)));
+      ends.push_back(cap_surface(cap, segments, bounds_of(segments), area_of(swept.profile)));
     }
-    return joined(std::move(parts));
+    if (ends.empty()) return sides;
+    return joined({joined(std::move(ends)), std::move(sides)});
   }
 
   static SurfacePoint on_side(const Cone& cone, double slant, RandomStream& random) {
@@ -271,7 +272,7 @@ PrimitiveSurface turned_surface(std::vector<ProfileSegment> segments, double fro
 
 std::vector<ProfileCap> caps_of(const Extrusion& extrusion) {
   std::vector<ProfileCap> caps;
-  for (const double side : {-1.0, 1.0}) {
+  for (const double side : {1.0, -1.0}) {
     caps.push_back({.origin = 0.5 * side * extrusion.height * Vector3d::UnitZ(),
                     .x_axis = Vector3d::UnitX(),
                     .y_axis = Vector3d::UnitY(),
