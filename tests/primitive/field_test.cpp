@@ -130,8 +130,7 @@ RC_GTEST_PROP(SignedDistance, OfAProfileIsThatOfItsNearestSegment, ()) {
   const Primitive extruded{.id = "e", .shape = Extrusion{.profile = profile, .height = 100}};
   double largest = 1;  // the plain distance from a large circle loses digits
   for (const ProfileSegment& s : segments_of(profile)) largest = std::max(largest, s.radius);
-  Revolution revolution = test::any_revolution(testing::real);
-  revolution.angle_deg = 360;
+  const Revolution revolution = test::any_full_turn(testing::real);
   const Primitive turned{.id = "r", .shape = revolution};
   for (int k = 0; k < 50; ++k) {
     const Eigen::Vector2d place(testing::real(-2, 2), testing::real(-2, 2));

@@ -62,24 +62,31 @@ Profile any_profile(const Draw& draw) {
   return profile;
 }
 
-/// A ring, or a solid around the axis with a flat or pointed bottom; a full turn or a sector.
+/// A ring, or a solid around the axis with a flat or pointed bottom.
 template <class Draw>
-Revolution any_revolution(const Draw& draw) {
-  const double angle_deg = draw(0.0, 1.0) < 0.5 ? 360.0 : draw(5.0, 355.0);
+Revolution any_full_turn(const Draw& draw) {
   if (draw(0.0, 1.0) < 0.5) {
     Profile ring = any_profile(draw);
     const double far = draw(0.1, 1.0) - bounds_of(ring).min().x();
     for (ClosedPath& path : ring.paths) {
       for (PathCorner& corner : path) corner.point.x() += far;
     }
-    return {ring, angle_deg};
+    return {ring};
   }
   const double low = draw(-1.0, -0.2);
   ClosedPath path{{.point = {0, low}},
                   {.point = {draw(0.3, 1.0), low + (draw(0.0, 1.0) < 0.5 ? 0.0 : draw(-0.3, 0.3))}, .bulge = 0},
                   {.point = {draw(0.3, 1.0), draw(0.0, 0.5)}, .bulge = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(0.1, 0.4)},
                   {.point = {0, draw(0.6, 1.0)}}};
-  return {{.paths = {path}}, angle_deg};
+  return {{.paths = {path}}};
+}
+
+/// A full turn or a sector.
+template <class Draw>
+Revolution any_revolution(const Draw& draw) {
+  Revolution revolution = any_full_turn(draw);
+  if (draw(0.0, 1.0) < 0.5) revolution.angle_deg = draw(5.0, 355.0);
+  return revolution;
 }
 
 }  // namespace cloud2csg::test

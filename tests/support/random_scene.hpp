@@ -63,7 +63,7 @@ inline Shape random_shape(RandomStream& random) {
     case 5:
       return Extrusion{.profile = any_profile(draw), .height = quarters(1, 6, random)};
     case 6:
-      return any_revolution(draw);
+      return any_full_turn(draw);
     default: {
       const double x = quarters(1, 6, random);
       const double y = quarters(1, 6, random);
