@@ -11,7 +11,6 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import tempfile
 
 from inversecsg import DOUBTFUL, make_cloud, make_mesh, meshes_in, print_lines, run
@@ -26,10 +25,9 @@ def search(program, mesh, cloud, solids, strategy, folder):
     run([*command, "-o", tree, "--stats", stats, "-q"], 600, (0, DOUBTFUL))
     values = json.loads(stats.read_text())
     iou = json.loads(run([program, "compare", mesh, tree, "--json", "-q"]))["intersection_over_union"]
-    milliseconds = 1000 * values["seconds"]["extraction"]
     cliques = values["clique_histogram"]
-    return {"solids": values["primitives"], "cliques": sum(cliques), "largest": len(cliques) - 1, "iou": iou,
-            "leaves": values["tree"]["leaves"], "ms": milliseconds}
+    return {"solids": values["primitives"], "cliques": sum(cliques), "largest": len(cliques), "iou": iou,
+            "leaves": values["tree"]["leaves"], "ms": 1000 * values["seconds"]["extraction"]}
 
 
 def measure(program, mesh, points, seed):
