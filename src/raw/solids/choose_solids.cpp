@@ -112,7 +112,7 @@ struct FoundList {
   WrittenSolids written = {};
 };
 
-/// Searches a list, then improves it while that saves more than a leaf: with planes between the solid and lumps that
+/// Searches a list, then improves it while that saves anything: with planes between the solid and lumps that
 /// are wrongly in it, and with places beside surface that no point is near. All rounds together work no longer than the
 /// search. `families` is a space without places.
 FoundList found_list(const TermSpace& families, LabelledPlaces places, const Points& points, double near,

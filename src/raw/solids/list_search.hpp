@@ -17,12 +17,13 @@ struct ListLimits {
 };
 
 /// A decision list of low cost. From several starts, inserts the rules that gain most, singly or in pairs that only
-/// gain together. Then removes or exchanges rules while the cost falls. Deterministic. If stopped, the best so far.
+/// gain together. Then removes some and grows others in their place while the cost falls. Deterministic. If stopped,
+/// the best so far.
 [[nodiscard]] DecisionList search_list(const TermSpace& space, const TermCosts& costs, const ListLimits& limits,
                                        const RunContext& run = {});
 
-/// The same from one start: a list over a space to which this one has added planes or places. Absent if that saves no
-/// more than a leaf.
+/// The same from one start: a list over a space to which this one has added planes or places. Absent if that saves
+/// nothing.
 [[nodiscard]] std::optional<DecisionList> improve_list(DecisionList list, const TermSpace& space,
                                                        const TermCosts& costs, const ListLimits& limits,
                                                        const RunContext& run = {});
