@@ -112,8 +112,8 @@ struct FoundList {
   WrittenSolids written = {};
 };
 
-/// Searches a list, then improves it while that saves anything: with planes between the solid and lumps that
-/// are wrongly in it, and with places beside surface that no point is near. All rounds together work no longer than the
+/// Searches a list, then improves it while that saves anything: with planes between the solid and lumps that are
+/// wrongly in it, and with places beside surface that no point is near. All rounds together work no longer than the
 /// search. `families` is a space without places.
 FoundList found_list(const TermSpace& families, LabelledPlaces places, const Points& points, double near,
                      const TermCosts& costs, ListLimits limits, const RunContext& run) {
