@@ -31,4 +31,16 @@ std::vector<OrientedPoint> agreeing_points(const Surface& surface, std::span<con
   });
 }
 
+std::vector<double> costs_of(const Surface& surface, std::span<const OrientedPoint> points, double noise) {
+  return with_agreement(surface, [&](const auto& rule) {
+    std::vector<double> costs;
+    costs.reserve(points.size());
+    for (const OrientedPoint& p : points) {
+      const Agreement agreement = rule(p);
+      costs.push_back(cost_of(agreement.cosine >= k_edge_cosine ? agreement.distance : k_deviations * noise, noise));
+    }
+    return costs;
+  });
+}
+
 }  // namespace cloud2csg

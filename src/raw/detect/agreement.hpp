@@ -150,6 +150,9 @@ auto with_agreement(const Surface& s, const Function& function) {
 [[nodiscard]] std::size_t count_agreeing(const Surface& surface, std::span<const OrientedPoint> points,
                                          const AgreementLimits& limits);
 
+/// cost_of() each point on the surface with this noise. One whose normal is on another side of an edge is an outlier.
+[[nodiscard]] std::vector<double> costs_of(const Surface& surface, std::span<const OrientedPoint> points, double noise);
+
 [[nodiscard]] std::vector<OrientedPoint> agreeing_points(const Surface& surface, std::span<const OrientedPoint> points,
                                                          const AgreementLimits& limits);
 

@@ -14,6 +14,7 @@
 #include "raw/detect/find_surfaces.hpp"
 #include "raw/detect/grow.hpp"
 #include "raw/detect/mixed_surfaces.hpp"
+#include "raw/detect/recombine_surfaces.hpp"
 #include "raw/detect/settle_surfaces.hpp"
 #include "raw/detect/smoothing.hpp"
 #include "raw/detect/split_surfaces.hpp"
@@ -23,14 +24,21 @@
 namespace cloud2csg {
 namespace {
 
-/// Settles all surfaces, and again where mixed ones were replaced.
+/// Settles all surfaces, and again where wrong or mixed ones were replaced.
 std::vector<GrownSurface> settled(std::vector<GrownSurface> surfaces, WorkCloud& cloud,
                                   const NeighbourTable& neighbours, const SearchLimits& limits, const RunContext& run) {
   surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
   MixedSurfaces mixed = replace_mixed_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
-  if (mixed.turned.empty()) return std::move(mixed.surfaces);
-  surfaces = settle_surfaces(std::move(mixed.surfaces), cloud, neighbours, limits, run);
-  turn_back(cloud, mixed.turned, surfaces);
+  surfaces = std::move(mixed.surfaces);
+  if (!mixed.turned.empty()) {
+    surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
+    turn_back(cloud, mixed.turned, surfaces);
+  }
+  for (int round = 0; round < k_rounds; ++round) {
+    std::optional<std::vector<GrownSurface>> better = recombined(surfaces, cloud, neighbours, limits, run);
+    if (!better) break;
+    surfaces = settle_surfaces(std::move(*better), cloud, neighbours, limits, run);
+  }
   return surfaces;
 }
 

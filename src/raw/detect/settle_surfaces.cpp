@@ -20,19 +20,6 @@ bool explains(const Surface& surface, const std::vector<OrientedPoint>& points, 
   return static_cast<double>(count_agreeing(surface, points, limits)) >= share * static_cast<double>(points.size());
 }
 
-/// Costs of the points on a surface with this noise, if their normals are not on another side of an edge.
-std::vector<double> costs_of(const Surface& surface, const std::vector<OrientedPoint>& points, double noise) {
-  return with_agreement(surface, [&](const auto& rule) {
-    std::vector<double> costs;
-    costs.reserve(points.size());
-    for (const OrientedPoint& p : points) {
-      const Agreement agreement = rule(p);
-      costs.push_back(cost_of(agreement.cosine >= k_edge_cosine ? agreement.distance : k_deviations * noise, noise));
-    }
-    return costs;
-  });
-}
-
 /// Sum of `more` - `less` over all points, from those of a sample, and two standard errors less.
 double likely_sum(const std::vector<double>& more, const std::vector<double>& less, std::size_t points) {
   double sum = 0;
