@@ -33,14 +33,19 @@ double variance_of_patches(const GrownSurface& grown, const WorkCloud& cloud, do
   return k_patch * std::pow(robust_deviation(means) / noise, 2);
 }
 
-/// Which surfaces are wrong, as far as their own points tell.
+/// What is known of surfaces beside their fits.
 struct Doubts {
-  std::vector<bool> is_off;  ///< by surface
-  double shared = 1;         ///< as many neighbours have one independent error
+  std::vector<bool> is_exact;  ///< by surface: its points scatter no more than the noise. Those of facets do
+  std::vector<bool> is_off;    ///< by surface: exact, round, and wrong as far as its points tell
+  double shared = 1;           ///< as many neighbours have one independent error
 };
 
-/// Surfaces are off if their patches vary clearly more than those of the surfaces that have a tenth of the points,
-/// which are taken to be right. Planes may be those of a low step: see split_surfaces().
+/// One of so many points is on a right surface. With a quarter instead of a tenth, one more turned part in sixty keeps
+/// wrong ones (`bench_profiles --noise 0.001`).
+constexpr std::size_t k_best_part = 10;
+
+/// Surfaces are off if their patches vary clearly more than those of the best tenth of the points. Planes may be those
+/// of a low step: see split_surfaces().
 Doubts doubts_about(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise,
                     const RunContext& run) {
   std::vector<double> variances(surfaces.size());
@@ -52,13 +57,14 @@ Doubts doubts_about(const std::vector<GrownSurface>& surfaces, const WorkCloud& 
   }
   Doubts doubts;
   if (!by_patch.empty()) {
-    const auto tenth = by_patch.begin() + static_cast<std::ptrdiff_t>(by_patch.size() / 10);
-    std::ranges::nth_element(by_patch, tenth);
-    doubts.shared = std::max(doubts.shared, *tenth);
+    const auto best = by_patch.begin() + static_cast<std::ptrdiff_t>(by_patch.size() / k_best_part);
+    std::ranges::nth_element(by_patch, best);
+    doubts.shared = std::max(doubts.shared, *best);
   }
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const bool is_round = surfaces[s].surface.type != SurfaceType::plane;
-    doubts.is_off.push_back(is_round && k_clear_share * variances[s] > doubts.shared);
+    doubts.is_exact.push_back(k_clear_share * surfaces[s].reach <= k_deviations * noise);
+    doubts.is_off.push_back(doubts.is_exact[s] && is_round && k_clear_share * variances[s] > doubts.shared);
   }
   return doubts;
 }
@@ -66,22 +72,24 @@ Doubts doubts_about(const std::vector<GrownSurface>& surfaces, const WorkCloud& 
 /// Numbers of one surface, or of two that touch.
 using SurfaceGroup = std::vector<std::size_t>;
 
-/// Each surface that is off, alone and with each one that it touches.
+/// Each surface that is off, alone and with each exact one that it touches.
 std::vector<SurfaceGroup> doubtful_groups(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                                          const NeighbourTable& neighbours, const std::vector<bool>& is_off) {
+                                          const NeighbourTable& neighbours, const Doubts& doubts) {
   std::vector<std::size_t> surface_of(cloud.size(), surfaces.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (const std::uint32_t i : surfaces[s].points) surface_of[i] = s;
   }
   std::vector<SurfaceGroup> groups;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    if (is_off[s]) groups.push_back({s});
+    if (doubts.is_off[s]) groups.push_back({s});
     std::vector<std::size_t> contacts(surfaces.size() + 1, 0);
     for (const std::uint32_t i : surfaces[s].points) {
       for (const std::uint32_t j : neighbours.of(i)) ++contacts[surface_of[j]];
     }
     for (std::size_t other = s + 1; other < surfaces.size(); ++other) {
-      if (contacts[other] >= k_nearest && (is_off[s] || is_off[other])) groups.push_back({s, other});
+      const bool are_doubtful =
+          (doubts.is_off[s] && doubts.is_exact[other]) || (doubts.is_off[other] && doubts.is_exact[s]);
+      if (are_doubtful && contacts[other] >= k_nearest) groups.push_back({s, other});
     }
   }
   return groups;
@@ -240,7 +248,7 @@ std::optional<std::vector<GrownSurface>> recombined(std::vector<GrownSurface> su
                                                     const NeighbourTable& neighbours, const SearchLimits& limits,
                                                     const RunContext& run) {
   const Doubts doubts = doubts_about(surfaces, cloud, limits.agreement.noise, run);
-  const std::vector<SurfaceGroup> groups = doubtful_groups(surfaces, cloud, neighbours, doubts.is_off);
+  const std::vector<SurfaceGroup> groups = doubtful_groups(surfaces, cloud, neighbours, doubts);
   std::vector<Replacement> found = best_replacements(groups, surfaces, cloud, limits.agreement, doubts.shared, run);
   if (found.empty()) return std::nullopt;
   std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.gain > b.gain; });
