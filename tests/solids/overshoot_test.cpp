@@ -76,6 +76,20 @@ TEST(Overshoot, BoresAndCountersinksReachBeyondThePart) {
   EXPECT_NEAR(cone.height, 1 + k_percent, 1e-9);
 }
 
+/// A disc that cuts an end off, its axis far from the part, in any direction from its own zero angle.
+TEST(Overshoot, SolidsFarLargerThanThePartReachBeyondItOnlyWhereNothingIs) {
+  for (const double angle : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
+    for (const double side : {-1.0, 1.0}) {
+      Primitive disc = test::placed("disc", Cylinder{.radius = 1000, .height = 2}, {side * 1003, 0, 0});
+      disc.pose.orientation = Eigen::AngleAxisd(angle, Vector3d::UnitZ());
+      const PrimitiveSet solids = with_overshooting_cut(disc);
+      ASSERT_TRUE(std::holds_alternative<Cylinder>(solids[1].shape));
+      EXPECT_NEAR(std::get<Cylinder>(solids[1].shape).radius, 1000, 1e-9) << angle;
+      EXPECT_NEAR(std::get<Cylinder>(solids[1].shape).height, 2 + 2 * k_percent, 1e-9) << angle;
+    }
+  }
+}
+
 TEST(Overshoot, SolidsThatTouchOverlapAfterwards) {
   const PrimitiveSet solids = with_overshoots({test::placed("plate", Box{{8, 6, 2}}, {0, 0, 0}),
                                                test::placed("boss", Cylinder{.radius = 1, .height = 2}, {0, 0, 2})},
