@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,17 +20,18 @@ constexpr SearchLimits k_turned_limits{
     .link = 0.05,
     .least_points = 15};
 
-/// A surface of revolution whose radius above height 0 changes by `slope`, in a cloud of diagonal about 1.
+/// A cloud of diagonal about 1.
 struct Turned {
   WorkCloud cloud;
   NeighbourTable neighbours;
 };
 
-Turned make_turned(double slope, std::uint64_t seed = 7) {
+/// A surface of revolution from height `low` on, whose radius above height 0 changes by `slope`.
+Turned make_turned(double slope, std::uint64_t seed = 7, double low = -0.15) {
   RandomStream random(seed);
   PointCloud cloud;
   for (std::size_t k = 0; k < 8000; ++k) {
-    const double height = random.uniform(-0.15, 0.15);
+    const double height = random.uniform(low, 0.15);
     const double angle = random.uniform(0, 2 * std::numbers::pi);
     const double here = height > 0 ? slope : 0;
     const Vector3d outward(std::cos(angle), std::sin(angle), 0);
@@ -47,7 +49,7 @@ Turned make_turned(double slope, std::uint64_t seed = 7) {
   return turned;
 }
 
-/// A surface of this type fitted to the points with is_wanted(height), which it has.
+/// A surface of this type fitted to the points with is_wanted(height). These are its points.
 template <class IsWanted>
 GrownSurface fitted_to(const Turned& turned, SurfaceType type, const IsWanted& is_wanted) {
   GrownSurface grown{.surface = {}, .points = {}, .reach = k_turned_limits.agreement.distance};
@@ -89,27 +91,66 @@ TEST(Recombined, ChangesTheTypeOfOneSurface) {
   EXPECT_GT(result->back().points.size(), 3900U);
 }
 
-/// Two bands of a cylinder are as good as two spheres, as far as each alone can tell.
+/// Two bands of a cylinder, each as a sphere.
 TEST(Recombined, PutsOneSurfaceInPlaceOfTwo) {
-  const Turned turned = make_turned(0);
-  const auto result = recombined(
-      turned, {fitted_to(turned, SurfaceType::sphere, is_below), fitted_to(turned, SurfaceType::sphere, is_above)});
-  ASSERT_TRUE(result);
-  ASSERT_EQ(result->size(), 1U);
-  EXPECT_EQ(result->front().surface.type, SurfaceType::cylinder);
+  const auto is_low = [](double height) { return height < -0.15; };
+  const auto is_middle = [](double height) { return height >= -0.15 && height < 0; };
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Turned turned = make_turned(0.5, seed, -0.3);
+    const std::vector<GrownSurface> surfaces{fitted_to(turned, SurfaceType::sphere, is_low),
+                                             fitted_to(turned, SurfaceType::sphere, is_middle),
+                                             fitted_to(turned, SurfaceType::cone, is_above)};
+    auto result = recombined(turned, surfaces);
+    ASSERT_TRUE(result) << seed;
+    result = recombined(turned, *result).value_or(*result);
+    ASSERT_EQ(result->size(), 2U) << seed;
+    EXPECT_EQ(std::ranges::count(*result, SurfaceType::cylinder, [](const auto& s) { return s.surface.type; }), 1);
+  }
 }
 
-/// A sphere has the cylinder and the lower part of the cone, and another the rest of it.
+/// A sphere has the cylinder and the lower part of the cone, and a cone the rest of it.
 TEST(Recombined, PutsOneSurfaceBesideOneThatStays) {
   const Turned turned = make_turned(0.5);
   const auto is_high = [](double height) { return height > 0.05; };
   const auto is_low = [](double height) { return height <= 0.05; };
-  std::vector<GrownSurface> surfaces{fitted_to(turned, SurfaceType::sphere, is_low),
-                                     fitted_to(turned, SurfaceType::cone, is_high)};
+  const std::vector<GrownSurface> surfaces{fitted_to(turned, SurfaceType::sphere, is_low),
+                                           fitted_to(turned, SurfaceType::cone, is_high)};
   const auto result = recombined(turned, surfaces);
   ASSERT_TRUE(result);
   ASSERT_EQ(result->size(), 2U);
+  EXPECT_EQ(result->front().surface.type, SurfaceType::cone);
   EXPECT_EQ(result->back().surface.type, SurfaceType::cylinder);
+  EXPECT_NEAR(result->back().surface.radius, 0.3, 0.002);
+}
+
+/// Points of facets reach farther than the noise. A surface that follows them is no better.
+TEST(Recombined, LeavesSurfacesWithAFormErrorAlone) {
+  const Turned turned = make_turned(0.5);
+  std::vector<GrownSurface> surfaces{fitted_to(turned, SurfaceType::sphere, is_below),
+                                     fitted_to(turned, SurfaceType::cone, is_above)};
+  surfaces[0].reach *= 1.5;
+  EXPECT_FALSE(recombined(turned, surfaces));
+}
+
+TEST(Recombined, NeedsEnoughPoints) {
+  const Turned turned = make_turned(0.5);
+  EXPECT_FALSE(recombined(turned, {}));
+  std::vector<GrownSurface> surfaces{fitted_to(turned, SurfaceType::sphere, is_below)};
+  surfaces[0].points.resize(k_patch - 1);
+  EXPECT_FALSE(recombined(turned, surfaces));
+}
+
+/// A sphere finds more points than either cone. The faces of the ends are planes.
+TEST(Recombined, LetsDetectionFindTwoConesOnOneAnother) {
+  const test::Part part{
+      .primitives = {test::placed("low", Cone{.radius_bottom = 2.06, .radius_top = 2.04, .height = 0.86}, {0, 0, 0}),
+                     test::placed("high", Cone{.radius_bottom = 2.04, .radius_top = 1.61, .height = 0.77},
+                                  {0, 0, 0.5 * (0.86 + 0.77)})},
+      .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
+  const Detection detection = test::detect(test::cloud_of(part, 0.0066, 40'000), 0.0066);
+  EXPECT_EQ(detection.surfaces.size(), 4U);
+  EXPECT_EQ(test::count_of(detection, SurfaceType::plane), 2U);
+  EXPECT_EQ(test::count_of(detection, SurfaceType::cone), 2U);
 }
 
 }  // namespace

@@ -90,6 +90,23 @@ TEST(Overshoot, SolidsFarLargerThanThePartReachBeyondItOnlyWhereNothingIs) {
   }
 }
 
+/// The same with a sector just wide enough for the part, on either side of its own zero angle.
+TEST(Overshoot, SectorsFarLargerThanThePartReachBeyondItOnlyWhereNothingIs) {
+  const ClosedPath path{{.point = {0, -1}}, {.point = {1000, -1}}, {.point = {1000, 1}}, {.point = {0, 1}}};
+  for (const double side : {0.0, 180.0}) {
+    for (const double angle_deg : {1.0, 90.0, 200.0}) {
+      Primitive sector = test::placed("sector", Revolution{.profile = {.paths = {path}}, .angle_deg = angle_deg},
+                                      {side > 0 ? 1003.0 : -1003.0, 0, 0});
+      sector.pose.orientation = Eigen::AngleAxisd((side - 0.5 * angle_deg) * std::acos(-1) / 180, Vector3d::UnitZ());
+      const PrimitiveSet solids = with_overshooting_cut(sector);
+      const auto* const result = std::get_if<Revolution>(&solids[1].shape);
+      ASSERT_TRUE(result != nullptr);
+      EXPECT_NEAR(bounds_of(result->profile).max().x(), 1000, 1e-9) << side << ' ' << angle_deg;
+      EXPECT_NEAR(bounds_of(result->profile).max().y(), 1 + k_percent, 1e-9) << side << ' ' << angle_deg;
+    }
+  }
+}
+
 TEST(Overshoot, SolidsThatTouchOverlapAfterwards) {
   const PrimitiveSet solids = with_overshoots({test::placed("plate", Box{{8, 6, 2}}, {0, 0, 0}),
                                                test::placed("boss", Cylinder{.radius = 1, .height = 2}, {0, 0, 2})},

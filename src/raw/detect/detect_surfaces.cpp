@@ -30,15 +30,13 @@ std::vector<GrownSurface> settled(std::vector<GrownSurface> surfaces, WorkCloud&
   surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
   MixedSurfaces mixed = replace_mixed_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
   surfaces = std::move(mixed.surfaces);
-  if (!mixed.turned.empty()) {
-    surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
-    turn_back(cloud, mixed.turned, surfaces);
-  }
-  for (int round = 0; round < k_rounds; ++round) {
+  if (!mixed.turned.empty()) surfaces = settle_surfaces(std::move(surfaces), cloud, neighbours, limits, run);
+  for (int round = 0; round < k_rounds && !limits.is_distance_given; ++round) {
     std::optional<std::vector<GrownSurface>> better = recombined(surfaces, cloud, neighbours, limits, run);
     if (!better) break;
     surfaces = settle_surfaces(std::move(*better), cloud, neighbours, limits, run);
   }
+  turn_back(cloud, mixed.turned, surfaces);
   return surfaces;
 }
 
@@ -158,8 +156,7 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
                    .distance_tolerance = detection_tolerance(options, first.scale)};
   std::vector<GrownSurface> surfaces =
       settle_and_find_more(std::move(first.surfaces), work, neighbours, limits, options.seed, run);
-  // A given tolerance says that nearer surfaces are one.
-  const double smoothing = options.distance_tolerance ? 0 : smoothing_length(surfaces, work, limits.agreement.noise);
+  const double smoothing = limits.is_distance_given ? 0 : smoothing_length(surfaces, work, limits.agreement.noise);
   if (smoothing > 0) {
     surfaces = settle_surfaces(without_smoothed_edges(std::move(surfaces), work, smoothing, limits, run), work,
                                neighbours, limits, run);
@@ -168,7 +165,7 @@ Detection detect_surfaces(const PointCloud& cloud, const Scale& scale, const Det
       result.smoothed.push_back(work.index[i]);
     }
     std::ranges::sort(result.smoothed);
-  } else if (!options.distance_tolerance) {  // neighbours have independent errors
+  } else if (!limits.is_distance_given) {  // neighbours have independent errors
     surfaces = split_surfaces(std::move(surfaces), work, limits, run);
   }
   for (const GrownSurface& grown : surfaces) {

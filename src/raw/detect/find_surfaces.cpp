@@ -104,7 +104,8 @@ SearchLimits limits_of(const DetectOptions& options, const Scale& scale, const W
                         .most_radius = most_radius_of(options, work.diagonal)},
           .link = std::max(k_link_in_spacings * scale.spacing, 2 * tolerance) / work.diagonal,
           .least_points = least_points_of(options, scale, work.size()),
-          .is_least_given = options.least_points.has_value()};
+          .is_least_given = options.least_points.has_value(),
+          .is_distance_given = options.distance_tolerance.has_value()};
 }
 
 /// Noise of the points of the median plane, which is weighted by points; absent if planes have few points. Other

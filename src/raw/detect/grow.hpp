@@ -20,9 +20,10 @@ namespace cloud2csg {
 
 struct SearchLimits {
   AgreementLimits agreement;
-  double link;                  ///< edge for connected_groups()
-  std::size_t least_points;     ///< in a plane, the simplest surface
-  bool is_least_given = false;  ///< whether all types need as many
+  double link;                     ///< edge for connected_groups()
+  std::size_t least_points;        ///< in a plane, the simplest surface
+  bool is_least_given = false;     ///< whether all types need as many
+  bool is_distance_given = false;  ///< then nearer surfaces are one
 
   /// A surface with more parameters needs as many more points.
   [[nodiscard]] std::size_t least_points_of(SurfaceType type) const {

@@ -33,11 +33,11 @@ double variance_of_patches(const GrownSurface& grown, const WorkCloud& cloud, do
   return k_patch * std::pow(robust_deviation(means) / noise, 2);
 }
 
-/// What is known of surfaces beside their fits.
-struct Doubts {
-  std::vector<bool> is_exact;  ///< by surface: its points scatter no more than the noise. Those of facets do
-  std::vector<bool> is_off;    ///< by surface: exact, round, and wrong as far as its points tell
-  double shared = 1;           ///< as many neighbours have one independent error
+/// What patches of their points tell of surfaces.
+struct PatchErrors {
+  std::vector<bool> is_exact;   ///< by surface: no point is farther off than the noise allows. Points of facets are
+  std::vector<bool> is_off;     ///< by surface: exact and round, but wrong as far as its points tell
+  double points_per_error = 1;  ///< as many neighbours share one error
 };
 
 /// One of so many points is on a right surface. With a quarter instead of a tenth, one more turned part in sixty keeps
@@ -46,27 +46,27 @@ constexpr std::size_t k_best_part = 10;
 
 /// Surfaces are off if their patches vary clearly more than those of the best tenth of the points. Planes may be those
 /// of a low step: see split_surfaces().
-Doubts doubts_about(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise,
-                    const RunContext& run) {
+PatchErrors patch_errors(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud, double noise,
+                         const RunContext& run) {
   std::vector<double> variances(surfaces.size());
   for_each_index(surfaces.size(), run,
                  [&](std::size_t s) { variances[s] = variance_of_patches(surfaces[s], cloud, noise); });
+  PatchErrors errors;
   std::vector<double> by_patch;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    by_patch.insert(by_patch.end(), surfaces[s].points.size() / k_patch, variances[s]);
+    errors.is_exact.push_back(k_clear_share * surfaces[s].reach <= k_deviations * noise);
+    if (errors.is_exact[s]) by_patch.insert(by_patch.end(), surfaces[s].points.size() / k_patch, variances[s]);
   }
-  Doubts doubts;
   if (!by_patch.empty()) {
     const auto best = by_patch.begin() + static_cast<std::ptrdiff_t>(by_patch.size() / k_best_part);
     std::ranges::nth_element(by_patch, best);
-    doubts.shared = std::max(doubts.shared, *best);
+    errors.points_per_error = std::max(errors.points_per_error, *best);
   }
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const bool is_round = surfaces[s].surface.type != SurfaceType::plane;
-    doubts.is_exact.push_back(k_clear_share * surfaces[s].reach <= k_deviations * noise);
-    doubts.is_off.push_back(doubts.is_exact[s] && is_round && k_clear_share * variances[s] > doubts.shared);
+    errors.is_off.push_back(errors.is_exact[s] && is_round && k_clear_share * variances[s] > errors.points_per_error);
   }
-  return doubts;
+  return errors;
 }
 
 /// Numbers of one surface, or of two that touch.
@@ -74,22 +74,22 @@ using SurfaceGroup = std::vector<std::size_t>;
 
 /// Each surface that is off, alone and with each exact one that it touches.
 std::vector<SurfaceGroup> doubtful_groups(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                                          const NeighbourTable& neighbours, const Doubts& doubts) {
+                                          const NeighbourTable& neighbours, const PatchErrors& errors) {
   std::vector<std::size_t> surface_of(cloud.size(), surfaces.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (const std::uint32_t i : surfaces[s].points) surface_of[i] = s;
   }
   std::vector<SurfaceGroup> groups;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    if (doubts.is_off[s]) groups.push_back({s});
+    if (!errors.is_off[s]) continue;
+    groups.push_back({s});
     std::vector<std::size_t> contacts(surfaces.size() + 1, 0);
     for (const std::uint32_t i : surfaces[s].points) {
       for (const std::uint32_t j : neighbours.of(i)) ++contacts[surface_of[j]];
     }
-    for (std::size_t other = s + 1; other < surfaces.size(); ++other) {
-      const bool are_doubtful =
-          (doubts.is_off[s] && doubts.is_exact[other]) || (doubts.is_off[other] && doubts.is_exact[s]);
-      if (are_doubtful && contacts[other] >= k_nearest) groups.push_back({s, other});
+    for (std::size_t other = 0; other < surfaces.size(); ++other) {
+      const bool is_known = other == s || (other < s && errors.is_off[other]);
+      if (contacts[other] >= k_nearest && errors.is_exact[other] && !is_known) groups.push_back({s, other});
     }
   }
   return groups;
@@ -113,32 +113,34 @@ struct Replacement {
   double gain;
 };
 
-/// Points of a group, those of each surface in turn, and their costs on each surface. One of `shared` points counts,
-/// and at most k_large_sample of a surface: with half as many, fewer wrong surfaces are told from right ones; double
-/// takes longer.
+/// Compares surfaces of a group by points of it: those of each surface in turn, one for each independent error, and at
+/// most k_large_sample. With half as many, fewer wrong surfaces are told from right ones; double takes longer.
 class Contest {
  public:
   Contest(SurfaceGroup group, const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-          const AgreementLimits& limits, double shared)
+          const AgreementLimits& limits, double points_per_error)
       : group_(std::move(group)), limits_(limits) {
     limits_.distance = 0;
     for (const std::size_t s : group_) limits_.distance = std::max(limits_.distance, surfaces[s].reach);
     for (const std::size_t s : group_) {
-      const std::size_t most = std::min(surfaces[s].points.size(), k_large_sample);
-      const auto counted = static_cast<std::size_t>(std::ceil(static_cast<double>(most) / shared));
-      const std::vector<OrientedPoint> some = cloud.some_of(surfaces[s].points, counted);
-      for (const double cost : costs_on(surfaces[s].surface, some)) now_ += cost;
+      const double errors = std::ceil(static_cast<double>(surfaces[s].points.size()) / points_per_error);
+      const std::vector<OrientedPoint> some =
+          cloud.some_of(surfaces[s].points, std::min(static_cast<std::size_t>(errors), k_large_sample));
+      for (const double cost : costs_on(surfaces[s].surface, some)) cost_now_ += cost;
       points_.insert(points_.end(), some.begin(), some.end());
+      ends_.push_back(points_.size());
     }
     for (const std::size_t s : group_) {
       costs_.push_back(costs_on(surfaces[s].surface, points_));
       prices_.push_back(price_of(surfaces[s].surface));
-      now_ += prices_.back();
+      cost_now_ += prices_.back();
     }
   }
 
-  /// Tries the surfaces known for each of the group, and those that fit the points of both.
+  /// Tries the surfaces known for each of the group, and those that fit the points of both. Absent if none is better
+  /// beyond doubt, or if few points tell. One in place of two needs to be only as likely.
   [[nodiscard]] std::optional<Replacement> best_replacement(const std::vector<std::vector<Surface>>& known) const {
+    if (points_.size() < 2 * k_patch) return std::nullopt;
     std::optional<Replacement> best;
     const auto consider = [&](const Surface& surface) {
       Replacement other = replacement_by(surface);
@@ -163,13 +165,13 @@ class Contest {
   [[nodiscard]] Replacement replacement_by(const Surface& surface) const {
     const std::vector<double> costs = costs_on(surface, points_);
     const double alone = std::accumulate(costs.begin(), costs.end(), price_of(surface));
-    Replacement best{.group = group_, .surface = surface, .stays = std::nullopt, .gain = now_ - alone};
+    Replacement best{.group = group_, .surface = surface, .stays = std::nullopt, .gain = cost_now_ - alone};
     if (group_.size() == 1) return best;
     for (std::size_t k = 0; k < group_.size(); ++k) {
       const double both = price_of(surface) + prices_[k] + cost_on_either(costs, costs_[k]);
-      if (now_ - both > best.gain) {
+      if (cost_now_ - both > best.gain) {
         best.stays = group_[k];
-        best.gain = now_ - both;
+        best.gain = cost_now_ - both;
       }
     }
     return best;
@@ -177,15 +179,18 @@ class Contest {
 
   /// A patch of points is on one of the two. If each point were on the nearer one, two surfaces in one place would have
   /// less noise than one.
-  static double cost_on_either(std::span<const double> a, std::span<const double> b) {
+  [[nodiscard]] double cost_on_either(std::span<const double> a, std::span<const double> b) const {
     double sum = 0;
-    for (std::size_t first = 0; first < a.size(); first += k_patch) {
-      const std::size_t count = std::min(k_patch, a.size() - first);
-      const auto cost = [&](std::span<const double> costs) {
-        const auto some = costs.subspan(first, count);
-        return std::accumulate(some.begin(), some.end(), 0.0);
-      };
-      sum += std::min(cost(a), cost(b));
+    std::size_t first = 0;
+    for (const std::size_t end : ends_) {
+      for (std::size_t last = first; first < end; first = last) {
+        last = std::min(first + k_patch, end);
+        const auto cost = [&](std::span<const double> costs) {
+          return std::accumulate(costs.begin() + static_cast<std::ptrdiff_t>(first),
+                                 costs.begin() + static_cast<std::ptrdiff_t>(last), 0.0);
+        };
+        sum += std::min(cost(a), cost(b));
+      }
     }
     return sum;
   }
@@ -193,12 +198,14 @@ class Contest {
   SurfaceGroup group_;
   AgreementLimits limits_;
   std::vector<OrientedPoint> points_;
+  std::vector<std::size_t> ends_;           // of the points of each surface
   std::vector<std::vector<double>> costs_;  // by surface, then point
   std::vector<double> prices_;              // by surface
-  double now_ = 0;                          // with each point on its surface
+  double cost_now_ = 0;                     // of the points on their surfaces, with the prices
 };
 
-/// The new surface takes the points of those that go within its reach, and nearer ones of the one that stays.
+/// The new surface takes the points of replaced ones that are within the largest reach of the group; the others become
+/// free. Of the one that stays, it takes those that are nearer to it.
 GrownSurface put_in_place(const Replacement& replacement, std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                           const AgreementLimits& limits) {
   GrownSurface added{.surface = replacement.surface, .points = {}};
@@ -220,20 +227,23 @@ GrownSurface put_in_place(const Replacement& replacement, std::vector<GrownSurfa
   return added;
 }
 
-/// Of the groups that have one. @throws Cancelled
+/// The best replacement of each group that has one. @throws Cancelled
 std::vector<Replacement> best_replacements(const std::vector<SurfaceGroup>& groups,
                                            const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
-                                           const AgreementLimits& limits, double shared, const RunContext& run) {
+                                           const AgreementLimits& limits, double points_per_error,
+                                           const RunContext& run) {
+  std::vector<bool> is_asked(surfaces.size(), false);
+  for (const SurfaceGroup& group : groups) {
+    for (const std::size_t s : group) is_asked[s] = true;
+  }
   std::vector<std::vector<Surface>> known(surfaces.size());  // that fit the points of one surface
   for_each_index(surfaces.size(), run, [&](std::size_t s) {
-    const bool is_asked =
-        std::ranges::any_of(groups, [&](const SurfaceGroup& g) { return std::ranges::count(g, s) > 0; });
-    if (!is_asked) return;
+    if (!is_asked[s]) return;
     known[s] = estimates(cloud.some_of(surfaces[s].points, k_sample), limits.within(surfaces[s].reach));
   });
   std::vector<std::optional<Replacement>> found(groups.size());
   for_each_index(groups.size(), run, [&](std::size_t g) {
-    found[g] = Contest(groups[g], surfaces, cloud, limits, shared).best_replacement(known);
+    found[g] = Contest(groups[g], surfaces, cloud, limits, points_per_error).best_replacement(known);
   });
   std::vector<Replacement> replacements;
   for (std::optional<Replacement>& replacement : found) {
@@ -247,9 +257,11 @@ std::vector<Replacement> best_replacements(const std::vector<SurfaceGroup>& grou
 std::optional<std::vector<GrownSurface>> recombined(std::vector<GrownSurface> surfaces, const WorkCloud& cloud,
                                                     const NeighbourTable& neighbours, const SearchLimits& limits,
                                                     const RunContext& run) {
-  const Doubts doubts = doubts_about(surfaces, cloud, limits.agreement.noise, run);
-  const std::vector<SurfaceGroup> groups = doubtful_groups(surfaces, cloud, neighbours, doubts);
-  std::vector<Replacement> found = best_replacements(groups, surfaces, cloud, limits.agreement, doubts.shared, run);
+  const PatchErrors errors = patch_errors(surfaces, cloud, limits.agreement.noise, run);
+  if (std::ranges::find(errors.is_off, true) == errors.is_off.end()) return std::nullopt;
+  const std::vector<SurfaceGroup> groups = doubtful_groups(surfaces, cloud, neighbours, errors);
+  std::vector<Replacement> found =
+      best_replacements(groups, surfaces, cloud, limits.agreement, errors.points_per_error, run);
   if (found.empty()) return std::nullopt;
   std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.gain > b.gain; });
   std::vector<bool> is_replaced(surfaces.size(), false);

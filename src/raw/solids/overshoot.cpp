@@ -66,16 +66,22 @@ std::vector<Vector2d> places_in(const Profile& profile, const Levels& levels, do
   return places;
 }
 
-/// Angles from 0 to `turn` around the local z, or those of a half turn or less at which a ball lies. Absent if the ball
-/// misses the circle through the place (r, z).
-std::optional<std::pair<double, double>> angles_in(const Vector3d& middle, double radius, const Vector2d& place,
-                                                   double turn) {
+/// Intervals of the angles from 0 to `turn` around the local z at which the circle through the place (r, z) may lie in
+/// a ball.
+std::vector<std::pair<double, double>> angles_in(const Vector3d& middle, double radius, const Vector2d& place,
+                                                 double turn) {
   const double away = middle.head<2>().norm();
-  if ((Vector2d(away, middle.z()) - place).norm() > radius) return std::nullopt;
-  if (away <= radius) return std::pair{0.0, turn};
+  if ((Vector2d(away, middle.z()) - place).norm() > radius) return {};
+  if (away <= radius) return {{0, turn}};
   const double angle = std::atan2(middle.y(), middle.x());
   const double half = std::asin(radius / away);
-  return std::pair{angle - half, angle + half};
+  std::vector<std::pair<double, double>> intervals;
+  for (const double turned : {angle, angle + 2 * std::numbers::pi}) {
+    const double first = std::max(turned - half, 0.0);
+    const double last = std::min(turned + half, turn);
+    if (first < last) intervals.emplace_back(first, last);
+  }
+  return intervals;
 }
 
 /// Points of a solid at one place of its profile, around the box, at most `step` apart.
@@ -91,11 +97,10 @@ Points points_at(const Primitive& solid, const Vector2d& place, const AlignedBox
   }
   const double turn = turn_of(std::get<Revolution>(solid.shape));
   const double radius = 0.5 * box.diagonal().norm() + step;
-  const auto angles = angles_in(solid.pose.to_local(box.center()), radius, place, turn);
-  if (!angles) return points;
-  for (const double angle : positions_between(angles->first, angles->second, {}, step / place.x())) {
-    if ((angle < 0 ? angle + 2 * std::numbers::pi : angle) > turn) continue;
-    points.push_back(solid.pose.to_world({place.x() * std::cos(angle), place.x() * std::sin(angle), place.y()}));
+  for (const auto& [first, last] : angles_in(solid.pose.to_local(box.center()), radius, place, turn)) {
+    for (const double angle : positions_between(first, last, {}, step / place.x())) {
+      points.push_back(solid.pose.to_world({place.x() * std::cos(angle), place.x() * std::sin(angle), place.y()}));
+    }
   }
   return points;
 }
