@@ -19,12 +19,13 @@ constexpr SearchLimits k_turned_limits{
     .link = 0.05,
     .least_points = 15};
 
-/// A surface of revolution whose radius above height 0 changes by `slope`, in a cloud of diagonal about 1.
+/// A cloud of diagonal about 1.
 struct Turned {
   WorkCloud cloud;
   NeighbourTable neighbours;
 };
 
+/// A surface of revolution whose radius above height 0 changes by `slope`.
 Turned make_turned(double slope, std::uint64_t seed = 7) {
   RandomStream random(seed);
   PointCloud cloud;
@@ -47,7 +48,7 @@ Turned make_turned(double slope, std::uint64_t seed = 7) {
   return turned;
 }
 
-/// A surface of this type fitted to the points with is_wanted(height), which it has.
+/// A surface of this type fitted to the points with is_wanted(height). These are its points.
 template <class IsWanted>
 GrownSurface fitted_to(const Turned& turned, SurfaceType type, const IsWanted& is_wanted) {
   GrownSurface grown{.surface = {}, .points = {}, .reach = k_turned_limits.agreement.distance};
@@ -99,7 +100,7 @@ TEST(Recombined, PutsOneSurfaceInPlaceOfTwo) {
   EXPECT_EQ(result->front().surface.type, SurfaceType::cylinder);
 }
 
-/// A sphere has the cylinder and the lower part of the cone, and another the rest of it.
+/// A sphere has the cylinder and the lower part of the cone, and a cone the rest of it.
 TEST(Recombined, PutsOneSurfaceBesideOneThatStays) {
   const Turned turned = make_turned(0.5);
   const auto is_high = [](double height) { return height > 0.05; };

@@ -35,7 +35,7 @@ double variance_of_patches(const GrownSurface& grown, const WorkCloud& cloud, do
 
 /// What is known of surfaces beside their fits.
 struct Doubts {
-  std::vector<bool> is_exact;  ///< by surface: its points scatter no more than the noise. Those of facets do
+  std::vector<bool> is_exact;  ///< by surface: no point is farther off than the noise allows. Points of facets are
   std::vector<bool> is_off;    ///< by surface: exact, round, and wrong as far as its points tell
   double shared = 1;           ///< as many neighbours have one independent error
 };
@@ -195,10 +195,11 @@ class Contest {
   std::vector<OrientedPoint> points_;
   std::vector<std::vector<double>> costs_;  // by surface, then point
   std::vector<double> prices_;              // by surface
-  double now_ = 0;                          // with each point on its surface
+  double now_ = 0;                          // of the points on their surfaces, with the prices
 };
 
-/// The new surface takes the points of those that go within its reach, and nearer ones of the one that stays.
+/// The new surface takes the points of replaced ones that are within the largest reach of the group; the others become
+/// free. Of the one that stays, it takes those that are nearer to it.
 GrownSurface put_in_place(const Replacement& replacement, std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                           const AgreementLimits& limits) {
   GrownSurface added{.surface = replacement.surface, .points = {}};
@@ -220,7 +221,7 @@ GrownSurface put_in_place(const Replacement& replacement, std::vector<GrownSurfa
   return added;
 }
 
-/// Of the groups that have one. @throws Cancelled
+/// The best replacement of each group that has one. @throws Cancelled
 std::vector<Replacement> best_replacements(const std::vector<SurfaceGroup>& groups,
                                            const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                                            const AgreementLimits& limits, double shared, const RunContext& run) {
