@@ -40,6 +40,17 @@ struct GrownSurface {
   std::vector<std::uint32_t> fitted_to = {};  ///< the points of the last fit while surfaces settle
 };
 
+/// By point of the cloud: the number of the surface, or of another set with `.points`, that has it; their count if none
+/// has. O(n)
+template <class Set>
+std::vector<std::size_t> owners_of_points(const std::vector<Set>& sets, const WorkCloud& cloud) {
+  std::vector<std::size_t> owners(cloud.size(), sets.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    for (const std::uint32_t i : sets[s].points) owners[i] = s;
+  }
+  return owners;
+}
+
 /// Points on none of the surfaces. O(n)
 [[nodiscard]] FreePoints free_points(const WorkCloud& cloud, const std::vector<GrownSurface>& surfaces);
 

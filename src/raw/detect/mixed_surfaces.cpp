@@ -59,10 +59,7 @@ bool is_sure(std::size_t number, const GrownSurface& grown, const std::vector<st
 std::vector<Part> surfaces_and_free_groups(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                                            const NeighbourTable& neighbours, const SearchLimits& limits,
                                            const RunContext& run) {
-  std::vector<std::size_t> surface_of(cloud.size(), surfaces.size());
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    for (const std::uint32_t i : surfaces[s].points) surface_of[i] = s;
-  }
+  const std::vector<std::size_t> surface_of = owners_of_points(surfaces, cloud);
   std::vector<Part> parts(surfaces.size());
   for_each_index(surfaces.size(), run, [&](std::size_t s) {
     const bool sure = is_sure(s, surfaces[s], surface_of, cloud, neighbours, limits.agreement.noise);
@@ -79,10 +76,7 @@ std::vector<Part> surfaces_and_free_groups(const std::vector<GrownSurface>& surf
 /// A last part stands for free points that sure surfaces explain.
 std::vector<Surroundings> surroundings_of(const std::vector<Part>& parts, const WorkCloud& cloud,
                                           const NeighbourTable& neighbours) {
-  std::vector<std::size_t> part_of(cloud.size(), parts.size());
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    for (const std::uint32_t i : parts[p].points) part_of[i] = p;
-  }
+  const std::vector<std::size_t> part_of = owners_of_points(parts, cloud);
   std::vector<Surroundings> result(parts.size());
   std::vector<std::size_t> counts(parts.size() + 1, 0);
   for (std::size_t p = 0; p < parts.size(); ++p) {

@@ -75,10 +75,7 @@ using SurfaceGroup = std::vector<std::size_t>;
 /// Each surface that is off, alone and with each exact one that it touches.
 std::vector<SurfaceGroup> doubtful_groups(const std::vector<GrownSurface>& surfaces, const WorkCloud& cloud,
                                           const NeighbourTable& neighbours, const PatchErrors& errors) {
-  std::vector<std::size_t> surface_of(cloud.size(), surfaces.size());
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    for (const std::uint32_t i : surfaces[s].points) surface_of[i] = s;
-  }
+  const std::vector<std::size_t> surface_of = owners_of_points(surfaces, cloud);
   std::vector<SurfaceGroup> groups;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     if (!errors.is_off[s]) continue;
