@@ -179,14 +179,36 @@ struct CellStatistics {
   [[nodiscard]] double contradicted_share() const { return contradicted_points / std::max(1.0, speaking_points); }
 };
 
+/// Why nobody saw a surface.
+enum class Unseen {
+  side,       ///< the part stood on it
+  underside,  ///< it is below an overhang
+  wall,       ///< it is deep in a hole
+  bend,       ///< it is inside a bent pipe
+};
+constexpr auto names_of(Unseen /*any*/) {
+  return std::to_array<EnumName<Unseen>>(
+      {{"side", Unseen::side}, {"underside", Unseen::underside}, {"wall", Unseen::wall}, {"bend", Unseen::bend}});
+}
+
+/// A surface that was added or continued where nobody saw the part.
+struct ClosedSurface {
+  Unseen reason = Unseen::side;
+  SurfaceType type = SurfaceType::plane;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< centre of the bounds of the added points
+  std::size_t added_points = 0;                     ///< as dense as the cloud
+  double seen = 0;                                  ///< share of the surface's points that the cloud has
+};
+
 /// Statistics of the way from a raw cloud to primitives.
 struct FindingStatistics {
   std::size_t raw_points = 0;       ///< points given; ExtractStatistics::points counts those that remain after cleaning
   std::size_t smoothed_points = 0;  ///< points left out because a smoothing of the cloud rounded the edge beside them
-  std::size_t added_points = 0;     ///< points added on unseen sides and undersides, hidden walls and bends
-  bool normals_estimated = false;   ///< there were no usable normals
-  double diagonal = 0, spacing = 0;  ///< see Scale
-  double noise = 0, tolerance = 0;   ///< standard deviation of the points; largest distance of a point from its surface
+  std::vector<ClosedSurface> closed = {};  ///< where nobody saw the part
+  std::size_t added_points = 0;            ///< on these surfaces, at the end of the cloud
+  bool normals_estimated = false;          ///< there were no usable normals
+  double diagonal = 0, spacing = 0;        ///< see Scale
+  double noise = 0, tolerance = 0;  ///< standard deviation of the points; largest distance of a point from its surface
   std::vector<SurfaceType> surfaces = {};   ///< types of the detected surfaces; Snap::surface is an index into them
   std::size_t known = 0, known_points = 0;  ///< number of known primitives and of points on them
   std::size_t unexplained_points = 0;       ///< points on no detected surface and no known primitive
@@ -232,8 +254,8 @@ struct UnexplainedRegion {
   double size = 0;                                  ///< diagonal of these bounds
 };
 
-/// Judgement of a result by its own points, without those that were added on unseen sides. A good result may still lack
-/// what no point shows.
+/// Judgement of a result by the cloud's own points, without those that were added where nobody saw the part. A good
+/// result may still lack what no point shows.
 struct Verdict {
   Grade grade = Grade::good;
   double distance = 0;                 ///< tolerance, in the cloud's units
@@ -243,6 +265,8 @@ struct Verdict {
   std::optional<double> disagreement = {};  ///< see SolidChoice; absent where it was not judged
   /// Share of the result's surface, within the bounds of the cloud, that has no points nearby. Absent likewise.
   std::optional<double> bare_surface = {};
+  /// Share that has only points nearby that were added where nobody saw the part. Absent likewise.
+  std::optional<double> closed_surface = {};
   std::vector<std::string> doubts = {};         ///< clauses about the result, with places; empty for a good result
   std::vector<UnexplainedRegion> regions = {};  ///< most points first
 };

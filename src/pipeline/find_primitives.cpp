@@ -50,9 +50,29 @@ std::vector<std::uint32_t> points_of_none(const PointLists& lists, std::size_t c
   return places_where(is_taken, false);
 }
 
-/// Adds points to the cloud, which a surface takes.
-void add_points(FoundPrimitives& found, const PointCloud& points, DetectedSurface& surface) {
+/// How many of the cloud's points lie on the surface, with its normal.
+std::size_t count_points_on(const Surface& surface, const PointCloud& cloud, double tolerance) {
+  constexpr double k_least_cosine = 0.9;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d place = cloud.positions[i];
+    const bool is_near = std::abs(signed_distance(surface, place)) <= tolerance;
+    count += is_near && normal(surface, place).dot(cloud.normals[i]) > k_least_cosine ? 1 : 0;
+  }
+  return count;
+}
+
+/// Adds points to the cloud, which a surface takes, and notes that it closes what nobody saw.
+void add_points(FoundPrimitives& found, const PointCloud& points, DetectedSurface& surface, Unseen reason) {
   PointCloud& cloud = found.prepared.cloud;
+  const std::size_t seen = surface.points.empty()
+                               ? count_points_on(surface.surface, cloud, found.detection.distance_tolerance)
+                               : surface.points.size();
+  found.closed.push_back({.reason = reason,
+                          .type = surface.surface.type,
+                          .place = bounds_of(points.positions).center(),
+                          .added_points = points.size(),
+                          .seen = share(seen, seen + points.size())});
   const auto own = static_cast<std::ptrdiff_t>(surface.points.size());
   surface.points.resize(surface.points.size() + points.size());
   std::iota(surface.points.begin() + own, surface.points.end(), static_cast<std::uint32_t>(cloud.size()));
@@ -67,13 +87,13 @@ void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
   const std::optional<UnseenSide> side =
       find_unseen_side(cloud, found.areas, found.detection.surfaces, found.prepared.scale, run);
   if (!side) return;
-  const auto close = [&](const PointCloud& points) {
+  const auto close = [&](const PointCloud& points, Unseen reason) {
     DetectedSurface plane{.surface = {.position = points.positions[0], .axis = side->normal}, .points = {}};
-    add_points(found, points, plane);
+    add_points(found, points, plane, reason);
     found.detection.surfaces.push_back(std::move(plane));
   };
-  close(side->points);
-  for (const PointCloud& underside : side->undersides) close(underside);
+  close(side->points, Unseen::side);
+  for (const PointCloud& underside : side->undersides) close(underside, Unseen::underside);
   // Rounded, and + 0.0 turns -0 into 0.
   const Eigen::Array3d facing = (1000 * side->normal.array()).round() / 1000 + 0.0;
   found.warnings.push_back(fmt::format(
@@ -103,7 +123,7 @@ void close_hidden_bends(FoundPrimitives& found, const RunContext& run) {
       other.points.clear();
     }
     std::erase_if(surfaces, [](const DetectedSurface& other) { return other.points.empty(); });
-    add_points(found, hidden, surfaces.emplace_back(inside));
+    add_points(found, hidden, surfaces.emplace_back(inside), Unseen::bend);
   }
   const auto largest = std::ranges::max_element(bends, {}, [](const HiddenBend& bend) { return bend.hidden.size(); });
   found.warnings.push_back(fmt::format(
@@ -121,7 +141,7 @@ void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
   const auto largest = std::ranges::max_element(walls, {}, &HiddenWall::area);
   const Eigen::Vector3d middle = bounds_of(largest->points.positions).center();
   for (const HiddenWall& wall : walls) {
-    add_points(found, wall.points, found.detection.surfaces[wall.surface]);
+    add_points(found, wall.points, found.detection.surfaces[wall.surface], Unseen::wall);
   }
   found.warnings.push_back(
       fmt::format("no sensor saw far into {} of the holes, the largest near {}: their walls were taken to go on",
@@ -325,6 +345,7 @@ FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t known,
   const Scale& scale = found.prepared.scale;
   FindingStatistics statistics{.raw_points = raw_points,
                                .smoothed_points = found.prepared.cleaning.smoothed,
+                               .closed = found.closed,
                                .added_points = found.added_points,
                                .normals_estimated = found.prepared.normals_estimated,
                                .diagonal = scale.diagonal,

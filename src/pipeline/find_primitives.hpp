@@ -27,11 +27,12 @@ struct FoundPrimitives {
   PreparedCloud prepared;                            ///< the cloud that all other members refer to
   Detection detection;                               ///< surfaces of the points on no known primitive
   std::vector<std::uint32_t> unexplained;            ///< points on no surface and no known primitive, ascending
-  std::vector<double> areas = {};     ///< of the surface around each point of the cloud; empty if not measured
-  std::size_t added_points = 0;       ///< on an unseen side, hidden walls and bends, at the end of the cloud
-  SolidChoice choice;                 ///< known solids, chosen solids with evidence, and a tree over them
-  std::optional<Error> no_solid;      ///< why the surfaces bound no solid; `choice` has no tree then
-  std::vector<SurfacePoints> points;  ///< points of the prepared cloud on each solid
+  std::vector<double> areas = {};          ///< of the surface around each point of the cloud; empty if not measured
+  std::vector<ClosedSurface> closed = {};  ///< where nobody saw the part
+  std::size_t added_points = 0;            ///< on these surfaces, at the end of the cloud
+  SolidChoice choice;                      ///< known solids, chosen solids with evidence, and a tree over them
+  std::optional<Error> no_solid;           ///< why the surfaces bound no solid; `choice` has no tree then
+  std::vector<SurfacePoints> points;       ///< points of the prepared cloud on each solid
   double detect_seconds = 0, choose_seconds = 0;
   std::vector<std::string> warnings;  ///< sentences for the user, with places
 };

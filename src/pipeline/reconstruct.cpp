@@ -7,6 +7,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/run.hpp"
 #include "core/base/warnings.hpp"
+#include "core/geometry/subset.hpp"
 #include "paper/objective/objective.hpp"
 #include "pipeline/diagnostics.hpp"
 #include "pipeline/extraction_run.hpp"
@@ -62,8 +63,12 @@ void let_overshoot(Extraction& result, const ReconstructOptions& options, std::o
   result.model.primitives = with_overshoots(std::move(result.model.primitives), result.tree(), options.known.size(),
                                             bounds_of(result.cloud.positions), limit.limited(run));
   result.statistics.seconds.solids += watch.seconds();
-  result.statistics.fit =
-      measure_fit(result.model, result.cloud, result.statistics.noise, options.extraction, without_stop(run));
+  const auto fit_to = [&](const PointCloud& cloud) {
+    return measure_fit(result.model, cloud, result.statistics.noise, options.extraction, without_stop(run));
+  };
+  result.statistics.fit = result.statistics.finding->added_points == 0
+                              ? fit_to(result.cloud)
+                              : fit_to(select_points(result.cloud, own_points(result)));
 }
 
 /// Moves the results of the detection into the result.

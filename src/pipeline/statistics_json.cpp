@@ -112,11 +112,24 @@ Json snaps_json(const FindingStatistics& s) {
   return list;
 }
 
+Json closed_json(const std::vector<ClosedSurface>& surfaces) {
+  Json list = Json::array();
+  for (const ClosedSurface& closed : surfaces) {
+    list.push_back({{"reason", to_string(closed.reason)},
+                    {"type", type_name(closed.type)},
+                    {"place", {closed.place.x(), closed.place.y(), closed.place.z()}},
+                    {"added_points", closed.added_points},
+                    {"seen", closed.seen}});
+  }
+  return list;
+}
+
 Json finding_json(const FindingStatistics& s) {
   const auto count = [&s](SurfaceType type) { return std::ranges::count(s.surfaces, type); };
   const LargestChange largest = largest_change(s.snaps);
   return {{"raw_points", s.raw_points},
           {"smoothed_points", s.smoothed_points},
+          {"closed", closed_json(s.closed)},
           {"added_points", s.added_points},
           {"normals_estimated", s.normals_estimated},
           {"diagonal", s.diagonal},
@@ -162,6 +175,7 @@ Json verdict_json(const Verdict& verdict) {
           {"unexplained_points", judged(verdict.unexplained_points)},
           {"disagreement", optional_json(verdict.disagreement)},
           {"bare_surface", optional_json(verdict.bare_surface)},
+          {"closed_surface", optional_json(verdict.closed_surface)},
           {"doubts", verdict.doubts},
           {"regions", regions_json(verdict.regions)}};
 }

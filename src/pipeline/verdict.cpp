@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -137,6 +138,14 @@ std::vector<Doubt> doubts_of_bare_surface(const BareSurface& bare, const Eigen::
                                         percent(bare.share()), place_text(origin + place, diagonal))}};
 }
 
+std::vector<Doubt> doubts_of_closed_surface(double share, const FindingStatistics& finding,
+                                            const Eigen::Vector3d& origin) {
+  if (share <= k_much_bare_surface) return {};
+  const auto largest = std::ranges::max_element(finding.closed, {}, &ClosedSurface::added_points);
+  return {{Grade::doubtful, fmt::format("nobody saw {} of its surface, which was closed, most of it around {}",
+                                        percent(share), place_text(origin + largest->place, finding.diagonal))}};
+}
+
 std::vector<Doubt> doubts_of_unused_surfaces(const Extraction& result, const Eigen::Vector3d& origin) {
   const UnusedSurfaces unused = find_unused_surfaces(result);
   if (unused.count == 0) return {};
@@ -187,21 +196,25 @@ std::vector<UnexplainedRegion> unexplained_regions(const Points& points, const s
   return regions;
 }
 
-Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points, std::size_t added) {
+std::vector<std::uint32_t> own_points(const Extraction& result) {
+  std::vector<std::uint32_t> own(result.cloud.size() - result.statistics.finding->added_points);
+  std::iota(own.begin(), own.end(), 0U);
+  return own;
+}
+
+Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points) {
   const CsgTree& tree = *model.tree;
   if (is_constant(tree)) {
     const bool is_empty = tree == CsgTree::empty();
     return with_doubts(
-        {.points = points.size() - added, .unexplained_points = points.size() - added},
+        {.points = points.size(), .unexplained_points = points.size()},
         {{Grade::failed, is_empty ? "the result is empty: no formula over the primitives explains the points"
                                   : "the result is all of space: normals may lead inward"}});
   }
-  const std::size_t own = points.size() - added;
-  const auto far = static_cast<std::size_t>(std::ranges::lower_bound(fit.far_points, own) - fit.far_points.begin());
   const Verdict verdict{.distance = fit.tolerances.distance,
-                        .points = own,
-                        .share_within = share(own - far, own),
-                        .unexplained_points = std::min(fit.unexplained_points, own),
+                        .points = points.size(),
+                        .share_within = share(points.size() - fit.far_points.size(), points.size()),
+                        .unexplained_points = fit.unexplained_points,
                         .regions = unexplained_regions(points, fit.far_points)};
   return with_doubts(with_doubts(verdict, doubts_of_fit(verdict)), doubts_of_bounds(model, bounds_of(points)));
 }
@@ -210,15 +223,22 @@ Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::
                   const RunContext& run) {
   FindingStatistics& finding = *result.statistics.finding;
   finding.disagreement = wrong_place_share(result.tree(), result.model.primitives, places);
-  const BareSurface bare = find_bare_surface(result.tree(), result.model.primitives, result.cloud.positions,
-                                             bare_distance(finding.spacing, finding.tolerance), run);
-  Verdict verdict = judge_fit(result.model, result.statistics.fit, result.cloud.positions, finding.added_points);
+  const auto bare_beside = [&](const Points& points) {
+    return find_bare_surface(result.tree(), result.model.primitives, points,
+                             bare_distance(finding.spacing, finding.tolerance), run);
+  };
+  const Points own = select_points(result.cloud.positions, own_points(result));
+  const BareSurface bare = bare_beside(result.cloud.positions);
+  Verdict verdict = judge_fit(result.model, result.statistics.fit, own);
   verdict.disagreement = finding.disagreement;
   verdict.bare_surface = bare.share();
+  verdict.closed_surface = finding.closed.empty() ? 0 : bare_beside(own).share() - bare.share();
   std::vector<Doubt> coarse = doubts_of_tolerance(verdict.distance, finding.diagonal);
   verdict = with_doubts(std::move(verdict), std::move(coarse));
   verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places, origin));
   verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, origin, finding.diagonal));
+  const double closed = *verdict.closed_surface;
+  verdict = with_doubts(std::move(verdict), doubts_of_closed_surface(closed, finding, origin));
   result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result, origin));
   return result;
 }

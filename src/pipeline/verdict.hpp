@@ -11,14 +11,15 @@ namespace cloud2csg {
 [[nodiscard]] std::vector<UnexplainedRegion> unexplained_regions(const Points& points,
                                                                  const std::vector<std::uint32_t>& far);
 
-/// Judges a model's tree by the fit of all points to it. The last `added` points are none of the cloud's own: they lie
-/// on the tree because somebody put them there.
-[[nodiscard]] Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points,
-                                std::size_t added = 0);
+/// Indices of the points that were not added where nobody saw the part. Precondition: the statistics have a finding.
+[[nodiscard]] std::vector<std::uint32_t> own_points(const Extraction& result);
+
+/// Judges a model's tree by the fit of these points to it.
+[[nodiscard]] Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points);
 
 /// The result with a verdict that also counts what detection found, and the finding's disagreement of the final tree
-/// with the labels of `places`. `origin`: of the frame, for texts. Precondition: the statistics have a
-/// finding.
+/// with the labels of `places`. `origin`: of the frame, for texts. Precondition:
+/// the statistics have a finding, and the fit to own_points().
 /// @throws Cancelled
 [[nodiscard]] Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::Vector3d& origin,
                                 const RunContext& run);

@@ -41,7 +41,7 @@ PointCloud cloud_of(const OpenPart& part, double noise) {
   return cloud;
 }
 
-/// Nothing shows the ends of a rod or the oblique cut of a bar, and strays say nothing.
+/// Nothing shows the ends of a rod, or the oblique cut of a bar, and strays say nothing.
 TEST(Reconstruct, EndsWhereThePointsEnd) {
   const IsMissing ends = [](const Eigen::Vector3d& p) { return std::abs(p.z()) > 2.2; };
   const IsMissing half = [](const Eigen::Vector3d& p) { return p.x() + 0.3 * p.z() > 0.4; };
@@ -70,6 +70,18 @@ TEST(Reconstruct, EndsWhereThePointsEnd) {
           << part.solid.id << " noise " << noise << " ends too early";
     }
   }
+}
+
+/// From one view, a block shows three sides. The part stands on one of the others, and ends where the points end.
+TEST(Reconstruct, ClosesNothingBeyondThePoints) {
+  const OpenPart part{.solid = {.id = "block", .shape = Box{{1, 1, 1}}, .pose = {}},
+                      .is_missing = [](const Eigen::Vector3d& p) { return p.minCoeff() < -0.498; }};
+  const PointCloud cloud = cloud_of(part, 0.0005);
+  const Extraction result = reconstruct(cloud);
+  EXPECT_EQ(result.statistics.finding->closed.size(), 1U);
+  const double allowed = 2 * result.statistics.finding->tolerance;
+  const Points places = sample_surface(result.model, {.count = 5'000}).positions;
+  EXPECT_TRUE(grown(bounds_of(cloud.positions), allowed).contains(bounds_of(places)));
 }
 
 /// Without evidence for the absence of points, chips stay at the corners of the cube: they are too small for a leaf.

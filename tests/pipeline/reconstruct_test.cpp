@@ -84,6 +84,16 @@ TEST(Reconstruct, SaysWhereItsSurfaceHasNoPoints) {
   EXPECT_GT(test::iou(closed, truth), 0.99);
   EXPECT_TRUE(test::mentions(closed.statistics.warnings, "closed by a plane"));
   EXPECT_FALSE(test::mentions(closed.statistics.verdict.doubts, "no points near"));
+  EXPECT_TRUE(test::mentions(closed.statistics.verdict.doubts, "nobody saw"));
+  // 12 of 66, without a border that is near points of the walls.
+  EXPECT_GT(closed.statistics.verdict.closed_surface.value(), 0.1);
+  EXPECT_LT(closed.statistics.verdict.closed_surface.value(), 12.0 / 66);
+  EXPECT_EQ(closed.statistics.verdict.grade, Grade::doubtful);
+  ASSERT_EQ(closed.statistics.finding->closed.size(), 1U);
+  const ClosedSurface& top = closed.statistics.finding->closed[0];
+  EXPECT_EQ(top.reason, Unseen::side);
+  EXPECT_LT((top.place - Eigen::Vector3d(0, 0, 1.5)).norm(), 0.05);
+  EXPECT_LT(top.seen, 0.05);
 }
 
 /// Its ground is not seen, nor are parts of its holes.
@@ -94,6 +104,7 @@ TEST(Reconstruct, ClosesTheGroundOfAPlateOnATable) {
   EXPECT_GT(test::iou(result, truth), 0.97);
   EXPECT_TRUE(test::mentions(result.statistics.warnings, "closed by a plane"));
   EXPECT_GT(result.statistics.finding->added_points, 5000U);
+  EXPECT_EQ(result.statistics.verdict.points + result.statistics.finding->added_points, result.cloud.size());
 }
 
 TEST(Reconstruct, NamesWhatItLeavesOut) {

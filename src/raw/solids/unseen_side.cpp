@@ -1,6 +1,12 @@
 #include "raw/solids/unseen_side.hpp"
 
 #include <algorithm>
+#include <boost/geometry/algorithms/convex_hull.hpp>
+#include <boost/geometry/algorithms/within.hpp>
+#include <boost/geometry/geometries/multi_point.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/ring.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -31,6 +37,9 @@ constexpr std::size_t k_stray = 2000;  ///< one point in so many may be below th
 constexpr double k_faces_up = 0.5;     ///< cosine
 constexpr double k_standing = 2;       ///< steps above the missing side; the noise is much less
 constexpr std::size_t k_window = 2;    ///< bins on each side in which a bin's layers are counted
+
+using PlanePoint = boost::geometry::model::d2::point_xy<double>;
+using Outline = boost::geometry::model::ring<PlanePoint>;
 
 /// Points with areas, and the area-weighted sum of their normals.
 struct Surroundings {
@@ -143,12 +152,15 @@ class LayerCount {
   }
 
   /// A place in each bin with a missing layer, at the height of the lowest points; world coordinates.
-  [[nodiscard]] Points missing_places() const { return places_at(foot_, bins_with_missing_layer(false)); }
+  [[nodiscard]] Points missing_places(const PointCloud& cloud) const {
+    return places_at(foot_, bins_with_missing_layer(false), outline_of(cloud));
+  }
 
   /// The same for each group of bins that are left open, if the walls around it end at one height: world coordinates.
   [[nodiscard]] std::vector<Points> underside_places(const PointCloud& cloud) const {
     constexpr std::ptrdiff_t k_least_walls = 12;  // bins; fewer agree by chance
     const std::vector<double> walls = lowest_points(cloud, [](double up) { return std::abs(up) < k_faces_up; });
+    const Outline outline = outline_of(cloud);
     std::vector<Points> undersides;
     for (const std::vector<std::uint32_t>& group : groups_of(bins_with_missing_layer(true))) {
       std::vector<double> ends;
@@ -161,7 +173,7 @@ class LayerCount {
       const double middle = median_of(ends);
       const auto off = std::erase_if(ends, [&](double end) { return std::abs(end - middle) > 2 * step_; });
       // Most lowest points are somewhat higher than the end of their wall.
-      if (3 * off < ends.size()) undersides.push_back(places_at(low_end(ends, 20), group));
+      if (3 * off < ends.size()) undersides.push_back(places_at(low_end(ends, 20), group, outline));
     }
     return undersides;
   }
@@ -238,15 +250,29 @@ class LayerCount {
     }
     return groups;
   }
-  /// A place in each bin; world coordinates.
-  [[nodiscard]] Points places_at(double height, const std::vector<std::uint32_t>& bins) const {
+  /// The convex hull of the cloud, seen from above.
+  [[nodiscard]] Outline outline_of(const PointCloud& cloud) const {
+    boost::geometry::model::multi_point<PlanePoint> shadow;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Vector3d local = pose_.to_local(cloud.positions[i]);
+      shadow.emplace_back(local.x(), local.y());
+    }
+    Outline outline;
+    boost::geometry::convex_hull(shadow, outline);
+    return outline;
+  }
+  /// A place in each bin, but none beyond the outline: windows reach across the border of the part, and the last points
+  /// before it stand for more area than they have. World coordinates.
+  [[nodiscard]] Points places_at(double height, const std::vector<std::uint32_t>& bins, const Outline& outline) const {
     RandomStream random(0, k_side_stage, 0);
     Points places;
     for (const std::uint32_t bin : bins) {
       const auto [column, row] = bin_at(bin);
       const double x = static_cast<double>(column) + random.uniform();
       const double y = static_cast<double>(row) + random.uniform();
-      places.push_back(pose_.to_world({origin_.x() + step_ * x, origin_.y() + step_ * y, height}));
+      const PlanePoint place(origin_.x() + step_ * x, origin_.y() + step_ * y);
+      if (!boost::geometry::within(place, outline)) continue;
+      places.push_back(pose_.to_world({place.x(), place.y(), height}));
     }
     return places;
   }
@@ -353,7 +379,8 @@ std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud, std::span<co
     }
     return points;
   };
-  UnseenSide side{.normal = -best_up, .share = found / (all.area + found), .points = closing(best.missing_places())};
+  UnseenSide side{
+      .normal = -best_up, .share = found / (all.area + found), .points = closing(best.missing_places(cloud))};
   for (Points& places : best.underside_places(cloud)) side.undersides.push_back(closing(std::move(places)));
   return side;
 }
