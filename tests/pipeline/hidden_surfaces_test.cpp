@@ -61,6 +61,17 @@ TEST(ReconstructHidden, ClosesTheUndersideOfAnOverhang) {
   EXPECT_TRUE(test::mentions(result.statistics.warnings, "the underside of 1 overhang, the largest near"));
 }
 
+/// Sensors from above see no line below the plate. But its walls end where they would have seen them go on.
+TEST(ReconstructHidden, DoesNotFillTheSpaceBesideAFoot) {
+  const Model truth{.primitives = {test::placed("plate", Box{{1.4, 0.9, 0.14}}, {0, 0, 0.07}),
+                                   test::placed("foot", Box{{0.24, 0.6, 0.13}}, {-0.5, 0, -0.035})},
+                    .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Extraction result = reconstruct(scan_model(truth, {.on_table = true, .count = 40'000, .seed = seed}));
+    EXPECT_GT(test::iou(result, truth), 0.97) << seed;
+  }
+}
+
 /// A pipe that stands on a table. Sensors above it see neither its foot nor the depth of its bore.
 TEST(ReconstructHidden, TakesABoreToGoThrough) {
   const Model truth{.primitives = {test::placed("pipe", Cylinder{.radius = 1.3, .height = 9}, {0, 0, 0}),

@@ -23,7 +23,8 @@ struct UnseenSide {
 /// roughly away from a missing side. Among the directions of planes and axes near the sum (or the sum itself), takes
 /// the one whose layers show a missing one best: along it, up- and down-facing areas balance, except for one more up
 /// over the side. Directions nearly alike show the same; the one with most points just above the side counts. The side
-/// is at the lowest points, but not where lines of sight pass below all that faces up. Absent if little is missing, if
+/// is at the lowest points, but not where lines of sight pass below all that faces up, nor behind walls that end at one
+/// height above it, as a sensor would have seen them go on. Absent if little is missing, if
 /// there are scattered holes rather than a side, if a sensor was on that side, or if the cloud is a sheet that encloses
 /// nothing. If the cloud has sensor positions, each new point gets one straight in front of it. Needs outward normals
 /// and the area around each point, by point_areas(). O(points x surfaces) @throws Cancelled
