@@ -205,7 +205,7 @@ struct FindingStatistics {
   std::size_t raw_points = 0;       ///< points given; ExtractStatistics::points counts those that remain after cleaning
   std::size_t smoothed_points = 0;  ///< points left out because a smoothing of the cloud rounded the edge beside them
   std::vector<ClosedSurface> closed = {};  ///< where nobody saw the part
-  std::size_t added_points = 0;            ///< on these surfaces, at the end of the cloud
+  std::size_t added_points = 0;            ///< on these surfaces while solids were chosen
   bool normals_estimated = false;          ///< there were no usable normals
   double diagonal = 0, spacing = 0;        ///< see Scale
   double noise = 0, tolerance = 0;  ///< standard deviation of the points; largest distance of a point from its surface

@@ -50,11 +50,12 @@ std::vector<std::uint32_t> points_of_none(const PointLists& lists, std::size_t c
   return places_where(is_taken, false);
 }
 
-/// How many of the cloud's points lie on the surface, with its normal.
-std::size_t count_points_on(const Surface& surface, const PointCloud& cloud, double tolerance) {
+/// How many points lie on the surface, with its normal.
+std::size_t count_points_on(const Surface& surface, const PointCloud& cloud, std::size_t first_points,
+                            double tolerance) {
   constexpr double k_least_cosine = 0.9;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  for (std::size_t i = 0; i < first_points; ++i) {
     const Eigen::Vector3d place = cloud.positions[i];
     const bool is_near = std::abs(signed_distance(surface, place)) <= tolerance;
     count += is_near && normal(surface, place).dot(cloud.normals[i]) > k_least_cosine ? 1 : 0;
@@ -65,20 +66,34 @@ std::size_t count_points_on(const Surface& surface, const PointCloud& cloud, dou
 /// Adds points to the cloud, which a surface takes, and notes that it closes what nobody saw.
 void add_points(FoundPrimitives& found, const PointCloud& points, DetectedSurface& surface, Unseen reason) {
   PointCloud& cloud = found.prepared.cloud;
-  const std::size_t seen = surface.points.empty()
-                               ? count_points_on(surface.surface, cloud, found.detection.distance_tolerance)
-                               : surface.points.size();
+  const std::size_t own = cloud.size() - found.added.size();
+  const std::size_t seen =
+      surface.points.empty()
+          ? count_points_on(surface.surface, cloud, own, found.detection.distance_tolerance)
+          : static_cast<std::size_t>(std::ranges::count_if(surface.points, [&](std::uint32_t i) { return i < own; }));
   found.closed.push_back({.reason = reason,
                           .type = surface.surface.type,
                           .place = bounds_of(points.positions).center(),
                           .added_points = points.size(),
                           .seen = share(seen, seen + points.size())});
-  const auto own = static_cast<std::ptrdiff_t>(surface.points.size());
+  const auto before = static_cast<std::ptrdiff_t>(surface.points.size());
   surface.points.resize(surface.points.size() + points.size());
-  std::iota(surface.points.begin() + own, surface.points.end(), static_cast<std::uint32_t>(cloud.size()));
-  found.added_points += points.size();
+  std::iota(surface.points.begin() + before, surface.points.end(), static_cast<std::uint32_t>(cloud.size()));
+  append(found.added, points);
   append(cloud, points);
   found.areas.clear();
+}
+
+/// Removes the added points from the cloud: what follows judges by the cloud's own points.
+void take_back_added(FoundPrimitives& found) {
+  if (found.added.size() == 0) return;
+  PointCloud& cloud = found.prepared.cloud;
+  std::vector<std::uint32_t> own(cloud.size() - found.added.size());
+  std::iota(own.begin(), own.end(), 0U);
+  cloud = select_points(cloud, own);
+  for (DetectedSurface& surface : found.detection.surfaces) {
+    std::erase_if(surface.points, [&](std::uint32_t i) { return i >= own.size(); });
+  }
 }
 
 void close_unseen_side(FoundPrimitives& found, const RunContext& run) {
@@ -136,7 +151,7 @@ void close_hidden_bends(FoundPrimitives& found, const RunContext& run) {
 void close_hidden_walls(FoundPrimitives& found, const RunContext& run) {
   const std::vector<HiddenWall> walls =
       find_hidden_walls(found.prepared.cloud, found.detection.surfaces, found.prepared.scale,
-                        found.prepared.cloud.size() - found.added_points, run);
+                        found.prepared.cloud.size() - found.added.size(), run);
   if (walls.empty()) return;
   const auto largest = std::ranges::max_element(walls, {}, &HiddenWall::area);
   const Eigen::Vector3d middle = bounds_of(largest->points.positions).center();
@@ -272,6 +287,7 @@ FoundPrimitives with_solids(FoundPrimitives found, RestDetection rest, const Pri
 
   run.report("solids", 0, 0);
   choose(found, known_solids(known, std::move(rest.known)), options, run);
+  take_back_added(found);
   append(found.warnings, found.choice.warnings);
   // An early stop of the choice still leaves a tree.
   add_evidence(found, options.detection, without_stop(run));
@@ -346,7 +362,7 @@ FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t known,
   FindingStatistics statistics{.raw_points = raw_points,
                                .smoothed_points = found.prepared.cleaning.smoothed,
                                .closed = found.closed,
-                               .added_points = found.added_points,
+                               .added_points = found.added.size(),
                                .normals_estimated = found.prepared.normals_estimated,
                                .diagonal = scale.diagonal,
                                .spacing = scale.spacing,

@@ -29,7 +29,7 @@ struct FoundPrimitives {
   std::vector<std::uint32_t> unexplained;            ///< points on no surface and no known primitive, ascending
   std::vector<double> areas = {};          ///< of the surface around each point of the cloud; empty if not measured
   std::vector<ClosedSurface> closed = {};  ///< where nobody saw the part
-  std::size_t added_points = 0;            ///< on these surfaces, at the end of the cloud
+  PointCloud added = {};                   ///< points on these surfaces, which are not in the cloud
   SolidChoice choice;                      ///< known solids, chosen solids with evidence, and a tree over them
   std::optional<Error> no_solid;           ///< why the surfaces bound no solid; `choice` has no tree then
   std::vector<SurfacePoints> points;       ///< points of the prepared cloud on each solid

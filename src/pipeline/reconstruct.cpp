@@ -42,7 +42,9 @@ Extraction with_tree_of_choice(const FoundPrimitives& found, const ExtractOption
 /// The tree of the choice, measured against the cloud, or that of a strategy that was asked for.
 Extraction extract_over(const FoundPrimitives& found, const ExtractOptions& options, const RunContext& run) {
   if (options.strategy != Strategy::automatic) {
-    return extract_csg(found.prepared.cloud, found.choice.solids, options, run);
+    PointCloud closed = found.prepared.cloud;
+    append(closed, found.added);
+    return extract_csg(closed, found.choice.solids, options, run);
   }
   Extraction result = with_tree_of_choice(found, options, run);
   const RunContext whole = without_stop(run);
@@ -63,12 +65,8 @@ void let_overshoot(Extraction& result, const ReconstructOptions& options, std::o
   result.model.primitives = with_overshoots(std::move(result.model.primitives), result.tree(), options.known.size(),
                                             bounds_of(result.cloud.positions), limit.limited(run));
   result.statistics.seconds.solids += watch.seconds();
-  const auto fit_to = [&](const PointCloud& cloud) {
-    return measure_fit(result.model, cloud, result.statistics.noise, options.extraction, without_stop(run));
-  };
-  result.statistics.fit = result.statistics.finding->added_points == 0
-                              ? fit_to(result.cloud)
-                              : fit_to(select_points(result.cloud, own_points(result)));
+  result.statistics.fit =
+      measure_fit(result.model, result.cloud, result.statistics.noise, options.extraction, without_stop(run));
 }
 
 /// Moves the results of the detection into the result.
@@ -138,7 +136,7 @@ Extraction reconstruct(const PointCloud& cloud, const ReconstructOptions& option
   take_finding(result, found);
   note_seconds(found, statistics.seconds);
   let_overshoot(result, rest, seconds_left(options.extraction.time_limit_seconds, watch), run);
-  result = judged(std::move(result), found.choice.places, found.origin, without_stop(run));
+  result = judged(std::move(result), found.added.positions, found.choice.places, found.origin, without_stop(run));
   return moved_back(std::move(result), found.origin, options.known);
 }
 

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
 #include "cloud2csg/csg_tree.hpp"
 #include "core/geometry/cubes.hpp"
+#include "core/geometry/neighbour_tree.hpp"
 #include "core/geometry/place_text.hpp"
 #include "core/geometry/subset.hpp"
 #include "pipeline/coverage.hpp"
@@ -130,20 +130,43 @@ std::vector<Doubt> doubts_of_disagreement(const Extraction& result, const Labell
                        percent(finding.disagreement), place_text(origin + worst, finding.diagonal))}};
 }
 
-std::vector<Doubt> doubts_of_bare_surface(const BareSurface& bare, const Eigen::Vector3d& origin, double diagonal) {
-  if (bare.share() <= k_much_bare_surface) return {};
-  const auto farthest = std::ranges::max_element(bare.distances) - bare.distances.begin();
-  const Eigen::Vector3d place = bare.samples.positions[static_cast<std::size_t>(farthest)];
-  return {{Grade::doubtful, fmt::format("{} of its surface has no points nearby, farthest from any at {}",
-                                        percent(bare.share()), place_text(origin + place, diagonal))}};
+/// The surface that no point of the cloud is near: closed where an added one is, and bare elsewhere.
+struct UnseenSurface {
+  double closed = 0, bare = 0;  ///< shares of the solid's surface
+  Eigen::Vector3d closed_place = Eigen::Vector3d::Zero(),
+                  bare_place = Eigen::Vector3d::Zero();  ///< of each, the place farthest from all points of the cloud
+};
+
+UnseenSurface unseen_surface(const BareSurface& surface, const Points& added, double near) {
+  UnseenSurface unseen;
+  double farthest_closed = 0, farthest_bare = 0;
+  const NeighbourTree index(added);
+  for (std::size_t i = 0; i < surface.shares.size(); ++i) {
+    const Eigen::Vector3d place = surface.samples.positions[i];
+    const bool is_closed = added.size() > 0 && index.nearest(place).distance <= near;
+    (is_closed ? unseen.closed : unseen.bare) += surface.shares[i];
+    double& farthest = is_closed ? farthest_closed : farthest_bare;
+    if (surface.distances[i] <= farthest) continue;
+    farthest = surface.distances[i];
+    (is_closed ? unseen.closed_place : unseen.bare_place) = place;
+  }
+  return unseen;
 }
 
-std::vector<Doubt> doubts_of_closed_surface(double share, const FindingStatistics& finding,
-                                            const Eigen::Vector3d& origin) {
-  if (share <= k_much_bare_surface) return {};
-  const auto largest = std::ranges::max_element(finding.closed, {}, &ClosedSurface::added_points);
-  return {{Grade::doubtful, fmt::format("nobody saw {} of its surface, which was closed, most of it around {}",
-                                        percent(share), place_text(origin + largest->place, finding.diagonal))}};
+std::vector<Doubt> doubts_of_unseen_surface(const UnseenSurface& unseen, const Eigen::Vector3d& origin,
+                                            double diagonal) {
+  std::vector<Doubt> doubts;
+  if (unseen.bare > k_much_bare_surface) {
+    doubts.push_back(
+        {Grade::doubtful, fmt::format("{} of its surface has no points nearby, farthest from any at {}",
+                                      percent(unseen.bare), place_text(origin + unseen.bare_place, diagonal))});
+  }
+  if (unseen.closed > k_much_bare_surface) {
+    doubts.push_back(
+        {Grade::doubtful, fmt::format("nobody saw {} of its surface, which was closed, farthest from any point at {}",
+                                      percent(unseen.closed), place_text(origin + unseen.closed_place, diagonal))});
+  }
+  return doubts;
 }
 
 std::vector<Doubt> doubts_of_unused_surfaces(const Extraction& result, const Eigen::Vector3d& origin) {
@@ -196,12 +219,6 @@ std::vector<UnexplainedRegion> unexplained_regions(const Points& points, const s
   return regions;
 }
 
-std::vector<std::uint32_t> own_points(const Extraction& result) {
-  std::vector<std::uint32_t> own(result.cloud.size() - result.statistics.finding->added_points);
-  std::iota(own.begin(), own.end(), 0U);
-  return own;
-}
-
 Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points) {
   const CsgTree& tree = *model.tree;
   if (is_constant(tree)) {
@@ -219,43 +236,38 @@ Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& po
   return with_doubts(with_doubts(verdict, doubts_of_fit(verdict)), doubts_of_bounds(model, bounds_of(points)));
 }
 
-Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::Vector3d& origin,
+Extraction judged(Extraction result, const Points& added, const LabelledPlaces& places, const Eigen::Vector3d& origin,
                   const RunContext& run) {
   FindingStatistics& finding = *result.statistics.finding;
   finding.disagreement = wrong_place_share(result.tree(), result.model.primitives, places);
-  const auto bare_beside = [&](const Points& points) {
-    return find_bare_surface(result.tree(), result.model.primitives, points,
-                             bare_distance(finding.spacing, finding.tolerance), run);
-  };
-  const Points own = select_points(result.cloud.positions, own_points(result));
-  const BareSurface bare = bare_beside(result.cloud.positions);
-  Verdict verdict = judge_fit(result.model, result.statistics.fit, own);
+  const double near = bare_distance(finding.spacing, finding.tolerance);
+  const UnseenSurface unseen = unseen_surface(
+      find_bare_surface(result.tree(), result.model.primitives, result.cloud.positions, near, run), added, near);
+  Verdict verdict = judge_fit(result.model, result.statistics.fit, result.cloud.positions);
   verdict.disagreement = finding.disagreement;
-  verdict.bare_surface = bare.share();
-  verdict.closed_surface = finding.closed.empty() ? 0 : bare_beside(own).share() - bare.share();
+  verdict.bare_surface = unseen.bare;
+  verdict.closed_surface = unseen.closed;
   std::vector<Doubt> coarse = doubts_of_tolerance(verdict.distance, finding.diagonal);
   verdict = with_doubts(std::move(verdict), std::move(coarse));
   verdict = with_doubts(std::move(verdict), doubts_of_disagreement(result, places, origin));
-  verdict = with_doubts(std::move(verdict), doubts_of_bare_surface(bare, origin, finding.diagonal));
-  const double closed = *verdict.closed_surface;
-  verdict = with_doubts(std::move(verdict), doubts_of_closed_surface(closed, finding, origin));
+  verdict = with_doubts(std::move(verdict), doubts_of_unseen_surface(unseen, origin, finding.diagonal));
   result.statistics.verdict = with_doubts(std::move(verdict), doubts_of_unused_surfaces(result, origin));
   return result;
 }
 
 Verdict judge_detection(const FoundPrimitives& found) {
   const Points& points = found.prepared.cloud.positions;
-  const std::size_t own = points.size() - found.added_points;
   const std::size_t unexplained = found.unexplained.size();
   const double tolerance = found.detection.distance_tolerance;
   std::vector<Doubt> doubts = doubts_of_tolerance(tolerance, found.prepared.scale.diagonal);
-  if (share(unexplained, own) > k_much_unexplained) {
-    doubts.push_back({Grade::doubtful, percent(share(unexplained, own)) + " of the points lie on no detected surface"});
+  if (share(unexplained, points.size()) > k_much_unexplained) {
+    doubts.push_back(
+        {Grade::doubtful, percent(share(unexplained, points.size())) + " of the points lie on no detected surface"});
   }
   if (found.no_solid) doubts.push_back({Grade::doubtful, "the surfaces bound no solid"});
   return with_doubts({.distance = tolerance,
-                      .points = own,
-                      .share_within = share(own - unexplained, own),
+                      .points = points.size(),
+                      .share_within = share(points.size() - unexplained, points.size()),
                       .unexplained_points = unexplained,
                       .regions = unexplained_regions(points, found.unexplained)},
                      std::move(doubts));

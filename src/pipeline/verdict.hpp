@@ -11,18 +11,14 @@ namespace cloud2csg {
 [[nodiscard]] std::vector<UnexplainedRegion> unexplained_regions(const Points& points,
                                                                  const std::vector<std::uint32_t>& far);
 
-/// Indices of the points that were not added where nobody saw the part. Precondition: the statistics have a finding.
-[[nodiscard]] std::vector<std::uint32_t> own_points(const Extraction& result);
-
 /// Judges a model's tree by the fit of these points to it.
 [[nodiscard]] Verdict judge_fit(const Model& model, const FitStatistics& fit, const Points& points);
 
 /// The result with a verdict that also counts what detection found, and the finding's disagreement of the final tree
-/// with the labels of `places`. `origin`: of the frame, for texts. Precondition:
-/// the statistics have a finding, and the fit to own_points().
-/// @throws Cancelled
-[[nodiscard]] Extraction judged(Extraction result, const LabelledPlaces& places, const Eigen::Vector3d& origin,
-                                const RunContext& run);
+/// with the labels of `places`. `added`: points where nobody saw the part; surface beside them is closed. `origin`: of
+/// the frame, for texts. Precondition: the statistics have a finding. @throws Cancelled
+[[nodiscard]] Extraction judged(Extraction result, const Points& added, const LabelledPlaces& places,
+                                const Eigen::Vector3d& origin, const RunContext& run);
 
 /// Judges the detected surfaces and the points on known primitives.
 [[nodiscard]] Verdict judge_detection(const FoundPrimitives& found);

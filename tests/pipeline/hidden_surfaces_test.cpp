@@ -66,9 +66,32 @@ TEST(ReconstructHidden, DoesNotFillTheSpaceBesideAFoot) {
   const Model truth{.primitives = {test::placed("plate", Box{{1.4, 0.9, 0.14}}, {0, 0, 0.07}),
                                    test::placed("foot", Box{{0.24, 0.6, 0.13}}, {-0.5, 0, -0.035})},
                     .tree = unite(CsgTree::leaf(0), CsgTree::leaf(1))};
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Extraction result = reconstruct(scan_model(truth, {.on_table = true, .count = 40'000, .seed = seed}));
     EXPECT_GT(test::iou(result, truth), 0.97) << seed;
+  }
+}
+
+/// Below the cone of its recess, walls of the neck end high above the table.
+TEST(ReconstructHidden, ClosesNothingInTheAirAboveARecess) {
+  const Profile profile{{{{{20, 0}},
+                          {{10, 30}},
+                          {{10, 42}},
+                          {{6, 42}},
+                          {{6, 30}},
+                          {{15, 1}},
+                          {{15, -10}},
+                          {{28, -10}},
+                          {{28, -6}},
+                          {{20, -6}}}}};
+  const Model truth{.primitives = {{.id = "nozzle", .shape = Revolution{profile}, .pose = {}}},
+                    .tree = CsgTree::leaf(0)};
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Extraction result = reconstruct(scan_model(truth, {.on_table = true, .count = 20'000, .seed = seed}));
+    EXPECT_NE(result.statistics.verdict.grade, Grade::failed) << seed;
+    for (const ClosedSurface& closed : result.statistics.finding->closed) {
+      EXPECT_NE(closed.reason, Unseen::underside) << seed;
+    }
   }
 }
 

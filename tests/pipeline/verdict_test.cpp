@@ -176,7 +176,7 @@ ExtractStatistics statistics_of_tree(const Model& model) {
   Extraction result = reconstruct(sample_surface(box, {.count = 20'000, .noise = 0.002}));
   const LabelledPlaces places = label_places(result.cloud);
   result.model = model;
-  return judged(std::move(result), places, Eigen::Vector3d::Zero(), {}).statistics;
+  return judged(std::move(result), Points(), places, Eigen::Vector3d::Zero(), {}).statistics;
 }
 
 TEST(Verdict, FailsWhereTheEmptySolidIsAsGood) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "cloud2csg/sample.hpp"
 #include "core/geometry/subset.hpp"
@@ -42,7 +43,9 @@ struct SeenFromAbove {
 
   [[nodiscard]] std::vector<bool> behind(double foot) const {
     std::vector<bool> result(bins().count(), false);
-    for (const std::uint32_t bin : bins_behind(wall_ends(cloud, surfaces, bins(), foot), bins(), foot)) {
+    std::vector<std::uint32_t> all(bins().count());
+    std::iota(all.begin(), all.end(), 0U);
+    for (const std::uint32_t bin : bins_behind(wall_ends(cloud, surfaces, bins(), foot), bins(), foot, all)) {
       result[bin] = true;
     }
     return result;

@@ -123,35 +123,42 @@ class LayerCount {
   [[nodiscard]] std::ptrdiff_t standing() const { return standing_; }
 
   /// Leaves out the bins in which a layer is missing higher than the side: where lines of sight pass below all that
-  /// faces up, such as under an overhang, and behind walls that end at one height above the side. Nearer to their
+  /// faces up, such as under an overhang, and behind walls, if these end at one height above the side. Nearer to their
   /// points than `clear`, lines do not count.
   void leave_open(std::span<const DetectedSurface> surfaces, double clear) {
     if (!cloud_.has_sensor_positions()) return;
     leave_open_below_lines(clear);
     const std::vector<WallEnd> ends = wall_ends(cloud_, surfaces, bins_, above_foot());
     for (const WallEnd& end : ends) wall_end_[bins_.number_of(end.place)] = end.place.z();
-    std::vector<std::uint32_t> behind = bins_behind(ends, bins_, above_foot());
-    std::erase_if(behind, [&](std::uint32_t bin) { return is_open_[bin]; });
+    const std::vector<std::uint32_t> behind = bins_behind(ends, bins_, above_foot(), bins_with_missing_layer(false));
     for (const std::uint32_t bin : behind) is_open_[bin] = true;
-    std::vector<bool> is_below(bins_.count(), false);
-    for (const Underside& underside : undersides()) {
-      for (const std::uint32_t bin : underside.bins) is_below[bin] = true;
+    undersides_ = find_undersides();
+    for (const std::uint32_t bin : behind) is_open_[bin] = false;
+    for (const Underside& underside : undersides_) {
+      for (const std::uint32_t bin : underside.bins) is_open_[bin] = true;
     }
-    for (const std::uint32_t bin : behind) is_open_[bin] = is_below[bin];
     judge();
   }
 
   /// A place in each bin with a missing layer, at the height of the lowest points; world coordinates.
-  [[nodiscard]] Points missing_places() const {
-    return places_at(foot_, bins_with_missing_layer(false), outline_from_above());
+  [[nodiscard]] Points missing_places(const Outline& outline) const {
+    return places_at(foot_, bins_with_missing_layer(false), outline);
   }
 
-  /// The same for each group of bins that are left open, if the walls around it end at one height: world coordinates.
-  [[nodiscard]] std::vector<Points> underside_places() const {
-    const Outline outline = outline_from_above();
+  /// The same for each underside: groups of bins that are left open below walls that end at one height.
+  [[nodiscard]] std::vector<Points> underside_places(const Outline& outline) const {
     std::vector<Points> places;
-    for (const auto& [height, bins] : undersides()) places.push_back(places_at(height, bins, outline));
+    for (const auto& [height, bins] : undersides_) places.push_back(places_at(height, bins, outline));
     return places;
+  }
+
+  /// The convex hull of the cloud.
+  [[nodiscard]] Outline outline_from_above() const {
+    boost::geometry::model::multi_point<PlanePoint> shadow;
+    for (std::size_t i = 0; i < cloud_.size(); ++i) shadow.emplace_back(bins_.points().x[i], bins_.points().y[i]);
+    Outline outline;
+    boost::geometry::convex_hull(shadow, outline);
+    return outline;
   }
 
  private:
@@ -187,18 +194,24 @@ class LayerCount {
       is_open_[bin] = std::isfinite(face) && static_cast<double>(crossed) > k_most_bins * all;
     }
   }
-  /// Groups of open bins with a missing layer, if the walls around end at one height.
-  [[nodiscard]] std::vector<Underside> undersides() const {
+  /// Groups of open bins with a missing layer, if the walls around end at one height, which is below nearly all that
+  /// faces up above them.
+  [[nodiscard]] std::vector<Underside> find_undersides() const {
+    constexpr double k_least_below = 0.75;  // of the bins; fewer are a wrong guess, such as across a conical recess
     std::vector<Underside> undersides;
-    for (const std::vector<std::uint32_t>& group : bins_.groups_of(bins_with_missing_layer(true))) {
+    for (std::vector<std::uint32_t>& group : bins_.groups_of(bins_with_missing_layer(true))) {
       std::vector<double> ends;
       for (const std::uint32_t bin : group) {
         const double end = wall_end_[bin];
         if (end > above_foot() && end < face_above_[bin] - k_standing * step()) ends.push_back(end);
       }
-      if (const std::optional<double> height = common_end(std::move(ends), step())) {
-        undersides.push_back({.height = *height, .bins = group});
-      }
+      const std::optional<double> height = common_end(std::move(ends), step());
+      if (!height) continue;
+      const auto all = static_cast<double>(group.size());
+      std::erase_if(group,
+                    [&](std::uint32_t bin) { return !std::isfinite(face_above_[bin]) || face_above_[bin] <= *height; });
+      if (static_cast<double>(group.size()) < k_least_below * all) continue;
+      undersides.push_back({.height = *height, .bins = std::move(group)});
     }
     return undersides;
   }
@@ -240,14 +253,6 @@ class LayerCount {
     }
     return bins;
   }
-  /// The convex hull of the cloud, seen from above.
-  [[nodiscard]] Outline outline_from_above() const {
-    boost::geometry::model::multi_point<PlanePoint> shadow;
-    for (std::size_t i = 0; i < cloud_.size(); ++i) shadow.emplace_back(bins_.points().x[i], bins_.points().y[i]);
-    Outline outline;
-    boost::geometry::convex_hull(shadow, outline);
-    return outline;
-  }
   /// A place in each bin, but none beyond the outline: windows reach across the border of the part, and the last points
   /// before it stand for more area than they have. World coordinates.
   [[nodiscard]] Points places_at(double height, const std::vector<std::uint32_t>& bins, const Outline& outline) const {
@@ -285,6 +290,7 @@ class LayerCount {
   std::vector<double> face_above_;  // by bin: the lowest face around it that faces up
   std::vector<double> wall_end_;    // by bin: where a wall over it ends; infinite without one
   std::vector<bool> is_open_;       // by bin: nothing is missing at the height of the side
+  std::vector<Underside> undersides_ = {};
   double foot_ = 0, mean_height_ = 0;
   double missing_ = 0, doubt_ = 0;
   std::ptrdiff_t standing_ = 0;
@@ -329,8 +335,13 @@ std::optional<UnseenSide> find_unseen_side(const PointCloud& cloud, std::span<co
     }
     return points;
   };
-  UnseenSide side{.normal = -best_up, .share = found / (all.area + found), .points = closing(best.missing_places())};
-  for (Points& places : best.underside_places()) side.undersides.push_back(closing(std::move(places)));
+  const Outline outline = best.outline_from_above();
+  UnseenSide side{
+      .normal = -best_up, .share = found / (all.area + found), .points = closing(best.missing_places(outline))};
+  if (side.points.size() == 0) return std::nullopt;
+  for (Points& places : best.underside_places(outline)) {
+    if (places.size() > 0) side.undersides.push_back(closing(std::move(places)));
+  }
   return side;
 }
 

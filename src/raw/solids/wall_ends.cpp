@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/base/random.hpp"
 #include "core/geometry/neighbour_tree.hpp"
@@ -15,12 +16,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::uint64_t k_wall_stage = 0x7761'6c6c;
+constexpr std::uint64_t k_end_stage = 0x656e'6473;
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
-constexpr double k_upright = 0.5;           ///< greatest cosine between the normal of a wall and the direction up
-constexpr double k_along = 0.985;           ///< least cosine between the axis of a round wall and that direction
-constexpr double k_same_wall = 0.7;         ///< least cosine between normals
-constexpr std::size_t k_most_sensors = 64;  ///< with half, some positions of a hand-held scanner are left out
+constexpr double k_upright = 0.5;    ///< greatest cosine between the normal of a wall and the direction up
+constexpr double k_along = 0.985;    ///< least cosine between the axis of a round wall and that direction
+constexpr double k_same_wall = 0.7;  ///< least cosine between normals
+/// Of a scanner that moves, or all of one with as many stands. With half, an end needs a larger part of the way of the
+/// scanner in view; double takes longer.
+constexpr std::size_t k_most_sensors = 64;
 constexpr std::size_t k_least_sensors = 2;  ///< one position may be wrong
 constexpr double k_least_view = 0.2;        ///< least cosine between a wall's normal and the direction to a sensor
 constexpr double k_below = 2;               ///< steps below the end of a wall and in front of it
@@ -57,6 +60,23 @@ std::vector<double> highest_points(const FloorBins& bins) {
   return highest;
 }
 
+/// Different positions, in the frame.
+std::vector<Vector3d> some_sensors(const PointCloud& cloud, const FloorBins& bins) {
+  constexpr std::size_t k_asked = 4096;  // points, which know all stands of a scanner
+  std::set<std::array<double, 3>> positions;
+  for (const std::uint32_t i : one_of_every_few(cloud.size(), k_asked, RandomStream(0, k_end_stage, 0))) {
+    const Vector3d sensor = bins.pose().to_local(cloud.sensor_positions[i]);
+    positions.insert({sensor.x(), sensor.y(), sensor.z()});
+  }
+  std::vector<Vector3d> sensors;
+  const std::size_t pace = (positions.size() + k_most_sensors - 1) / k_most_sensors;
+  std::size_t number = 0;
+  for (const auto& [x, y, z] : positions) {
+    if (number++ % pace == 0) sensors.emplace_back(x, y, z);
+  }
+  return sensors;
+}
+
 /// Whether sensors see the place just below the end of a wall, even if all is solid below what the part shows. Then
 /// they would have seen the wall go on.
 bool is_in_view(const WallEnd& end, const FloorBins& bins, const std::vector<Vector3d>& sensors,
@@ -66,8 +86,10 @@ bool is_in_view(const WallEnd& end, const FloorBins& bins, const std::vector<Vec
   const auto sees = [&](const Vector3d& sensor) {
     const Vector3d way = sensor - place;
     if (!(way.head<2>().dot(end.outward) > k_least_view * way.norm())) return false;
-    const Vector3d pace = way * (step / way.head<2>().norm());
-    for (Vector3d at = place; at.z() < bins.top() && bins.is_over(at); at += pace) {
+    const double far = way.head<2>().norm();
+    for (double along = 0; along < far; along += step) {
+      const Vector3d at = place + along / far * way;
+      if (at.z() >= bins.top() || !bins.is_over(at)) break;
       if (at.z() <= highest[bins.number_of(at)]) return false;
     }
     return true;
@@ -96,10 +118,7 @@ std::vector<WallEnd> wall_ends(const PointCloud& cloud, std::span<const Detected
     });
     ends.push_back(end);
   }
-  std::vector<Vector3d> sensors;
-  for (const std::uint32_t i : one_of_every_few(cloud.size(), k_most_sensors, RandomStream(0, k_wall_stage, 0))) {
-    sensors.push_back(bins.pose().to_local(cloud.sensor_positions[i]));
-  }
+  const std::vector<Vector3d> sensors = some_sensors(cloud, bins);
   const std::vector<double> highest = highest_points(bins);
   std::erase_if(ends,
                 [&](const WallEnd& end) { return end.place.z() > foot && !is_in_view(end, bins, sensors, highest); });
@@ -119,12 +138,13 @@ std::optional<double> common_end(std::vector<double> heights, double step) {
     first_of_most = first;
   }
   if (2 * most <= heights.size()) return std::nullopt;
-  // The lowest quarter is the noise below, and most lowest points are somewhat higher than the end of their wall.
+  // The quartile: noise is below it, and most lowest points are above the end of their wall.
   return heights[first_of_most + most / 4];
 }
 
-std::vector<std::uint32_t> bins_behind(const std::vector<WallEnd>& ends, const FloorBins& bins, double foot) {
-  constexpr std::size_t k_around = 32;  // the walls on both sides of a rib, and of the one beside it
+std::vector<std::uint32_t> bins_behind(const std::vector<WallEnd>& ends, const FloorBins& bins, double foot,
+                                       const std::vector<std::uint32_t>& candidates) {
+  constexpr std::size_t k_around = 32;  // with half, the outer sides of walls in front of a bin may be all
   Points places;
   for (const WallEnd& end : ends) places.push_back({end.place.x(), end.place.y(), 0});
   if (places.size() == 0) return {};
@@ -132,7 +152,7 @@ std::vector<std::uint32_t> bins_behind(const std::vector<WallEnd>& ends, const F
   std::array<std::uint32_t, k_around> near{};
   std::array<double, k_around> squares{};
   std::vector<std::uint32_t> behind;
-  for (std::uint32_t bin = 0; bin < bins.count(); ++bin) {
+  for (const std::uint32_t bin : candidates) {
     const Vector2d middle = bins.place_in(bin, 0.5, 0.5);
     const std::size_t found = tree.find({middle.x(), middle.y(), 0}, near, squares);
     const std::span<const std::uint32_t> nearest = std::span(near).first(found);

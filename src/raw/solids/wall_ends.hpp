@@ -18,16 +18,18 @@ struct WallEnd {
 };
 
 /// Ends of upright planes and cylinders: one for each bin in which such a surface has the lowest point that does not
-/// face up. If an end is higher than `foot`, a sensor would have seen the wall go on. A rounded edge is no end: nobody
-/// sees it turn below. Precondition: the cloud has sensor positions. O(n + bins x sensors)
+/// face up. Ends higher than `foot` are left out unless two sensors see the place just below: they would have seen the
+/// wall go on. A rounded edge is no end: nobody sees it turn below. Precondition: the cloud has sensor positions.
+/// O(n + ends x sensors x bins along a line)
 [[nodiscard]] std::vector<WallEnd> wall_ends(const PointCloud& cloud, std::span<const DetectedSurface> surfaces,
                                              const FloorBins& bins, double foot);
 
 /// The height at which most of the walls end, if there is one. O(n log n)
 [[nodiscard]] std::optional<double> common_end(std::vector<double> heights, double step);
 
-/// Bins behind a wall that ends higher than `foot`, before any other wall does. O(bins log ends)
+/// Those of the candidates whose nearest end, of those with the bin on the inner side of their wall, is higher than
+/// `foot`. O(candidates log ends)
 [[nodiscard]] std::vector<std::uint32_t> bins_behind(const std::vector<WallEnd>& ends, const FloorBins& bins,
-                                                     double foot);
+                                                     double foot, const std::vector<std::uint32_t>& candidates);
 
 }  // namespace cloud2csg
