@@ -4,7 +4,7 @@
     bench/partitions.py FOLDER [--program build/release/cloud2csg]
 
 For each mesh of the folder: 100 000 points without noise, and the solids that `extract` finds in them. Then only the tree over
-these solids is searched, by cells and by cliques of the overlap graph. Prints a table.
+these solids is searched, by cells and by cliques of the overlap graph, for at most `--limit` seconds each. Prints a table.
 """
 
 import argparse
@@ -18,11 +18,15 @@ from inversecsg import DOUBTFUL, make_cloud, make_mesh, meshes_in, print_lines, 
 STRATEGIES = ("cells", "partition")
 
 
-def search(program, mesh, cloud, solids, strategy, folder):
-    """IoU, leaves and milliseconds of the tree over given solids; how many cliques, and the size of the largest."""
+def search(program, mesh, cloud, solids, strategy, limit, folder):
+    """IoU, leaves and milliseconds of the tree over given solids; how many cliques, and the size of the largest. A failed search,
+    which writes nothing, has an IoU of 0."""
     tree, stats = folder / f"{strategy}.json", folder / "stats.json"
     command = [program, "extract", cloud, "--primitives", solids, "--strategy", strategy, "--threads", "1"]
-    run([*command, "-o", tree, "--stats", stats, "-q"], 600, (0, DOUBTFUL))
+    try:
+        run([*command, "--time-limit", str(limit), "-o", tree, "--stats", stats, "-q"], 600, (0, DOUBTFUL))
+    except RuntimeError:
+        return {"iou": 0, "leaves": 0, "ms": 1000 * limit}
     values = json.loads(stats.read_text())
     iou = json.loads(run([program, "compare", mesh, tree, "--json", "-q"]))["intersection_over_union"]
     cliques = values["clique_histogram"]
@@ -30,7 +34,7 @@ def search(program, mesh, cloud, solids, strategy, folder):
             "leaves": values["tree"]["leaves"], "ms": 1000 * values["seconds"]["extraction"]}
 
 
-def measure(program, mesh, points, seed):
+def measure(program, mesh, points, seed, limit):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         if mesh.suffix == ".scad":
@@ -38,7 +42,7 @@ def measure(program, mesh, points, seed):
         cloud = make_cloud(program, mesh, "clean", points, seed, folder)
         solids = folder / "solids.json"
         run([program, "extract", cloud, "-o", solids, "-q"], 600, (0, DOUBTFUL))
-        return [search(program, mesh, cloud, solids, strategy, folder) for strategy in STRATEGIES]
+        return [search(program, mesh, cloud, solids, strategy, limit, folder) for strategy in STRATEGIES]
 
 
 def main():
@@ -47,11 +51,12 @@ def main():
     parser.add_argument("--program", default="build/release/cloud2csg")
     parser.add_argument("--points", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--limit", type=float, default=30)
     arguments = parser.parse_args()
     rows = []
     lines = []
     for mesh in meshes_in(arguments.folder):
-        by_strategy = measure(arguments.program, mesh, arguments.points, arguments.seed)
+        by_strategy = measure(arguments.program, mesh, arguments.points, arguments.seed, arguments.limit)
         rows.append(by_strategy)
         first = by_strategy[0]
         lines.append([mesh.stem, first["solids"], first["cliques"], first["largest"],
