@@ -317,9 +317,10 @@ struct Extraction {
   ExtractStatistics statistics = {};
   [[nodiscard]] const CsgTree& tree() const { return *model.tree; }
   // Only after detection of primitives:
-  PointCloud cloud = {};                       ///< the points used: cleaned, with normals
-  std::vector<DetectedSurface> surfaces = {};  ///< surfaces of the points that lie on no known primitive
-  std::vector<SurfacePoints> points = {};      ///< points of `cloud` on each primitive as it was detected
+  PointCloud cloud = {};  ///< the points used: cleaned, with normals
+  /// Surfaces of the points that lie on no known primitive; also those that close what nobody saw, without points.
+  std::vector<DetectedSurface> surfaces = {};
+  std::vector<SurfacePoints> points = {};  ///< points of `cloud` on each primitive as it was detected
 };
 
 /// Section 4 of the paper, from cloud to tree. The merge is checked against the cloud and always gives a tree. The same

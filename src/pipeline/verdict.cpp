@@ -133,8 +133,9 @@ std::vector<Doubt> doubts_of_disagreement(const Extraction& result, const Labell
 /// The surface that no point of the cloud is near: closed where an added one is, and bare elsewhere.
 struct UnseenSurface {
   double closed = 0, bare = 0;  ///< shares of the solid's surface
-  Eigen::Vector3d closed_place = Eigen::Vector3d::Zero(),
-                  bare_place = Eigen::Vector3d::Zero();  ///< of each, the place farthest from all points of the cloud
+  // Of each, the place farthest from all points of the cloud.
+  Eigen::Vector3d closed_place = Eigen::Vector3d::Zero();
+  Eigen::Vector3d bare_place = Eigen::Vector3d::Zero();
 };
 
 UnseenSurface unseen_surface(const BareSurface& surface, const Points& added, double near) {
