@@ -6,17 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cloud2csg/error.hpp"
+#include "core/primitive/refuse.hpp"
 
 namespace cloud2csg {
 namespace {
 
 /// Three planes whose normals span a smaller volume meet too far away, or not at all.
 constexpr double k_parallel = 1e-9;
-
-[[noreturn]] void refuse(std::string where, std::string expected, std::string remedy) {
-  throw Error({.where = std::move(where), .expected = std::move(expected), .remedy = std::move(remedy)});
-}
 
 /// The distance from a plane up to which a point lies on it.
 double tolerance_of(const Polytope& polytope) {
@@ -53,11 +49,11 @@ bool is_unbounded(const Polytope& polytope) {
 
 void validate_plane(const Plane& plane, std::size_t index) {
   const std::string where = fmt::format("planes/{}", index);
-  if (!plane.normal.allFinite() || !std::isfinite(plane.offset)) refuse(where, "four finite numbers", "");
+  if (!plane.normal.allFinite() || !std::isfinite(plane.offset)) refuse_primitive(where, "four finite numbers");
   const double length = plane.normal.norm();
   if (std::abs(length - 1) > 1e-6) {
-    refuse(where, fmt::format("a normal of unit length, not {:.9g}", length),
-           "divide the normal and the offset by that length");
+    refuse_primitive(where, fmt::format("a normal of unit length, not {:.9g}", length),
+                     "divide the normal and the offset by that length");
   }
 }
 
@@ -114,16 +110,20 @@ Polytope grown(const Polytope& polytope, double distance) {
 void validate_polytope(const Polytope& polytope) {
   for (std::size_t i = 0; i < polytope.planes.size(); ++i) validate_plane(polytope.planes[i], i);
   if (polytope.planes.size() < 4) {
-    refuse("planes", fmt::format("at least 4 planes, not {}", polytope.planes.size()), "a bounded solid needs four");
+    refuse_primitive("planes", fmt::format("at least 4 planes, not {}", polytope.planes.size()),
+                     "a bounded solid needs four");
   }
-  if (is_unbounded(polytope)) refuse("planes", "planes that enclose a bounded solid", "add the missing sides");
+  if (is_unbounded(polytope)) {
+    refuse_primitive("planes", "planes that enclose a bounded solid", "add the missing sides");
+  }
 
   const std::vector<Eigen::Vector3d> points = corners(polytope);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& corner : points) middle += corner / static_cast<double>(points.size());
   // The mean of the corners is strictly inside exactly when the solid has volume.
   if (points.size() < 4 || !is_within(polytope, middle, -tolerance_of(polytope))) {
-    refuse("planes", "planes whose half-spaces have a common volume", "check the signs of normals and offsets");
+    refuse_primitive("planes", "planes whose half-spaces have a common volume",
+                     "check the signs of normals and offsets");
   }
 }
 

@@ -2,27 +2,24 @@
 
 #include <cmath>
 
-#include "cloud2csg/error.hpp"
 #include "cloud2csg/primitive.hpp"
 #include "core/geometry/boxes.hpp"
 #include "core/primitive/expression.hpp"
 #include "core/primitive/polytope.hpp"
 #include "core/primitive/profile.hpp"
+#include "core/primitive/refuse.hpp"
 #include "core/primitive/shape.hpp"
 
 namespace cloud2csg {
 namespace {
 
-[[noreturn]] void refuse(const char* where, std::string expected, const char* remedy = "") {
-  throw Error({.where = where, .expected = std::move(expected), .remedy = remedy});
-}
-
 void require_positive(const char* where, double value) {
-  if (!std::isfinite(value) || value <= 0) refuse(where, fmt::format("a positive number, not {}", value));
+  if (!std::isfinite(value) || value <= 0) refuse_primitive(where, fmt::format("a positive number, not {}", value));
 }
 
 void require_not_negative(const char* where, double value) {
-  if (!std::isfinite(value) || value < 0) refuse(where, fmt::format("a number that is not negative, not {}", value));
+  if (!std::isfinite(value) || value < 0)
+    refuse_primitive(where, fmt::format("a number that is not negative, not {}", value));
 }
 
 void validate_cone(const Cone& cone) {
@@ -30,7 +27,7 @@ void validate_cone(const Cone& cone) {
   require_not_negative("radius_top", cone.radius_top);
   require_positive("height", cone.height);
   if (cone.radius_bottom == 0 && cone.radius_top == 0) {
-    refuse("radius_bottom", "at least one of radius_bottom and radius_top above 0");
+    refuse_primitive("radius_bottom", "at least one of radius_bottom and radius_top above 0");
   }
 }
 
@@ -38,20 +35,21 @@ void validate_torus(const Torus& torus) {
   require_positive("major_radius", torus.major_radius);
   require_positive("minor_radius", torus.minor_radius);
   if (torus.minor_radius > torus.major_radius) {
-    refuse("minor_radius", fmt::format("at most the major radius {}, not {}", torus.major_radius, torus.minor_radius));
+    refuse_primitive("minor_radius",
+                     fmt::format("at most the major radius {}, not {}", torus.major_radius, torus.minor_radius));
   }
 }
 
 void require_value_at(ExpressionEvaluator& evaluator, const Eigen::Vector3d& point) {
   if (std::abs(evaluator.value(point)) < k_no_distance) return;
-  refuse("distance", fmt::format("a finite value within the bounds; there is none at ({}, {}, {})", point.x(),
-                                 point.y(), point.z()));
+  refuse_primitive("distance", fmt::format("a finite value within the bounds; there is none at ({}, {}, {})", point.x(),
+                                           point.y(), point.z()));
 }
 
 void validate_expression(const Expression& expression) {
   const AlignedBox& box = expression.bounds;
   if (!is_finite(box) || (box.sizes().array() <= 0).any()) {
-    refuse("bounds", "two finite corners, the first below the second in each coordinate");
+    refuse_primitive("bounds", "two finite corners, the first below the second in each coordinate");
   }
   validate_formula(expression.distance);
   ExpressionEvaluator evaluator(expression);
@@ -65,11 +63,11 @@ void validate_expression(const Expression& expression) {
 }
 
 void validate_pose(const Pose& pose) {
-  if (!pose.position.allFinite()) refuse("pose/position", "three finite numbers");
+  if (!pose.position.allFinite()) refuse_primitive("pose/position", "three finite numbers");
   const double length = pose.orientation.norm();
   if (!std::isfinite(length) || std::abs(length - 1) > 1e-6) {
-    refuse("pose/quaternion", fmt::format("a quaternion of unit length, not {:.9g}", length),
-           "divide it by that length");
+    refuse_primitive("pose/quaternion", fmt::format("a quaternion of unit length, not {:.9g}", length),
+                     "divide it by that length");
   }
 }
 
@@ -94,7 +92,8 @@ void validate(const Primitive& primitive) {
                  [](const Revolution& revolution) {
                    validate_turned_profile(revolution.profile);
                    if (!(revolution.angle_deg > 0 && revolution.angle_deg <= 360)) {
-                     refuse("angle_deg", fmt::format("above 0 and at most 360, not {}", revolution.angle_deg));
+                     refuse_primitive("angle_deg",
+                                      fmt::format("above 0 and at most 360, not {}", revolution.angle_deg));
                    }
                  },
                  [](const Expression& expression) { validate_expression(expression); }},
@@ -102,7 +101,7 @@ void validate(const Primitive& primitive) {
   validate_pose(primitive.pose);
   if (primitive.displacement) require_positive("displacement/frequency", primitive.displacement->frequency);
   if (primitive.evidence && !(primitive.evidence->rms >= 0 && std::isfinite(primitive.evidence->rms))) {
-    refuse("evidence/rms", "a finite number of 0 or more");
+    refuse_primitive("evidence/rms", "a finite number of 0 or more");
   }
 }
 

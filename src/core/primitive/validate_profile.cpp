@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "cloud2csg/error.hpp"
 #include "core/primitive/profile.hpp"
+#include "core/primitive/refuse.hpp"
 
 namespace cloud2csg {
 namespace {
@@ -52,22 +52,19 @@ std::vector<Vector2d> shared_corners(const PlacedSegment& a, const PlacedSegment
   return shared;
 }
 
-[[noreturn]] void refuse(std::string where, std::string expected) {
-  throw Error({.where = std::move(where), .expected = std::move(expected)});
-}
-
 /// All segments, after each was checked for itself.
 std::vector<PlacedSegment> checked_segments(const Profile& profile) {
   std::vector<PlacedSegment> all;
   for (std::size_t p = 0; p < profile.paths.size(); ++p) {
     const ClosedPath& path = profile.paths[p];
-    if (path.size() < 2) refuse(fmt::format("profile/{}", p), "a closed path of two corners or more");
+    if (path.size() < 2) refuse_primitive(fmt::format("profile/{}", p), "a closed path of two corners or more");
     const std::vector<ProfileSegment> segments = segments_of(path);
     for (std::size_t i = 0; i < path.size(); ++i) {
       const std::string where = fmt::format("profile/{}/{}", p, i);
-      if (!path[i].point.allFinite() || !std::isfinite(path[i].bulge)) refuse(where, "two or three finite numbers");
-      if (segments[i].start == segments[i].end) refuse(where, "a corner that differs from the next one");
-      if (std::abs(path[i].bulge) > k_most_bulge) refuse(where, "an arc that is no full circle");
+      if (!path[i].point.allFinite() || !std::isfinite(path[i].bulge))
+        refuse_primitive(where, "two or three finite numbers");
+      if (segments[i].start == segments[i].end) refuse_primitive(where, "a corner that differs from the next one");
+      if (std::abs(path[i].bulge) > k_most_bulge) refuse_primitive(where, "an arc that is no full circle");
       all.push_back({.segment = segments[i], .path = p, .index = i, .box = bounds_of(std::span(&segments[i], 1))});
     }
   }
@@ -77,7 +74,7 @@ std::vector<PlacedSegment> checked_segments(const Profile& profile) {
 }  // namespace
 
 void validate_profile(const Profile& profile) {
-  if (profile.paths.empty()) refuse("profile", "a closed path or more");
+  if (profile.paths.empty()) refuse_primitive("profile", "a closed path or more");
   const std::vector<PlacedSegment> all = checked_segments(profile);
   const double tolerance = k_touching * bounds_of(profile).diagonal().norm();
   // Only segments whose boxes overlap along x can touch.
@@ -101,8 +98,8 @@ void validate_profile(const Profile& profile) {
   if (first.first == all.size()) return;
   const PlacedSegment& a = all[first.second];
   const PlacedSegment& b = all[first.first];
-  refuse(fmt::format("profile/{}/{}", b.path, b.index),
-         fmt::format("a segment that does not cross or touch segment {} of path {}", a.index, a.path));
+  refuse_primitive(fmt::format("profile/{}/{}", b.path, b.index),
+                   fmt::format("a segment that does not cross or touch segment {} of path {}", a.index, a.path));
 }
 
 void validate_turned_profile(const Profile& profile) {
@@ -115,11 +112,11 @@ void validate_turned_profile(const Profile& profile) {
       const ProfileSegment& s = segments[i];
       const double low = extent_along(s, Vector2d::UnitX()).first;
       const std::string where = fmt::format("profile/{}/{}", p, i);
-      if (low < -tolerance) refuse(where, "radii of 0 or more");
+      if (low < -tolerance) refuse_primitive(where, "radii of 0 or more");
       const bool starts_at_line = s.start.x() == 0 && segments[(i + count - 1) % count].is_on_axis();
       const bool ends_at_line = s.end.x() == 0 && segments[(i + 1) % count].is_on_axis();
       if (low > tolerance || s.is_on_axis() || starts_at_line || ends_at_line) continue;
-      refuse(where, "a profile that does not touch the axis in a single point");
+      refuse_primitive(where, "a profile that does not touch the axis in a single point");
     }
   }
 }

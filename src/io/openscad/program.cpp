@@ -345,7 +345,7 @@ class Program {
     try {
       validate(primitive);
     } catch (const Error& error) {
-      throw Refusal(offset, fmt::format("{}: expected {}", error.parts().where, error.parts().expected));
+      throw Refusal(offset, fmt::format("{}: {}", error.parts().where, error.parts().expected));
     }
     const auto index = static_cast<PrimitiveIndex>(primitives_.size());
     const auto [known, is_new] = index_of_.emplace(key_of(primitive), index);
