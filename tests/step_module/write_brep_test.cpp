@@ -7,6 +7,7 @@
 #include "cloud2csg/advanced/brep.hpp"
 #include "cloud2csg/error.hpp"
 #include "cloud2csg/mesh.hpp"
+#include "core/base/files.hpp"
 #include "step_module/read_back.hpp"
 #include "support/known_solids.hpp"
 #include "support/outside_program.hpp"
@@ -78,6 +79,25 @@ TEST_F(WriteBrep, PrimitivesHaveTheirVolumes) {
   const Polytope wedge{
       .planes = {{{-1, 0, 0}, 0}, {{0, -1, 0}, 0}, {{0, 0, -1}, 0}, {{0.6, 0.8, 0}, 1.2}, {{0, 0, 1}, 3}}};
   expect_solid(leaf, {turned("wedge", wedge)}, 0.5 * 2 * 1.5 * 3);
+}
+
+TEST_F(WriteBrep, TurnedCirclesAreTori) {
+  const auto count = [&](std::string_view entity) {
+    const std::string text = read_text_file(path("x.step"));
+    std::size_t found = 0;
+    for (auto at = text.find(entity); at != std::string::npos; at = text.find(entity, at + 1)) ++found;
+    return found;
+  };
+  const ClosedPath rounded{{.point = {2, 0}}, {.point = {3, 0}, .bulge = 0.4}, {.point = {3, 2}}, {.point = {2, 2}}};
+  for (const double angle : {90.0, 360.0}) {
+    const Profile tube{.paths = {test::circle_path({2, 0}, 0.5), test::circle_path({2, 0}, 0.25)}};
+    (void)step(CsgTree::leaf(0), {turned("tube", Revolution{.profile = tube, .angle_deg = angle})});
+    EXPECT_EQ(count("TOROIDAL_SURFACE"), 2U);
+    EXPECT_EQ(count("SURFACE_OF_REVOLUTION"), 0U);
+    (void)step(CsgTree::leaf(0), {turned("barrel", Revolution{.profile = {.paths = {rounded}}, .angle_deg = angle})});
+    EXPECT_EQ(count("TOROIDAL_SURFACE"), 1U);
+    EXPECT_EQ(count("SURFACE_OF_REVOLUTION"), 0U);
+  }
 }
 
 /// The part at r > 0 of a circle around (R, 0). Turned, it is an apple for R > 0 and a lemon for R < 0.

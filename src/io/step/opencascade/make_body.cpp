@@ -286,17 +286,20 @@ TopoDS_Shape placed(const TopoDS_Shape& shape, const Pose& pose) {
 /// Places a profile's plane in space.
 using PlaceOf = std::function<gp_Pnt(const Eigen::Vector2d&)>;
 
-/// The arc as a curve that starts at parameter 0. Turned about x = 0, a circle gives a torus. The kernel knows no torus
-/// that cuts itself, so such an arc becomes a spline, which is exact as well.
+/// The curve of an arc. Turned about x = 0, a circle gives a torus if its angles count from the far side of the axis.
+/// The kernel knows no torus that cuts itself, so such an arc becomes a spline, which is exact as well.
 Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, bool is_turned) {
+  constexpr double k_pinhole = 1e-5;
   const gp_Pnt centre = place(arc.centre);
   const gp_Vec to_start(centre, place(arc.start));
   const gp_Vec to_quarter(centre, place(arc.centre + (arc.angle > 0 ? 1 : -1) * to_the_left(arc.start - arc.centre)));
-  const gp_Ax2 axes(centre, gp_Dir(to_start.Crossed(to_quarter)), gp_Dir(to_start));
-  constexpr double k_pinhole = 1e-5;
-  Handle(Geom_Curve) circle = new Geom_Circle(axes, arc.radius);
+  const gp_Dir normal(to_start.Crossed(to_quarter));
   const bool is_sphere = std::abs(arc.centre.x()) < Precision::Confusion();
-  if (!is_turned || is_sphere || arc.centre.x() > (1 + k_pinhole) * arc.radius) return circle;
+  if (!is_turned || is_sphere || arc.centre.x() > (1 + k_pinhole) * arc.radius) {
+    const gp_Vec outward(centre, place(arc.centre + Eigen::Vector2d::UnitX()));
+    return new Geom_Circle(gp_Ax2(centre, normal, gp_Dir(is_turned ? outward : to_start)), arc.radius);
+  }
+  Handle(Geom_Curve) circle = new Geom_Circle(gp_Ax2(centre, normal, gp_Dir(to_start)), arc.radius);
   // A parameter close to the angle: with others, the kernel's measure of the volume is off by up to .4 %.
   Handle(Geom_Curve) spline =
       GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
