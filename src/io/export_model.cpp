@@ -60,7 +60,13 @@ ExportReport export_mesh(const std::filesystem::path& file, const Model& model, 
                          const RunContext& run) {
   const AlignedBox extent = model_extent(model);
   const std::optional<TriangleMesh> exact = exact_surface(model, options, run);
-  write_mesh(file, exact ? *exact : mesh_surface(model, extent, options.meshing, run));
+  const TriangleMesh mesh = exact ? *exact : mesh_surface(model, extent, options.meshing, run);
+  if (mesh.triangles.empty()) {
+    throw Error({.file = file.string(),
+                 .expected = "expected a solid to mesh, found one that is empty or thinner than a cell",
+                 .remedy = "give a larger `meshing.resolution`"});
+  }
+  write_mesh(file, mesh);
   return {.cut_at = cut_at(model, extent)};
 }
 
