@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "cloud2csg/advanced/solids.hpp"
 #include "cloud2csg/advanced/winding_number.hpp"
@@ -62,6 +63,23 @@ TEST(LabelPlaces, WeighsTheVolumeOfTheSolidAsOne) {
   // Nothing in the solid: its volume, and half of what is beside its surface, is wrong.
   EXPECT_NEAR(wrong_place_share(CsgTree::empty(), k_solids, places), 1.5, 0.05);
   EXPECT_GT(total_weight(places), 2.0);
+}
+
+std::string refusal_of(const PointCloud& cloud) {
+  try {
+    (void)label_places(cloud, {.noise = 0.0, .volume_places = 1000, .surface_points = 500});
+    return {};
+  } catch (const NoInside& error) {
+    return error.what();
+  }
+}
+
+TEST(LabelPlaces, TellsWhatToDoWithARoom) {
+  PointCloud room = sample_surface({.primitives = k_solids, .tree = CsgTree::leaf(0)}, {.count = 2000, .noise = 0});
+  for (std::size_t i = 0; i < room.size(); ++i) room.normals.set(i, -Eigen::Vector3d(room.normals[i]));
+  EXPECT_NE(refusal_of(room).find("outward normals or sensor positions"), std::string::npos);
+  for (std::size_t i = 0; i < room.size(); ++i) room.sensor_positions.push_back({0, 0, 0});
+  EXPECT_NE(refusal_of(room).find("for the space in a room, leave out the sensor positions"), std::string::npos);
 }
 
 /// Share of the places in a shaft that are labelled as in the solid.

@@ -32,11 +32,14 @@ constexpr std::size_t k_chunk_places = 256;  // places between two looks at the 
   throw Error({.where = where, .expected = std::move(expected), .remedy = std::move(remedy)});
 }
 
-[[noreturn]] void refuse_without_inside() {
-  throw NoInside(
-      {.where = "cloud",
-       .expected = "expected the surface of a solid, found one that encloses nothing",
-       .remedy = "give points from all sides of the object, and outward normals or sensor positions if there are any"});
+[[noreturn]] void refuse_without_inside(const PointCloud& cloud) {
+  const char* const remedy =
+      cloud.has_sensor_positions()
+          ? "give points from all sides, or, for the space in a room, leave out the sensor positions"
+          : "give points from all sides of the object, and outward normals or sensor positions if there are any";
+  throw NoInside({.where = "cloud",
+                  .expected = "expected the surface of a solid, found one that encloses nothing",
+                  .remedy = remedy});
 }
 
 void check(const PointCloud& cloud, const PlaceOptions& options, std::span<const double> areas) {
@@ -59,7 +62,7 @@ class Labelling {
     spacing_ = spacing_of(areas_);
     noise_ = options.noise.value_or(0.1 * spacing_);
     grown_ = grown(box, options.margin * diagonal_);
-    if (!(enclosed_volume() > 0)) refuse_without_inside();
+    if (!(enclosed_volume() > 0)) refuse_without_inside(cloud_);
   }
 
   void add_volume(LabelledPlaces& places) const {
@@ -73,7 +76,7 @@ class Labelling {
     // All areas share an unknown factor, which places clearly inside determine.
     std::vector<double> inside;
     std::ranges::copy_if(numbers, std::back_inserter(inside), [](double number) { return number > 0.5; });
-    if (inside.empty()) refuse_without_inside();
+    if (inside.empty()) refuse_without_inside(cloud_);
     const std::vector<int> sides = sides_of(candidates, numbers, median_of(inside));
     const auto count_in = static_cast<double>(std::max<std::ptrdiff_t>(std::ranges::count(sides, 1), 1));
     for (std::size_t i = 0; i < candidates.size(); ++i) {
