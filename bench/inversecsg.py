@@ -5,7 +5,8 @@
 
 For each mesh of the folder, or .scad file, which OpenSCAD makes a mesh of: 100 000 points without noise, with noise of 0.2 % of
 the diagonal, and a virtual scan from 20 viewpoints without normals. The tree is written as .scad, rendered by OpenSCAD, and that
-mesh is compared with the input. Prints a table; nothing is known of a model but its mesh. More variants:
+mesh is compared with the input. Prints a table; nothing is known of a model but its mesh. "beyond" is how far the solid leaves
+the bounds of the cloud, in tolerances. More variants:
 
     table            a scan from above only, of a part that lies on a table
     noise=PERCENT    noise of so much of the diagonal
@@ -130,6 +131,17 @@ def judge(program, openscad, mesh, tree, folder):
     return json.loads(run([program, "compare", mesh, tree, "--json", "-q"]))
 
 
+def bounds_of(program, file):
+    """The least and the largest coordinates of a cloud or of a model's solid."""
+    return json.loads(run([program, "info", file, "--json", "-q"]))["bounds"]
+
+
+def beyond(program, tree, cloud):
+    """How far the tree's solid leaves the bounds of the cloud."""
+    (low, high), (least, most) = bounds_of(program, tree), bounds_of(program, cloud)
+    return max(0, *(a - b for a, b in zip(least, low)), *(b - a for a, b in zip(most, high)))
+
+
 def measure(program, openscad, mesh, variant, arguments):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -152,6 +164,7 @@ def measure(program, openscad, mesh, variant, arguments):
             "price": values["tree"]["price"], "verdict": values["verdict"]["grade"],
             "iou": compared["intersection_over_union"], "mean": compared["mean_distance"],
             "hausdorff": compared["hausdorff_distance"], "seconds": seconds,
+            "beyond": beyond(program, tree, cloud) / values["finding"]["tolerance"],
             "stages": {stage: values["seconds"].get(stage, 0) for stage in STAGES},
         }
 
@@ -169,14 +182,15 @@ def print_lines(head, lines):
 
 
 def print_table(rows):
-    head = ["model", "variant", "points", "surfaces", "leaves", "price", "verdict", "IoU", "mean", "Hausdorff", "s", *STAGES]
+    head = ["model", "variant", "points", "surfaces", "leaves", "price", "verdict", "IoU", "mean", "Hausdorff", "beyond", "s", *STAGES]
     lines = []
     for r in rows:
         if "error" in r:
             lines.append([r["model"], r["variant"], r["error"][:60]] + [""] * (len(head) - 3))
             continue
         lines.append([r["model"], r["variant"], r["points"], r["surfaces"], r["leaves"], f"{r['price']:.1f}", r["verdict"],
-                      f"{r['iou']:.4f}", f"{r['mean']:.4f}", f"{r['hausdorff']:.3f}", f"{r['seconds']:.2f}",
+                      f"{r['iou']:.4f}", f"{r['mean']:.4f}", f"{r['hausdorff']:.3f}", f"{r['beyond']:.2f}",
+                      f"{r['seconds']:.2f}",
                       *(f"{r['stages'][stage]:.2f}" for stage in STAGES)])
     print_lines(head, lines)
 
@@ -189,6 +203,8 @@ def print_summary(rows, variants):
         print(f"\n{variant}: {len(iou)} models, mean IoU {statistics.mean(iou):.4f}, >= 0.99 on {sum(x >= 0.99 for x in iou)}, "
               f">= 0.97 on {sum(x >= 0.97 for x in iou)}, >= 0.95 on {sum(x >= 0.95 for x in iou)}, least {min(iou):.4f}; "
               f"seconds: median {statistics.median(seconds) if seconds else 0:.2f}, most {max(seconds, default=0):.2f}")
+        farthest = max((r["beyond"] for r in rows if r["variant"] == variant and "beyond" in r), default=0)
+        print(f"    farthest beyond the cloud's bounds: {farthest:.2f} tolerances")
         without = by_variant.get("normals=none") if variant.startswith("normals=") else None
         if without:
             worst = min(ious, key=lambda model: ious[model] - without[model])

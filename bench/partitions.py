@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Cells beside the paper's partitions, over the solids that were found in a cloud.
+"""Ways to a tree over given solids: cells, the paper's partitions, and the decision list that found solids come with.
 
     bench/partitions.py FOLDER [--program build/release/cloud2csg]
 
-For each mesh of the folder: 100 000 points without noise, and the solids that `extract` finds in them. Then only the tree over
-these solids is searched, by cells and by cliques of the overlap graph, for at most `--limit` seconds each. Prints a table.
+For each mesh of the folder: 100 000 points without noise, and the solids that `extract` finds in them. Then these solids are
+given: only the tree over them is searched, by cells, by cliques of the overlap graph, and by a decision list, which may add
+solids. At most `--limit` seconds each. Prints a table.
 """
 
 import argparse
@@ -15,14 +16,14 @@ import tempfile
 
 from inversecsg import DOUBTFUL, make_cloud, make_mesh, meshes_in, print_lines, run
 
-STRATEGIES = ("cells", "partition")
+STRATEGIES = {"cells": ["--strategy", "cells"], "partition": ["--strategy", "partition"], "list": ["--detect-rest"]}
 
 
 def search(program, mesh, cloud, solids, strategy, limit, folder):
     """IoU, leaves and milliseconds of the tree over given solids; how many cliques, and the size of the largest. A failed search,
     which writes nothing, has an IoU of 0."""
     tree, stats = folder / f"{strategy}.json", folder / "stats.json"
-    command = [program, "extract", cloud, "--primitives", solids, "--strategy", strategy, "--threads", "1"]
+    command = [program, "extract", cloud, "--primitives", solids, *STRATEGIES[strategy], "--threads", "1"]
     try:
         run([*command, "--time-limit", str(limit), "-o", tree, "--stats", stats, "-q"], 600, (0, DOUBTFUL))
     except RuntimeError:
@@ -31,7 +32,7 @@ def search(program, mesh, cloud, solids, strategy, limit, folder):
     iou = json.loads(run([program, "compare", mesh, tree, "--json", "-q"]))["intersection_over_union"]
     cliques = values["clique_histogram"]
     return {"solids": values["primitives"], "cliques": sum(cliques), "largest": len(cliques), "iou": iou,
-            "leaves": values["tree"]["leaves"], "ms": 1000 * values["seconds"]["extraction"]}
+            "leaves": values["tree"]["leaves"], "ms": 1000 * sum(values["seconds"][s] for s in ("solids", "extraction"))}
 
 
 def measure(program, mesh, points, seed, limit):

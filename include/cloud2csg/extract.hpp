@@ -213,6 +213,7 @@ struct FindingStatistics {
   std::size_t known = 0, known_points = 0;  ///< number of known primitives and of points on them
   std::size_t unexplained_points = 0;       ///< points on no detected surface and no known primitive
   std::vector<Snap> snaps = {};             ///< surfaces made regular, and by how much
+  std::vector<ChoiceRound> rounds = {};     ///< see SolidChoice
   double disagreement = 0;                  ///< see SolidChoice
 };
 

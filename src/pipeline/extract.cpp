@@ -248,6 +248,7 @@ TreeStatistics statistics_of(const CsgTree& tree, const PrimitiveSet& primitives
     statistics.price += price_of(primitive);
     statistics.operations += profile_of(primitive.shape) != nullptr ? 1 : 0;
   }
+  statistics.price = std::round(10 * statistics.price) / 10;  // all prices are tenths
   statistics.operations += statistics.leaves > 0 ? statistics.leaves - 1 : 0;
   return statistics;
 }

@@ -371,7 +371,8 @@ FindingStatistics statistics_of(const FoundPrimitives& found, std::size_t known,
                                .known = known,
                                .known_points = count_of(std::span(found.points).first(known)),
                                .unexplained_points = found.detection.unexplained,
-                               .snaps = found.choice.snaps};
+                               .snaps = found.choice.snaps,
+                               .rounds = found.choice.rounds};
   for (const DetectedSurface& s : found.detection.surfaces) statistics.surfaces.push_back(s.surface.type);
   return statistics;
 }

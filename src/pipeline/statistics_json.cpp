@@ -124,6 +124,17 @@ Json closed_json(const std::vector<ClosedSurface>& surfaces) {
   return list;
 }
 
+Json rounds_json(const std::vector<ChoiceRound>& rounds) {
+  Json list = Json::array();
+  for (const ChoiceRound& round : rounds) {
+    list.push_back({{"planes", round.planes},
+                    {"places", round.places},
+                    {"leaves", round.leaves},
+                    {"disagreement", round.disagreement}});
+  }
+  return list;
+}
+
 Json finding_json(const FindingStatistics& s) {
   const auto count = [&s](SurfaceType type) { return std::ranges::count(s.surfaces, type); };
   const LargestChange largest = largest_change(s.snaps);
@@ -148,6 +159,7 @@ Json finding_json(const FindingStatistics& s) {
           {"largest_turn_deg", largest.turn_deg},
           {"largest_shift", largest.shift},
           {"snaps", snaps_json(s)},
+          {"rounds", rounds_json(s.rounds)},
           {"disagreement", s.disagreement}};
 }
 

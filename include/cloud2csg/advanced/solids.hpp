@@ -187,12 +187,21 @@ struct KnownSolid {
   SurfacePoints own = {};
 };
 
+/// A search for the tree, or an improvement of the last round's tree.
+struct ChoiceRound {
+  std::size_t planes = 0;   ///< added: they separate the solid from lumps that are wrongly in it
+  std::size_t places = 0;   ///< added: beside surface that no point is near
+  std::size_t leaves = 0;   ///< of the tree
+  double disagreement = 0;  ///< wrong_place_share() of the tree, by the places so far
+};
+
 struct SolidChoice {
   /// The known solids first, unchanged; then new ones with ids by type and number: "box_0", "cylinder_1"...
   PrimitiveSet solids = {};
   CsgTree tree = {};        ///< over the solids, simplified
   double disagreement = 0;  ///< wrong_place_share() of the tree
   LabelledPlaces places = {};
+  std::vector<ChoiceRound> rounds = {};  ///< those that lowered the cost; the first is the search
   std::vector<Snap> snaps = {};
   std::vector<std::string> warnings = {};  ///< sentences for the user: given values that the points do not support
 };

@@ -85,12 +85,13 @@ class Judges {
 
   [[nodiscard]] const LabelledPlaces& all() const { return all_; }
 
-  /// Adds places beside the solid's bare surface if the wrong ones weigh a leaf. @returns whether there were new ones
-  bool learn_from(const WrittenSolids& written, const Points& points, double near, double leaf, const RunContext& run) {
+  /// Adds places beside the solid's bare surface if the wrong ones weigh a leaf. @returns the number of new ones
+  std::size_t learn_from(const WrittenSolids& written, const Points& points, double near, double leaf,
+                         const RunContext& run) {
     constexpr double k_depth = 1e-3;  // in diagonals, as the least depth of places beside points
     const BareSurface bare = find_bare_surface(written.tree, written.solids, points, near, run);
     const LabelledPlaces beside = places_beside(bare, of_cloud_, k_depth * bounds_of(points).diagonal().norm());
-    if (wrong_place_share(written.tree, written.solids, beside) < leaf) return false;
+    if (wrong_place_share(written.tree, written.solids, beside) < leaf) return 0;
     const std::size_t before = all_.weights.size();
     for (std::size_t i = 0; i < beside.weights.size(); ++i) {
       const Eigen::Vector3d place = beside.positions[i];
@@ -98,7 +99,7 @@ class Judges {
       all_.positions.push_back(place);
       all_.weights.push_back(beside.weights[i]);
     }
-    return all_.weights.size() > before;
+    return all_.weights.size() - before;
   }
 
  private:
@@ -110,7 +111,17 @@ struct FoundList {
   LabelledPlaces places = {};  ///< that judged the list
   DecisionList list = {};
   WrittenSolids written = {};
+  std::vector<ChoiceRound> rounds = {};
 };
+
+/// The round that has led to this tree.
+ChoiceRound round_of(const WrittenSolids& written, const LabelledPlaces& places, std::size_t new_planes,
+                     std::size_t new_places) {
+  return {.planes = new_planes,
+          .places = new_places,
+          .leaves = leaf_count(written.tree),
+          .disagreement = wrong_place_share(written.tree, written.solids, places)};
+}
 
 /// Searches a list, then improves it while that saves anything: with planes between the solid and lumps that are
 /// wrongly in it, and with places beside surface that no point is near. All rounds together work no longer than the
@@ -122,19 +133,21 @@ FoundList found_list(const TermSpace& families, LabelledPlaces places, const Poi
   const TermSpace space = with_places(families, judges.all());
   FoundList found{.list = search_list(space, costs, limits, run)};
   found.written = write_solids(space, found.list);
+  found.rounds.push_back(round_of(found.written, judges.all(), 0, 0));
   limits.work /= k_rounds;
   std::vector<Surface> separators;
   for (int round = 0; round < k_rounds; ++round) {
     const std::vector<Surface> planes = separating_planes(found.written, judges.all(), 2 * costs.leaf, run);
     if (run.stop.stop_requested()) break;
-    const bool is_new = judges.learn_from(found.written, points, near, costs.leaf, without_stop(run));
-    if (planes.empty() && !is_new) break;
+    const std::size_t learned = judges.learn_from(found.written, points, near, costs.leaf, without_stop(run));
+    if (planes.empty() && learned == 0) break;
     separators.insert(separators.end(), planes.begin(), planes.end());
     const TermSpace more = with_places(families, judges.all(), separators);
     std::optional<DecisionList> list = improve_list(found.list, more, costs, limits, run);
     if (!list) break;
     found.written = write_solids(more, *list);
     found.list = std::move(*list);
+    found.rounds.push_back(round_of(found.written, judges.all(), planes.size(), learned));
   }
   found.places = judges.all();
   return found;
@@ -175,13 +188,14 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
   const double spacing = spacing_of({areas.begin(), areas.end()});
   const TermSpace families =
       make_term_space(cloud.positions, regular.surfaces, {.tolerance = tolerance, .spacing = spacing}, terms);
-  auto [places, list, written] =
+  auto [places, list, written, rounds] =
       found_list(families, std::move(of_cloud), cloud.positions, bare_distance(spacing, tolerance),
                  {.leaf = options.leaf_cost}, limits, run);
   choice.places = std::move(places);
   choice.solids = std::move(written.solids);
   choice.tree = std::move(written.tree);
   choice.disagreement = wrong_place_share(choice.tree, choice.solids, choice.places);
+  choice.rounds = std::move(rounds);
   choice.snaps = std::move(regular.snaps);
   choice.warnings = std::move(regular.warnings);
   if (list.size() >= options.most_rules) {
