@@ -131,14 +131,11 @@ def judge(program, openscad, mesh, tree, folder):
     return json.loads(run([program, "compare", mesh, tree, "--json", "-q"]))
 
 
-def bounds_of(program, file):
-    """The least and the largest coordinates of a cloud or of a model's solid."""
-    return json.loads(run([program, "info", file, "--json", "-q"]))["bounds"]
-
-
-def beyond(program, tree, cloud):
-    """How far the tree's solid leaves the bounds of the cloud."""
-    (low, high), (least, most) = bounds_of(program, tree), bounds_of(program, cloud)
+def beyond(program, tree, cloud, folder):
+    """How far points on the tree's solid leave the bounds of the cloud."""
+    points = folder / "points.ply"
+    run([program, "sample", tree, "-n", "100000", "-o", points, "-q"])
+    (low, high), (least, most) = (json.loads(run([program, "info", file, "--json"]))["bounds"] for file in (points, cloud))
     return max(0, *(a - b for a, b in zip(least, low)), *(b - a for a, b in zip(most, high)))
 
 
@@ -164,7 +161,7 @@ def measure(program, openscad, mesh, variant, arguments):
             "price": values["tree"]["price"], "verdict": values["verdict"]["grade"],
             "iou": compared["intersection_over_union"], "mean": compared["mean_distance"],
             "hausdorff": compared["hausdorff_distance"], "seconds": seconds,
-            "beyond": beyond(program, tree, cloud) / values["finding"]["tolerance"],
+            "beyond": beyond(program, tree, cloud, folder) / values["finding"]["tolerance"],
             "stages": {stage: values["seconds"].get(stage, 0) for stage in STAGES},
         }
 

@@ -4,6 +4,7 @@
 // With --keep, each result with another number of segments is written as a model, beside its truth.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -99,14 +100,39 @@ Shape any_extrusion(RandomStream& random) {
   return Extrusion{.profile = any_profile(random), .height = random.uniform(0.3, 1.5)};
 }
 
-/// A ring, or what is right of the axis.
-Shape any_revolution(RandomStream& random) {
+Profile any_profile_beside_the_axis(RandomStream& random) {
   Profile profile = any_profile(random);
   const double shift = random.uniform(0.2, 1) - bounds_of(profile).min().x();
   for (ClosedPath& path : profile.paths) {
     for (PathCorner& corner : path) corner.point.x() += shift;
   }
-  return Revolution{profile};
+  return profile;
+}
+
+Shape any_revolution(RandomStream& random) {
+  return Revolution{any_profile_beside_the_axis(random)};
+}
+
+Shape any_sector(RandomStream& random) {
+  const double angle = random.uniform(30, 330);
+  return Revolution{.profile = any_profile_beside_the_axis(random), .angle_deg = angle};
+}
+
+/// What is right of the axis of a profile that the axis cuts.
+Shape any_solid_around_the_axis(RandomStream& random) {
+  while (true) {
+    ClosedPath path{{.point = {0, -random.uniform(0.4, 1)}}};
+    const std::size_t corners = 2 + random.below(4);
+    for (std::size_t k = 0; k < corners; ++k) {
+      const double angle =
+          std::numbers::pi * ((static_cast<double>(k) + random.uniform(0.1, 0.6)) / static_cast<double>(corners) - 0.5);
+      const double bulge = random.chance(0.6) ? 0.0 : random.uniform(0.15, 0.8) * (random.chance(0.3) ? -1 : 1);
+      path.push_back({.point = random.uniform(0.4, 1) * Vector2d(std::cos(angle), std::sin(angle)), .bulge = bulge});
+    }
+    path.push_back({.point = {0, random.uniform(0.4, 1)}});
+    const Profile profile{.paths = {path}};
+    if (is_clear(profile) && bounds_of(profile).min().x() > -1e-9) return Revolution{profile};
+  }
 }
 
 /// Segments of a solid as a profile; a circle is one. A box has four, a cylinder or torus one, or as turned ones four.
@@ -141,6 +167,7 @@ bool shows_all_segments(const Model& model, const PointCloud& cloud) {
   for (const Primitive& solid : model.primitives) {
     const auto* extrusion = std::get_if<Extrusion>(&solid.shape);
     for (const ProfileSegment& segment : segments_of(*profile_of(solid.shape))) {
+      if (extrusion == nullptr && segment.is_on_axis()) continue;
       std::size_t count = 0;
       for (std::size_t i = 0; i < cloud.size() && count < k_enough; ++i) {
         const Eigen::Vector3d local = solid.pose.to_local(cloud.positions[i]);
@@ -181,27 +208,39 @@ Outcome outcome_of(const Model& truth, PointCloud cloud, const Options& options,
   }
 }
 
+struct Kind {
+  const char* name;
+  Shape (*any)(RandomStream&);
+  bool is_pair = false;
+};
+
+constexpr std::array<Kind, 6> k_kinds{{{"extrusion", any_extrusion},
+                                       {"revolution", any_revolution},
+                                       {"sector", any_sector},
+                                       {"revolution around its axis", any_solid_around_the_axis},
+                                       {"extrusion and another solid", any_extrusion, true},
+                                       {"revolution and another solid", any_revolution, true}}};
+
 /// One solid, or two of which the second is added or taken away.
-Model any_solids(bool is_turned, bool is_pair, std::uint64_t seed) {
+Model any_solids(const Kind& kind, std::uint64_t seed) {
   RandomStream random(seed);
-  const auto any_shape = [&](bool turned) { return turned ? any_revolution(random) : any_extrusion(random); };
-  Model model{.primitives = {{.id = "first", .shape = any_shape(is_turned), .pose = any_pose(random, 0)}},
+  Model model{.primitives = {{.id = "first", .shape = kind.any(random), .pose = any_pose(random, 0)}},
               .tree = CsgTree::leaf(0)};
-  if (!is_pair) return model;
-  model.primitives.push_back({.id = "second", .shape = any_shape(random.chance(0.5)), .pose = any_pose(random, 0.6)});
+  if (!kind.is_pair) return model;
+  const auto another = random.chance(0.5) ? any_revolution : any_extrusion;
+  model.primitives.push_back({.id = "second", .shape = another(random), .pose = any_pose(random, 0.6)});
   model.tree =
       random.chance(0.5) ? unite(CsgTree::leaf(0), CsgTree::leaf(1)) : subtract(CsgTree::leaf(0), CsgTree::leaf(1));
   return model;
 }
 
-Outcome outcome_of(bool is_turned, bool is_pair, const Options& options, std::uint64_t seed) {
+Outcome outcome_of(const Kind& kind, const Options& options, std::uint64_t seed) {
   constexpr std::uint64_t k_tries = 1000;
   for (std::uint64_t t = 0; t < k_tries; ++t) {
-    const Model truth = any_solids(is_turned, is_pair, k_tries * seed + t);
+    const Model truth = any_solids(kind, k_tries * seed + t);
     PointCloud cloud = sample_surface(truth, {.count = options.points, .seed = seed});
     if (!shows_all_segments(truth, cloud)) continue;
-    const auto* const kind = is_turned ? "revolution" : "extrusion";
-    return outcome_of(truth, std::move(cloud), options, fmt::format("{}{}_{}", kind, is_pair ? "_pair" : "", seed));
+    return outcome_of(truth, std::move(cloud), options, fmt::format("{}_{}", kind.name, seed));
   }
   return {};
 }
@@ -211,23 +250,19 @@ int run(int argc, char** argv) {
   fmt::print("{} solids a row, {} points, noise {} % of the diagonal; right: IoU >= {}\n\n", options.count,
              options.points, 100 * options.noise, k_least_iou);
   fmt::print("| solids | right number of segments | right | mean IoU |\n|---|---:|---:|---:|\n");
-  for (const bool is_pair : {false, true}) {
-    for (const bool is_turned : {false, true}) {
-      std::vector<Outcome> outcomes(options.count);
-      for_each_index(options.count, {},
-                     [&](std::size_t k) { outcomes[k] = outcome_of(is_turned, is_pair, options, k); });
-      double counted = 0;
-      double right = 0;
-      double iou = 0;
-      for (const Outcome& outcome : outcomes) {
-        counted += outcome.is_counted ? 1 : 0;
-        right += outcome.is_right ? 1 : 0;
-        iou += outcome.iou;
-      }
-      const auto n = static_cast<double>(options.count);
-      fmt::print("| {}{} | {:.1f} % | {:.1f} % | {:.4f} |\n", is_turned ? "revolution" : "extrusion",
-                 is_pair ? " and another solid" : "", 100 * counted / n, 100 * right / n, iou / n);
+  for (const Kind& kind : k_kinds) {
+    std::vector<Outcome> outcomes(options.count);
+    for_each_index(options.count, {}, [&](std::size_t k) { outcomes[k] = outcome_of(kind, options, k); });
+    double counted = 0;
+    double right = 0;
+    double iou = 0;
+    for (const Outcome& outcome : outcomes) {
+      counted += outcome.is_counted ? 1 : 0;
+      right += outcome.is_right ? 1 : 0;
+      iou += outcome.iou;
     }
+    const auto n = static_cast<double>(options.count);
+    fmt::print("| {} | {:.1f} % | {:.1f} % | {:.4f} |\n", kind.name, 100 * counted / n, 100 * right / n, iou / n);
   }
   return 0;
 }

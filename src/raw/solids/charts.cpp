@@ -318,7 +318,11 @@ class ChartMaker {
     const std::size_t first_of_border = pieces.size();
     const Border border = border_of(chart, curves, with_ends_of_circles(ends, curves, options_.tolerance));
     for (std::size_t side = 0; side < k_sides; ++side) {
-      const Curve line = line_along(border.box, side);
+      Curve line = line_along(border.box, side);
+      // The axis goes on where no face ends the points: there may be a tip.
+      const auto is_bare = [&](std::size_t end) { return border.curves[end] == curves.size() + end; };
+      if (chart.is_turned && side == 0 && is_bare(2)) line.points[0].y() -= k_reach * diagonal;
+      if (chart.is_turned && side == 0 && is_bare(3)) line.points[1].y() += k_reach * diagonal;
       add(segment_between(line.points[0], 0, line.points[1]), border.curves[side]);
     }
     chart.drawing.is_turned = chart.is_turned;

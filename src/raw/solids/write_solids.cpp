@@ -15,6 +15,7 @@
 #include "cloud2csg/csg_tree.hpp"
 #include "core/geometry/boxes.hpp"
 #include "core/primitive/profile.hpp"
+#include "raw/solids/bare_surface.hpp"
 #include "raw/solids/edges.hpp"
 #include "raw/solids/outline.hpp"
 #include "raw/solids/simplest_solid.hpp"
@@ -182,8 +183,8 @@ Primitive solid_of(const TermSpace& space, const TermPart& part, const Overshoot
   return revolved_solid(surface, has_ends ? span_along(surface.position, surface.axis) : Span{0, 1});
 }
 
-Primitive part_box(const TermSpace& space) {
-  return {.id = {}, .shape = Box{space.part_bounds.sizes()}, .pose = {.position = space.part_bounds.center()}};
+Primitive solid_of(const AlignedBox& box) {
+  return {.id = {}, .shape = Box{box.sizes()}, .pose = {.position = box.center()}};
 }
 
 /// A term or part as a tree, and where it may be.
@@ -275,13 +276,38 @@ WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
     if (list[r].is_in && !is_given && !space.bounds.contains(term.reach)) endless.push_back(r);
   }
   if (!endless.empty()) {
-    const CsgTree around = CsgTree::leaf(writer.add(part_box(space)));
+    const CsgTree around = CsgTree::leaf(writer.add(solid_of(space.part_bounds)));
     for (const std::size_t r : endless) terms[r] = intersect(terms[r], around);
   }
   CsgTree tree;
   for (std::size_t r = list.size(); r-- > 0;) {
     tree = list[r].is_in ? unite(tree, terms[r]) : subtract(tree, terms[r]);
   }
+  return {.solids = std::move(writer.solids), .tree = simplify(tree)};
+}
+
+WrittenSolids without_what_sticks_out(WrittenSolids written, const Points& points, double tolerance,
+                                      const RunContext& run) {
+  // That many are missing by chance in one of a million cases (e^-14), as in detection.
+  constexpr double k_least_missing = 14;
+  constexpr double k_margin = 0.06;  // in diagonals; any side that ends nothing would do
+  const AlignedBox seen = bounds_of(points);
+  const BareSurface far = find_bare_surface(written.tree, written.solids, points, 2 * tolerance, run);
+  AlignedBox reached = seen;
+  double missing = 0;
+  for (std::size_t i = 0; i < far.samples.size(); ++i) {
+    if (seen.exteriorDistance(Eigen::Vector3d(far.samples.positions[i])) <= 2 * tolerance) continue;
+    reached.extend(far.samples.positions[i]);
+    missing += far.shares[i] * static_cast<double>(points.size());
+  }
+  if (missing < k_least_missing) return written;
+  AlignedBox box = grown(reached, k_margin * seen.diagonal().norm());
+  for (int axis = 0; axis < 3; ++axis) {
+    if (reached.min()[axis] < seen.min()[axis] - 2 * tolerance) box.min()[axis] = seen.min()[axis] - tolerance;
+    if (reached.max()[axis] > seen.max()[axis] + 2 * tolerance) box.max()[axis] = seen.max()[axis] + tolerance;
+  }
+  SolidWriter writer(std::move(written.solids));
+  const CsgTree tree = intersect(written.tree, CsgTree::leaf(writer.add(solid_of(box))));
   return {.solids = std::move(writer.solids), .tree = simplify(tree)};
 }
 
