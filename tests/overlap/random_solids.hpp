@@ -5,6 +5,8 @@
 
 #include "cloud2csg/primitive.hpp"
 #include "core/base/random.hpp"
+#include "core/primitive/shape.hpp"
+#include "support/any_profile.hpp"
 
 /// Random solids for the tests of the overlap stage.
 namespace cloud2csg::test {
@@ -76,8 +78,14 @@ inline Primitive random_solid(RandomStream& random) {
                              .bounds = {Eigen::Vector3d::Constant(-0.4), Eigen::Vector3d::Constant(0.4)}},
                   random);
   }
+  if (kind < 0.5) {
+    const auto draw = [&random](double low, double high) { return random.uniform(low, high); };
+    const Shape shape = random.chance(0.5) ? Shape(Extrusion{.profile = any_profile(draw), .height = draw(0.2, 2.0)})
+                                           : Shape(any_revolution(draw));
+    return placed(scaled(shape, random.uniform(0.1, 0.5)), random);
+  }
   Primitive solid = random_convex(random);
-  if (kind < 0.4) solid.displacement = Displacement{.frequency = random.uniform(1.0, 3.0)};
+  if (kind < 0.6) solid.displacement = Displacement{.frequency = random.uniform(1.0, 3.0)};
   return solid;
 }
 

@@ -114,6 +114,16 @@ TEST(ChooseSolids, FindsABlockWithBores) {
   expect_recovered(block_with_bores(), 4);
 }
 
+/// Its mouths are ellipses, so it is in no drawing of the plate.
+TEST(ChooseSolids, FindsAnObliqueBore) {
+  for (const double degrees : {20.0, 50.0}) {
+    expect_recovered(part_of({test::placed("plate", Box{{4, 3, 0.8}}, {0, 0, 0}),
+                              turned(test::placed("bore", Cylinder{0.4, 6}, {0.3, 0.1, 0}), {1, 2, 0}, degrees)},
+                             "plate - bore"),
+                     2);
+  }
+}
+
 /// So many holes along each side.
 Part plate_with_rows_of_holes(int count) {
   const double length = count;
