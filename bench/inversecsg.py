@@ -6,7 +6,7 @@
 For each mesh of the folder, or .scad file, which OpenSCAD makes a mesh of: 100 000 points without noise, with noise of 0.2 % of
 the diagonal, and a virtual scan from 20 viewpoints without normals. The tree is written as .scad, rendered by OpenSCAD, and that
 mesh is compared with the input. Prints a table; nothing is known of a model but its mesh. "beyond" is how far the solid leaves
-the bounds of the cloud, in tolerances. More variants:
+the bounds of the mesh, in tolerances of the detection. More variants:
 
     table            a scan from above only, of a part that lies on a table
     noise=PERCENT    noise of so much of the diagonal
@@ -131,11 +131,11 @@ def judge(program, openscad, mesh, tree, folder):
     return json.loads(run([program, "compare", mesh, tree, "--json", "-q"]))
 
 
-def beyond(program, tree, cloud, folder):
-    """How far points on the tree's solid leave the bounds of the cloud."""
+def beyond(program, tree, mesh, folder):
+    """How far points on the tree's solid leave the bounds of the mesh."""
     points = folder / "points.ply"
     run([program, "sample", tree, "-n", "100000", "-o", points, "-q"])
-    (low, high), (least, most) = (json.loads(run([program, "info", file, "--json"]))["bounds"] for file in (points, cloud))
+    (low, high), (least, most) = (json.loads(run([program, "info", f, "--json"]))["bounds"] for f in (points, mesh))
     return max(0, *(a - b for a, b in zip(least, low)), *(b - a for a, b in zip(most, high)))
 
 
@@ -161,7 +161,7 @@ def measure(program, openscad, mesh, variant, arguments):
             "price": values["tree"]["price"], "verdict": values["verdict"]["grade"],
             "iou": compared["intersection_over_union"], "mean": compared["mean_distance"],
             "hausdorff": compared["hausdorff_distance"], "seconds": seconds,
-            "beyond": beyond(program, tree, cloud, folder) / values["finding"]["tolerance"],
+            "beyond": beyond(program, tree, mesh, folder) / values["finding"]["tolerance"],
             "stages": {stage: values["seconds"].get(stage, 0) for stage in STAGES},
         }
 
@@ -201,7 +201,7 @@ def print_summary(rows, variants):
               f">= 0.97 on {sum(x >= 0.97 for x in iou)}, >= 0.95 on {sum(x >= 0.95 for x in iou)}, least {min(iou):.4f}; "
               f"seconds: median {statistics.median(seconds) if seconds else 0:.2f}, most {max(seconds, default=0):.2f}")
         farthest = max((r["beyond"] for r in rows if r["variant"] == variant and "beyond" in r), default=0)
-        print(f"    farthest beyond the cloud's bounds: {farthest:.2f} tolerances")
+        print(f"    farthest beyond the mesh's bounds: {farthest:.2f} tolerances")
         without = by_variant.get("normals=none") if variant.startswith("normals=") else None
         if without:
             worst = min(ious, key=lambda model: ious[model] - without[model])

@@ -4,6 +4,7 @@
 // With --keep, each result with another number of segments is written as a model, beside its truth.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -118,7 +119,7 @@ Shape any_sector(RandomStream& random) {
   return Revolution{.profile = any_profile_beside_the_axis(random), .angle_deg = angle};
 }
 
-/// What is right of the axis of a profile that the axis cuts.
+/// Its profile begins and ends on the axis.
 Shape any_solid_around_the_axis(RandomStream& random) {
   while (true) {
     ClosedPath path{{.point = {0, -random.uniform(0.4, 1)}}};
@@ -221,6 +222,12 @@ constexpr std::array<Kind, 6> k_kinds{{{"extrusion", any_extrusion},
                                        {"extrusion and another solid", any_extrusion, true},
                                        {"revolution and another solid", any_revolution, true}}};
 
+std::string file_name_of(const Kind& kind) {
+  std::string name = kind.name;
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
+
 /// One solid, or two of which the second is added or taken away.
 Model any_solids(const Kind& kind, std::uint64_t seed) {
   RandomStream random(seed);
@@ -240,7 +247,7 @@ Outcome outcome_of(const Kind& kind, const Options& options, std::uint64_t seed)
     const Model truth = any_solids(kind, k_tries * seed + t);
     PointCloud cloud = sample_surface(truth, {.count = options.points, .seed = seed});
     if (!shows_all_segments(truth, cloud)) continue;
-    return outcome_of(truth, std::move(cloud), options, fmt::format("{}_{}", kind.name, seed));
+    return outcome_of(truth, std::move(cloud), options, fmt::format("{}_{}", file_name_of(kind), seed));
   }
   return {};
 }

@@ -64,7 +64,7 @@ ExportReport export_mesh(const std::filesystem::path& file, const Model& model, 
   if (mesh.triangles.empty()) {
     throw Error({.file = file.string(),
                  .expected = "expected a solid to mesh, found one that is empty or thinner than a cell",
-                 .remedy = "give a larger `meshing.resolution`"});
+                 .remedy = "check the tree, or give a larger `meshing.resolution`"});
   }
   write_mesh(file, mesh);
   return {.cut_at = cut_at(model, extent)};

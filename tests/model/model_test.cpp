@@ -210,7 +210,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "/primitives/0/profile/0/0", "expected radii of 0 or more"},
         Refused{"BadFormula", with_primitives(R"({"id": "e", "type": "expression", "distance": "x +* y",
                                     "bounds": [[0, 0, 0], [1, 1, 1]]})"),
-                "/primitives/0/distance", ""}),
+                "/primitives/0/distance", "expected a formula in x, y and z"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

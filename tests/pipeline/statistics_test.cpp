@@ -79,14 +79,14 @@ TEST(Statistics, MeasureTheTree) {
 }
 
 TEST(Statistics, PriceTheTreeByItsLeaves) {
-  const ClosedPath star = test::regular_path(10, 1);
+  const ClosedPath star = test::regular_path(7, 1);
   const PrimitiveSet primitives{
       test::placed("ball", Sphere{.radius = 1}, {0, 0, 0}),
       test::placed("star", Extrusion{.profile = {.paths = {star}}, .height = 1}, {0, 0, 0}),
       test::placed("unused", Extrusion{.profile = {.paths = {star}}, .height = 2}, {0, 0, 0})};
   const CsgTree tree = subtract(unite(CsgTree::leaf(0), CsgTree::leaf(1)), CsgTree::leaf(1));
   const TreeStatistics statistics = statistics_of(tree, primitives);
-  EXPECT_EQ(statistics.price, 4.2) << "without errors of rounding";
+  EXPECT_EQ(statistics.price, 3.6) << "without errors of rounding";
   EXPECT_EQ(statistics.operations, 4U) << "two profiles and two combinations";
 }
 

@@ -255,6 +255,28 @@ TEST(ChooseSolids, FindsAPipeWithTwoBends) {
   expect_recovered(pipe, 2);
 }
 
+/// No point is at the tip, but the cone ends nowhere else.
+TEST(ChooseSolids, FindsATip) {
+  const Part pencil =
+      part_of({test::placed("shaft", Cylinder{1, 3}, {0, 0, 0}),
+               test::placed("tip", Cone{.radius_bottom = 1, .radius_top = 0, .height = 2}, {0, 0, 2.5})},
+              "shaft | tip");
+  const SolidChoice choice = expect_recovered(pencil, 1);
+  const auto* const turned = std::get_if<Revolution>(&choice.solids[0].shape);
+  ASSERT_NE(turned, nullptr);
+  EXPECT_EQ(count_segments(turned->profile), 4U) << "the axis is one";
+  EXPECT_NEAR(bounds(choice.solids[0]).max().z(), 3.5, 0.01);
+}
+
+/// A chamfered end has a face, which ends the solid.
+TEST(ChooseSolids, MakesNoTipOfAChamfer) {
+  const Part pin =
+      part_of({test::placed("shaft", Cylinder{1, 3}, {0, 0, 0}),
+               test::placed("chamfer", Cone{.radius_bottom = 1, .radius_top = 0.8, .height = 0.2}, {0, 0, 1.6})},
+              "shaft | chamfer");
+  EXPECT_NEAR(bounds(expect_recovered(pin, 1).solids[0]).max().z(), 1.7, 0.01);
+}
+
 TEST(ChooseSolids, FindsThreeQuartersOfATurnedShell) {
   const Part shell =
       part_of({test::placed("cone", Cone{2, 1.2, 1.5}, {0, 0, 0}), test::placed("groove", Torus{1.6, 0.3}, {0, 0, 0}),

@@ -187,12 +187,12 @@ struct KnownSolid {
   SurfacePoints own = {};
 };
 
-/// A search for the tree, or an improvement of the last round's tree.
+/// A search for the tree, or an improvement of the last round's tree. What sticks out is cut off after the last round.
 struct ChoiceRound {
   std::size_t planes = 0;   ///< added: they separate the solid from lumps that are wrongly in it
   std::size_t places = 0;   ///< added: beside surface that no point is near
   std::size_t leaves = 0;   ///< of the tree
-  double disagreement = 0;  ///< wrong_place_share() of the tree, by the places so far
+  double disagreement = 0;  ///< wrong_place_share() of the tree by the places so far, which may be more each round
 };
 
 struct SolidChoice {

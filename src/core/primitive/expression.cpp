@@ -7,15 +7,14 @@
 #include <cmath>
 #include <variant>
 
-#include "cloud2csg/error.hpp"
+#include "core/primitive/refuse.hpp"
 
 namespace cloud2csg {
 namespace {
 
 [[noreturn]] void refuse_formula(const std::string& reason) {
-  throw Error({.where = "distance",
-               .expected = fmt::format("a formula in x, y and z: {}", reason),
-               .remedy = "write it in muParser's syntax, for example sqrt(x^2+y^2+z^2)-1"});
+  refuse_primitive("distance", fmt::format("a formula in x, y and z: {}", reason),
+                   "write it in muParser's syntax, for example sqrt(x^2+y^2+z^2)-1");
 }
 
 /// muParser would take `x = 1` as an assignment to a variable.

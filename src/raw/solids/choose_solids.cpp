@@ -192,7 +192,8 @@ SolidChoice choose_solids(const PointCloud& cloud, std::span<const DetectedSurfa
       found_list(families, std::move(of_cloud), cloud.positions, bare_distance(spacing, tolerance),
                  {.leaf = options.leaf_cost}, limits, run);
   if (known.empty()) {  // known solids stay as they are
-    written = without_what_sticks_out(std::move(written), cloud.positions, tolerance, without_stop(run));
+    written = without_what_sticks_out(std::move(written), families.part_bounds, cloud.positions, tolerance,
+                                      without_stop(run));
   }
   choice.places = std::move(places);
   choice.solids = std::move(written.solids);

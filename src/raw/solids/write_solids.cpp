@@ -286,26 +286,30 @@ WrittenSolids write_solids(const TermSpace& space, DecisionList list) {
   return {.solids = std::move(writer.solids), .tree = simplify(tree)};
 }
 
-WrittenSolids without_what_sticks_out(WrittenSolids written, const Points& points, double tolerance,
-                                      const RunContext& run) {
+WrittenSolids without_what_sticks_out(WrittenSolids written, const AlignedBox& seen, const Points& points,
+                                      double tolerance, const RunContext& run) {
   // That many are missing by chance in one of a million cases (e^-14), as in detection.
   constexpr double k_least_missing = 14;
   constexpr double k_margin = 0.06;  // in diagonals; any side that ends nothing would do
-  const AlignedBox seen = bounds_of(points);
   const BareSurface far = find_bare_surface(written.tree, written.solids, points, 2 * tolerance, run);
-  AlignedBox reached = seen;
-  double missing = 0;
-  for (std::size_t i = 0; i < far.samples.size(); ++i) {
-    if (seen.exteriorDistance(Eigen::Vector3d(far.samples.positions[i])) <= 2 * tolerance) continue;
-    reached.extend(far.samples.positions[i]);
-    missing += far.shares[i] * static_cast<double>(points.size());
-  }
-  if (missing < k_least_missing) return written;
-  AlignedBox box = grown(reached, k_margin * seen.diagonal().norm());
+  AlignedBox box = seen;
+  for (std::size_t i = 0; i < far.samples.size(); ++i) box.extend(far.samples.positions[i]);
+  box = grown(box, k_margin * seen.diagonal().norm());
+  bool is_cut = false;
   for (int axis = 0; axis < 3; ++axis) {
-    if (reached.min()[axis] < seen.min()[axis] - 2 * tolerance) box.min()[axis] = seen.min()[axis] - tolerance;
-    if (reached.max()[axis] > seen.max()[axis] + 2 * tolerance) box.max()[axis] = seen.max()[axis] + tolerance;
+    for (const double sign : {-1.0, 1.0}) {
+      const double end = sign * (sign < 0 ? seen.min() : seen.max())[axis];
+      double missing = 0;
+      for (std::size_t i = 0; i < far.samples.size(); ++i) {
+        const bool is_beyond = sign * far.samples.positions[i][axis] > end + 2 * tolerance;
+        missing += is_beyond ? far.shares[i] * static_cast<double>(points.size()) : 0.0;
+      }
+      if (missing < k_least_missing) continue;
+      (sign < 0 ? box.min() : box.max())[axis] = sign * (end + tolerance);
+      is_cut = true;
+    }
   }
+  if (!is_cut) return written;
   SolidWriter writer(std::move(written.solids));
   const CsgTree tree = intersect(written.tree, CsgTree::leaf(writer.add(solid_of(box))));
   return {.solids = std::move(writer.solids), .tree = simplify(tree)};
