@@ -362,13 +362,9 @@ class ChartMaker {
       return cap.height < low - options_.tolerance || cap.height > high + options_.tolerance;
     });
     std::ranges::stable_sort(caps, std::greater<>(), &Cap::count);
-    caps.push_back({.height = low});
-    caps.push_back({.height = high});
     std::vector<double> distinct;
-    for (const Cap& cap : caps) {
-      const auto is_near = [&](double known) { return std::abs(known - cap.height) <= options_.tolerance; };
-      if (std::ranges::none_of(distinct, is_near)) distinct.push_back(cap.height);
-    }
+    for (const Cap& cap : caps) add_distinct(distinct, {cap.height}, options_.tolerance);
+    add_distinct(distinct, {low, high}, options_.tolerance);
     std::ranges::sort(distinct);
     return distinct;
   }

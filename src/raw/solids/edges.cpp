@@ -12,14 +12,6 @@ namespace {
 constexpr double k_parallel_sine = 0.009;  // half a degree
 constexpr double k_reach_quantile = 0.01;
 
-/// Adds values at least `tolerance` from all present ones.
-void add_distinct(std::vector<double>& edges, const std::vector<double>& values, double tolerance) {
-  for (const double value : values) {
-    const bool is_new = std::ranges::none_of(edges, [&](double edge) { return std::abs(edge - value) < tolerance; });
-    if (is_new) edges.push_back(value);
-  }
-}
-
 /// Adds the bounds as first and last edge.
 Bins closed(std::vector<double> edges, double low, double high) {
   std::erase_if(edges, [&](double edge) { return edge <= low || edge >= high; });
@@ -61,6 +53,13 @@ std::vector<double> reach_of(const DetectedSurface& detected, const Points& posi
 }
 
 }  // namespace
+
+void add_distinct(std::vector<double>& edges, const std::vector<double>& values, double tolerance) {
+  for (const double value : values) {
+    const bool is_new = std::ranges::none_of(edges, [&](double edge) { return std::abs(edge - value) < tolerance; });
+    if (is_new) edges.push_back(value);
+  }
+}
 
 bool are_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.cross(b).norm() < k_parallel_sine;

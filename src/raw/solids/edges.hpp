@@ -15,6 +15,9 @@ struct EdgeRules {
   double derived_tolerance = 0;  ///< edges where points end merge with edges closer than this
 };
 
+/// Adds values that are at least `tolerance` from all present ones. O(edges x values)
+void add_distinct(std::vector<double>& edges, const std::vector<double>& values, double tolerance);
+
 /// Edges along the axis of a cylinder or cone, relative to its position: planes across it, and ends of its points. A
 /// cone's edges begin at its apex or beyond.
 [[nodiscard]] Bins edges_along_axis(const DetectedSurface& surface, const Points& positions,

@@ -301,9 +301,7 @@ Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, boo
   }
   Handle(Geom_Curve) circle = new Geom_Circle(gp_Ax2(centre, normal, gp_Dir(to_start)), arc.radius);
   // A parameter close to the angle: with others, the kernel's measure of the volume is off by up to .4 %.
-  Handle(Geom_Curve) spline =
-      GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
-  return spline;
+  return GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
 }
 
 /// Whether two arcs make a circle.
