@@ -267,9 +267,10 @@ TopoDS_Shape centred(const Cone& cone) {
   return BRepPrimAPI_MakeCone(axis_from(-0.5 * cone.height), cone.radius_bottom, cone.radius_top, cone.height).Solid();
 }
 
+/// The kernel refuses tori without a hole, so a pinhole remains; relative to the tube's radius.
+constexpr double k_pinhole = 1e-5;
+
 TopoDS_Shape centred(const Torus& torus) {
-  // The kernel refuses tori without a hole, so a pinhole remains.
-  constexpr double k_pinhole = 1e-5;
   const double minor = std::min(torus.minor_radius, (1 - k_pinhole) * torus.major_radius);
   return BRepPrimAPI_MakeTorus(torus.major_radius, minor).Solid();
 }
@@ -289,7 +290,6 @@ using PlaceOf = std::function<gp_Pnt(const Eigen::Vector2d&)>;
 /// The curve of an arc. Turned about x = 0, a circle gives a torus if its angles count from the far side of the axis.
 /// The kernel knows no torus that cuts itself, so such an arc becomes a spline, which is exact as well.
 Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, bool is_turned) {
-  constexpr double k_pinhole = 1e-5;
   const gp_Pnt centre = place(arc.centre);
   const gp_Vec to_start(centre, place(arc.start));
   const gp_Vec to_quarter(centre, place(arc.centre + (arc.angle > 0 ? 1 : -1) * to_the_left(arc.start - arc.centre)));
@@ -301,7 +301,9 @@ Handle(Geom_Curve) curve_of(const ProfileSegment& arc, const PlaceOf& place, boo
   }
   Handle(Geom_Curve) circle = new Geom_Circle(gp_Ax2(centre, normal, gp_Dir(to_start)), arc.radius);
   // A parameter close to the angle: with others, the kernel's measure of the volume is off by up to .4 %.
-  return GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
+  Handle(Geom_Curve) spline =
+      GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(circle, 0, std::abs(arc.angle)), Convert_QuasiAngular);
+  return spline;
 }
 
 /// Whether two arcs make a circle.
