@@ -248,7 +248,7 @@ gp_Ax2 axis_from(double height) {
 
 TopoDS_Shape centred(const Box& box) {
   const Eigen::Vector3d half = 0.5 * box.size;
-  return BRepPrimAPI_MakeBox(gp_Pnt(-half.x(), -half.y(), -half.z()), gp_Pnt(half.x(), half.y(), half.z())).Solid();
+  return BRepPrimAPI_MakeBox(point_of(-half), point_of(half)).Solid();
 }
 
 TopoDS_Shape centred(const Sphere& sphere) {
@@ -393,9 +393,7 @@ Bodies make_bodies(const Facets& facets) {
 }
 
 Body make_block(const AlignedBox& box) {
-  return body_of(BRepPrimAPI_MakeBox(gp_Pnt(box.min().x(), box.min().y(), box.min().z()),
-                                     gp_Pnt(box.max().x(), box.max().y(), box.max().z()))
-                     .Solid());
+  return body_of(BRepPrimAPI_MakeBox(point_of(box.min()), point_of(box.max())).Solid());
 }
 
 }  // namespace cloud2csg::brep
