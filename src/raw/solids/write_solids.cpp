@@ -290,11 +290,11 @@ WrittenSolids without_what_sticks_out(WrittenSolids written, const AlignedBox& s
                                       double tolerance, const RunContext& run) {
   // That many are missing by chance in one of a million cases (e^-14), as in detection.
   constexpr double k_least_missing = 14;
-  constexpr double k_margin = 0.06;  // in diagonals; any side that ends nothing would do
+  constexpr double k_beyond = 0.06;  // in diagonals; any side that ends nothing would do
   const BareSurface far = find_bare_surface(written.tree, written.solids, points, 2 * tolerance, run);
   AlignedBox box = seen;
   for (std::size_t i = 0; i < far.samples.size(); ++i) box.extend(far.samples.positions[i]);
-  box = grown(box, k_margin * seen.diagonal().norm());
+  box = grown(box, k_beyond * seen.diagonal().norm());
   bool is_cut = false;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
